@@ -1,0 +1,84 @@
+%module(package="openmmhelfrich") forces
+
+%{
+#include "OpenMMHelfrich.h"
+#include <OpenMM.h>
+#include <OpenMMAmoeba.h>
+#include <OpenMMDrude.h>
+#include <openmm/RPMDIntegrator.h>
+#include <openmm/RPMDMonteCarloBarostat.h>
+using namespace HelfrichPlugin;
+%}
+
+%include <std_string.i>
+%include <std_vector.i>
+%include <exception.i>
+%include <pybuffer.i>
+%import(module="openmm") "swig/OpenMMSwigHeaders.i"
+
+/* Errors of the core arrive as openmm.OpenMMException, like OpenMM's own. */
+%exception {
+    try {
+        $action
+    } catch (const OpenMM::OpenMMException& error) {
+        PyObject* module = PyImport_ImportModule("openmm");
+        PyObject* type = module == NULL ? NULL : PyObject_GetAttrString(module, "OpenMMException");
+        if (type != NULL)
+            PyErr_SetString(type, error.what());
+        Py_XDECREF(type);
+        Py_XDECREF(module);
+        SWIG_fail;
+    } catch (const std::exception& error) {
+        SWIG_exception(SWIG_RuntimeError, error.what());
+    }
+}
+
+%apply int& OUTPUT { int& particle1, int& particle2, int& particle3 };
+%pybuffer_binary(const char* data, size_t size);
+
+/* Arrays come as one buffer, through _arguments.py; numbers go by the setters, which know units. */
+%ignore HelfrichPlugin::MembraneForce::addTriangles;
+%ignore HelfrichPlugin::MembraneForce::getTriangles;
+%ignore HelfrichPlugin::MembraneForce::getForm;
+%ignore HelfrichPlugin::MembraneForce::setForm;
+%ignore HelfrichPlugin::MembraneForce::setParameterValue;
+%nodefaultctor HelfrichPlugin::MembraneForce;
+
+%extend HelfrichPlugin::MembraneForce {
+    void _addTriangleBuffer(const char* data, size_t size) {
+        const int* corners = reinterpret_cast<const int*>(data);
+        $self->addTriangles(std::vector<int>(corners, corners + size / sizeof(int)));
+    }
+}
+
+
+/* `system.getForce(i)` and XML give plain openmm.Force objects; each class tells and casts its own. */
+%define %MEMBRANE_FORCE(CLASS)
+%extend HelfrichPlugin::CLASS {
+    static bool isinstance(OpenMM::Force& force) {
+        return dynamic_cast<HelfrichPlugin::CLASS*>(&force) != nullptr;
+    }
+    static HelfrichPlugin::CLASS& cast(OpenMM::Force& force) {
+        auto* found = dynamic_cast<HelfrichPlugin::CLASS*>(&force);
+        if (found == nullptr)
+            throw OpenMM::OpenMMException(#CLASS ": cannot cast the force \"" + force.getName() +
+                                          "\", which is of another class");
+        return *found;
+    }
+}
+%include "openmm-helfrich/CLASS.h"
+%enddef
+
+%template(_IntVector) std::vector<int>;
+%include "openmm-helfrich/MembraneForce.h"
+%MEMBRANE_FORCE(SurfaceAreaForce)
+%MEMBRANE_FORCE(EnclosedVolumeForce)
+%MEMBRANE_FORCE(BendingForce)
+%MEMBRANE_FORCE(TriangleHeightForce)
+
+%pythoncode %{
+from openmmhelfrich import _arguments
+for _class in MembraneForce.__subclasses__():
+    _arguments.accept_units(_class)
+_arguments.accept_arrays(MembraneForce)
+%}

@@ -1,0 +1,46 @@
+"""Fluid membranes in OpenMM: curvature elasticity of triangulated vesicles.
+
+Importing the package loads the plugin. Forces on triangulated membranes are then OpenMM Forces like
+any other::
+
+    import openmmhelfrich as helfrich
+
+    mesh = helfrich.Mesh.random_sphere(1002, radius=1000, seed=1)
+    system.addForce(helfrich.BendingForce(mesh, rigidity=50))
+
+`Mesh` makes, reads and transforms triangulated surfaces, `Vesicle` is a whole model with the
+defaults of Farnudi, Ejtehadi and Everaers (doi:10.1103/PhysRevE.108.015301), and `analysis` has
+fluctuation spectra with their theory. Units are OpenMM's: nm, ps, amu, kJ/mol.
+"""
+
+from __future__ import annotations
+
+from . import _plugin
+
+_plugin.load()
+
+from . import analysis  # noqa: E402
+from .errors import MeshError  # noqa: E402
+from .forces import (  # noqa: E402
+    BendingForce,
+    EnclosedVolumeForce,
+    MembraneForce,
+    SurfaceAreaForce,
+    TriangleHeightForce,
+)
+from .mesh import Mesh  # noqa: E402
+from .vesicle import Vesicle  # noqa: E402
+
+__version__ = _plugin.version()
+
+__all__ = [
+    "BendingForce",
+    "EnclosedVolumeForce",
+    "MembraneForce",
+    "Mesh",
+    "MeshError",
+    "SurfaceAreaForce",
+    "TriangleHeightForce",
+    "Vesicle",
+    "analysis",
+]

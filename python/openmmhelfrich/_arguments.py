@@ -1,0 +1,222 @@
+"""Arguments of the force classes: triangles of any kind, scalars with units, names.
+
+SWIG makes classes that take lists of integers and plain numbers. The functions here, which the
+generated ``forces.py`` calls once for each class, give them constructors that take what users
+have: a `Mesh`, arrays, Quantities. What the scalars are called and which units they have is asked
+of the core, so a new potential needs no word here.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+import inspect
+import math
+from typing import NamedTuple
+
+import numpy as np
+from openmm import unit
+
+from . import _core
+
+__all__ = ["Scalar", "accept_arrays", "accept_units", "scalar", "scalars_of", "triangles"]
+
+
+class Scalar(NamedTuple):
+    """A scalar parameter of a force class."""
+
+    name: str
+    #: The unit of plain numbers.
+    unit: unit.Unit
+    #: The default, or ``inspect.Parameter.empty``.
+    default: object
+
+
+class _ParameterInfo(ctypes.Structure):
+    _fields_ = [
+        ("name", ctypes.c_char_p),
+        ("energy", ctypes.c_int),
+        ("length", ctypes.c_int),
+        ("default", ctypes.c_double),
+    ]
+
+
+def scalars_of(force: str) -> list[Scalar]:
+    """The scalars of a force class, in the order of its constructor.
+
+    Parameters
+    ----------
+    force : str
+        The name of the class.
+    """
+    core = _core.library()
+    found = []
+    info = _ParameterInfo()
+    while core.Helfrich_Potential_parameter(force.encode(), len(found), ctypes.byref(info)) == 0:
+        dimension = unit.kilojoule_per_mole**info.energy * unit.nanometer**info.length
+        default = inspect.Parameter.empty if math.isnan(info.default) else info.default
+        found.append(Scalar(info.name.decode(), dimension, default))
+    return found
+
+
+def form_name(force: str) -> str | None:
+    """What the variants of a force class are called ("scheme"), None if it has none."""
+    what, name = ctypes.c_char_p(), ctypes.c_char_p()
+    status = _core.library().Helfrich_Potential_form(
+        force.encode(), 0, ctypes.byref(what), ctypes.byref(name)
+    )
+    return what.value.decode() if status == 0 else None
+
+
+def scalar(force: str, parameter: Scalar, value) -> float:
+    """A plain number in OpenMM's units.
+
+    Parameters
+    ----------
+    force : str
+        The name of the class, for messages.
+    parameter : Scalar
+        What the number is.
+    value : float or Quantity
+        In OpenMM's units if it is plain.
+
+    Raises
+    ------
+    TypeError
+        If the value is not one number, or a Quantity with another dimension.
+    """
+    where = f"{force}: {parameter.name}"
+    if unit.is_quantity(value):
+        if not value.unit.is_compatible(parameter.unit):
+            wanted = parameter.unit.get_symbol()
+            raise TypeError(f"{where} must be in units of {wanted}, got {value}")
+        value = value.value_in_unit(parameter.unit)
+    if isinstance(value, (bool, str, bytes)):
+        raise TypeError(f"{where} must be a number, got {value!r}")
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise TypeError(f"{where} must be one number, got {value!r}") from None
+
+
+def triangles(force: str, given, offset: int = 0) -> np.ndarray:
+    """Triangles as a contiguous array of C integers, shape (num_triangles, 3).
+
+    Parameters
+    ----------
+    force : str
+        The name of the class, for messages.
+    given : Mesh or array_like of int
+        A Mesh, or particle indices of shape (num_triangles, 3).
+    offset : int
+        Added to every index, so that vertex ``i`` is particle ``offset + i``.
+
+    Raises
+    ------
+    TypeError
+        If the indices are not integers.
+    ValueError
+        If the shape is another, or an index does not fit a C int.
+    """
+    given = getattr(given, "triangles", given)
+    try:
+        array = np.asarray(given)
+    except ValueError:
+        raise ValueError(
+            f"{force}: triangles must be triples of particle indices, got lists of unequal length"
+        ) from None
+    if array.size == 0:
+        array = np.empty((0, 3), dtype=np.int64)
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ValueError(
+            f"{force}: triangles must have shape (num_triangles, 3), got {array.shape}"
+        )
+    if array.dtype.kind not in "iu":
+        raise TypeError(
+            f"{force}: triangles must be integers (particle indices), got dtype {array.dtype}"
+        )
+    if isinstance(offset, bool) or not isinstance(offset, (int, np.integer)):
+        raise TypeError(f"{force}: offset must be an integer, got {offset!r}")
+    shifted = array.astype(np.int64) + int(offset)
+    limits = np.iinfo(np.intc)
+    outside = np.flatnonzero(((shifted < limits.min) | (shifted > limits.max)).any(axis=1))
+    if outside.size:
+        index = int(outside[0])
+        raise ValueError(
+            f"{force}: triangle {index} has the indices {tuple(shifted[index].tolist())}, "
+            "which are beyond what OpenMM can number"
+        )
+    return np.ascontiguousarray(shifted, dtype=np.intc)
+
+
+def accept_units(force: type) -> None:
+    """Give a class generated by SWIG its constructor and setters with units."""
+    name = force.__name__
+    known = scalars_of(name)
+    form = form_name(name)
+    swig_init = force.__init__
+    keyword = inspect.Parameter.POSITIONAL_OR_KEYWORD
+    parameters = [inspect.Parameter("triangles", keyword)]
+    parameters += [inspect.Parameter(s.name, keyword, default=s.default) for s in known]
+    if form is not None:
+        parameters.append(inspect.Parameter(form, keyword, default=0))
+    offset = inspect.Parameter("offset", inspect.Parameter.KEYWORD_ONLY, default=0)
+    signature = inspect.Signature([*parameters, offset])
+
+    @functools.wraps(swig_init)
+    def init(self, *args, **kwargs):
+        try:
+            bound = signature.bind(*args, **kwargs)
+        except TypeError as reason:
+            raise TypeError(f"{name}: {reason}; the arguments are {signature}") from None
+        bound.apply_defaults()
+        arguments = bound.arguments
+        corners = triangles(name, arguments["triangles"], arguments["offset"])
+        values = [scalar(name, s, arguments[s.name]) for s in known]
+        if form is not None:
+            values.append(arguments[form])
+        swig_init(self, [], *values)
+        self._addTriangleBuffer(corners.data)
+
+    init.__signature__ = signature.replace(
+        parameters=[inspect.Parameter("self", keyword), *signature.parameters.values()]
+    )
+    force.__init__ = init
+    for parameter in known:
+        _accept_unit_in_setter(force, parameter)
+
+
+def _accept_unit_in_setter(force: type, parameter: Scalar) -> None:
+    method = "set" + parameter.name[0].upper() + parameter.name[1:]
+    swig_setter = getattr(force, method)
+
+    @functools.wraps(swig_setter)
+    def setter(self, value):
+        swig_setter(self, scalar(force.__name__, parameter, value))
+
+    setattr(force, method, setter)
+
+
+def accept_arrays(force: type) -> None:
+    """Give the base class its method for many triangles."""
+
+    def add_triangles(self, given, *, offset=0):
+        """Add many triangles.
+
+        Parameters
+        ----------
+        given : Mesh or array_like of int, shape (num_triangles, 3)
+            Particle indices, counter-clockwise seen from outside.
+        offset : int
+            Added to all indices.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If the indices are not integers in triples.
+        """
+        self._addTriangleBuffer(triangles(type(self).__name__, given, offset).data)
+
+    add_triangles.__name__ = "addTriangles"
+    add_triangles.__qualname__ = f"{force.__name__}.addTriangles"
+    force.addTriangles = add_triangles

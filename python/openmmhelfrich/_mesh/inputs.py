@@ -1,0 +1,75 @@
+"""Arguments of `Mesh` and its methods, turned into plain numbers and arrays or refused."""
+
+from __future__ import annotations
+
+import operator
+
+import numpy as np
+
+from .._units import length_array
+from ..errors import MeshError
+
+__all__ = ["integer", "not_negative", "numbers", "triangle_array", "vertex_array"]
+
+
+def vertex_array(vertices) -> np.ndarray:
+    """Vertices as a new float64 array of shape (num_vertices, 3), nm, not yet validated."""
+    points = length_array(vertices, "Mesh", "vertices")
+    if points.size == 0:
+        return points.reshape(0, 3)
+    if points.ndim != 2 or points.shape[1] != 3:
+        raise MeshError(
+            f"Mesh: vertices must have shape (num_vertices, 3), got {points.shape}; give one row "
+            "of x, y, z per vertex"
+        )
+    return points
+
+
+def triangle_array(triangles) -> np.ndarray:
+    """Triangles as a new int64 array of shape (num_triangles, 3), not yet validated."""
+    try:
+        given = np.asarray(triangles)
+    except ValueError:
+        raise MeshError("Mesh: triangles must be rows of three vertex indices each") from None
+    if given.size == 0:
+        return np.empty((0, 3), dtype=np.int64)
+    if given.dtype.kind not in "iu":
+        raise MeshError(
+            f"Mesh: triangles must be integers, got dtype {given.dtype}; give vertex indices, such "
+            "as array.astype(int)"
+        )
+    if given.ndim != 2 or given.shape[1] != 3:
+        raise MeshError(
+            f"Mesh: triangles must have shape (num_triangles, 3), got {given.shape}; give one row "
+            "of three vertex indices per triangle"
+        )
+    if given.dtype.kind == "u" and given.max() > np.iinfo(np.int64).max:
+        raise MeshError(f"Mesh: triangles name vertex {given.max()}, which cannot exist")
+    return np.array(given, dtype=np.int64, order="C")
+
+
+def numbers(value, where: str, name: str) -> np.ndarray:
+    """A plain float64 array of numbers without units."""
+    try:
+        return np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise MeshError(f"{where}: {name} must be numbers without a unit, got {value!r}") from None
+
+
+def integer(value, where: str, name: str, least: int) -> int:
+    """A Python integer of at least `least`, from any integer type."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise MeshError(f"{where}: {name} must be an integer, got {value!r}") from None
+    if number < least:
+        raise MeshError(f"{where}: {name} must be {least} or more, got {number}")
+    return number
+
+
+def not_negative(value, where: str, name: str) -> float:
+    """A finite number of 0 or more, without a unit."""
+    number = numbers(value, where, name)
+    if number.shape != () or not (np.isfinite(number) and number >= 0):
+        raise MeshError(f"{where}: {name} must be one finite number, 0 or more, got {value!r}")
+    return float(number)

@@ -1,0 +1,43 @@
+"""A mesh as OpenMM sees it: a topology to draw, and particles to put a force on.
+
+OpenMM is imported on first use, so that meshes can be made and measured without it.
+"""
+
+from __future__ import annotations
+
+import copy
+
+import numpy as np
+
+__all__ = ["energy", "topology"]
+
+
+def topology(num_vertices: int, edges: np.ndarray):
+    """What `Mesh.topology` returns: one chain, an atom per vertex, a bond per edge."""
+    from openmm import app
+
+    result = app.Topology()
+    chain = result.addChain("M")
+    # A vertex is a patch of membrane and no chemical element. Each is a residue of its own, because
+    # readers of PDB files take atoms of equal name in one residue for alternatives of one atom.
+    residues = [result.addResidue("MEM", chain) for _ in range(num_vertices)]
+    atoms = [result.addAtom("V", None, residue) for residue in residues]
+    for i, j in edges.tolist():
+        result.addBond(atoms[i], atoms[j])
+    return result
+
+
+def energy(vertices: np.ndarray, force) -> float:
+    """What `Mesh.energy` returns: the energy of a copy of the force on the Reference platform."""
+    import openmm
+    from openmm import unit
+
+    system = openmm.System()
+    for _ in range(len(vertices)):
+        system.addParticle(1.0)
+    system.addForce(copy.deepcopy(force))
+    platform = openmm.Platform.getPlatformByName("Reference")
+    context = openmm.Context(system, openmm.VerletIntegrator(0.001), platform)
+    context.setPositions(vertices)
+    state = context.getState(getEnergy=True)
+    return state.getPotentialEnergy().value_in_unit(unit.kilojoule_per_mole)

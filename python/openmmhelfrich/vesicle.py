@@ -1,0 +1,365 @@
+"""A whole vesicle: the model of the paper, with the paper's parameters as defaults.
+
+Farnudi, Ejtehadi and Everaers, *Dynamics of fluid bilayer vesicles*, Phys. Rev. E 108, 015301
+(2023), doi:10.1103/PhysRevE.108.015301; numbers in brackets are its equations.
+"""
+
+import math
+from dataclasses import dataclass
+
+import openmm
+from openmm import app, unit
+
+from . import BendingForce, EnclosedVolumeForce, SurfaceAreaForce, TriangleHeightForce
+from .analysis import theory
+
+# kBT at the paper's 300 K, in kJ/mol: its energies are given in multiples of this.
+KBT = theory.BOLTZMANN * 300
+
+_ENERGY = unit.kilojoule_per_mole
+_NUM_GROUPS = 32
+
+
+class Vesicle:
+    """A fluid vesicle: bending, global area, global volume, and soft triangle heights.
+
+    E = ½ κ Σ_i [J_i²/a_i − 2 C0 J_i + C0² a_i] + ½ kA (A − A0)²/A0 + ½ kV (V − V0)²/V0 + U_h
+
+    U_h = Σ ε [(d/h)⁸ − (d/h)⁴ + ¼] over all triangle heights h < 2^¼ d keeps triangles from
+    collapsing and leaves the vertices free to flow; the softness Ξ = (d/h̄)², with h̄² =
+    √3 A / num_triangles (29–31), says how much of their freedom it takes. The force classes
+    document the terms.
+
+    Every number may be an OpenMM Quantity; plain numbers are in the units below.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The vertices become particles in their order, at their places.
+    rigidity : float or Quantity
+        Bending rigidity κ, kJ/mol. Default 20 kBT at 300 K.
+    area_modulus, volume_modulus : float or Quantity
+        kA, kJ/mol/nm², default 1.3, and kV, kJ/mol/nm³, default 0.04. Zero switches the term off:
+        with kV = 0 the membrane is permeable, as in the paper's fluctuation spectra.
+    softness : float
+        Ξ, which fixes the least height d = mesh.min_height(Ξ). Default 0.037, d ≈ 20 nm for 1002
+        vertices on a sphere of 1000 nm.
+    epsilon : float or Quantity
+        ε of the triangle heights, kJ/mol. Default 4 kBT at 300 K.
+    mass : float or Quantity
+        Mass of every vertex, amu. Default 50.
+    scheme : int
+        Discretization of the bending energy, a constant of `BendingForce`. Default Jülicher.
+    spontaneous_curvature : float or Quantity
+        C0, 1/nm, positive for bulging outward; 2/r for a preferred sphere of radius r.
+    area, volume : float or Quantity, optional
+        Targets A0, nm², and V0, nm³. Default: the mesh's own.
+    reduced_volume : float, optional
+        V0 as a multiple of the volume of the sphere of area A0, instead of `volume`.
+
+    Raises
+    ------
+    TypeError
+        Something else than a number, or a Quantity of another dimension.
+    ValueError
+        A number that is NaN, infinite, negative, or zero where only positive ones make sense;
+        both `volume` and `reduced_volume`.
+
+    Examples
+    --------
+    >>> mesh = Mesh.random_sphere(1002, 1000, seed=1)
+    >>> vesicle = Vesicle(mesh)
+    >>> integrator = openmm.LangevinMiddleIntegrator(300, 0.01, 0.2)
+    >>> simulation = vesicle.simulation(integrator)
+    >>> simulation.minimizeEnergy()
+    >>> simulation.context.setVelocitiesToTemperature(300)
+    >>> simulation.step(1000)
+    >>> vesicle.energies(simulation.context)["bending"]
+    """
+
+    def __init__(
+        self,
+        mesh,
+        rigidity=20 * KBT,
+        area_modulus=1.3,
+        volume_modulus=0.04,
+        softness=0.037,
+        epsilon=4 * KBT,
+        mass=50.0,
+        scheme=BendingForce.Julicher,
+        spontaneous_curvature=0.0,
+        *,
+        area=None,
+        volume=None,
+        reduced_volume=None,
+    ):
+        nm = unit.nanometer
+        self._mesh = mesh
+        self._rigidity = _number("rigidity", rigidity, _ENERGY)
+        self._area_modulus = _number("area_modulus", area_modulus, _ENERGY / nm**2)
+        self._volume_modulus = _number("volume_modulus", volume_modulus, _ENERGY / nm**3)
+        self._softness = _number("softness", softness, unit.dimensionless)
+        self._epsilon = _number("epsilon", epsilon, _ENERGY)
+        self._mass = _number("mass", mass, unit.dalton, zero=False)
+        self._scheme = scheme
+        self._spontaneous_curvature = _number(
+            "spontaneous_curvature", spontaneous_curvature, nm**-1, negative=True
+        )
+        self._min_height = _plain(mesh.min_height(self._softness), nm)
+        self._area = _number("area", mesh.area if area is None else area, nm**2, zero=False)
+        if reduced_volume is None:
+            volume = mesh.volume if volume is None else volume
+        elif volume is None:
+            ratio = _number("reduced_volume", reduced_volume, unit.dimensionless, zero=False)
+            volume = ratio * 4 / 3 * math.pi * self.radius**3
+        else:
+            raise ValueError("Vesicle: give either volume or reduced_volume, not both")
+        self._volume = _number("volume", volume, nm**3, zero=False)
+        self._placement = None
+
+    def __repr__(self):
+        return (
+            f"Vesicle({self._mesh.num_vertices} vertices, rigidity={self._rigidity:.6g}, "
+            f"area_modulus={self._area_modulus:.6g}, volume_modulus={self._volume_modulus:.6g}, "
+            f"softness={self._softness:.6g}, epsilon={self._epsilon:.6g}, mass={self._mass:.6g}, "
+            f"area={self._area:.6g}, volume={self._volume:.6g})"
+        )
+
+    mesh = property(lambda self: self._mesh, doc="The Mesh with which the vesicle starts.")
+    rigidity = property(lambda self: self._rigidity, doc="Bending rigidity κ, kJ/mol.")
+    area_modulus = property(lambda self: self._area_modulus, doc="kA, kJ/mol/nm².")
+    volume_modulus = property(lambda self: self._volume_modulus, doc="kV, kJ/mol/nm³.")
+    softness = property(lambda self: self._softness, doc="Softness Ξ of the mesh.")
+    min_height = property(lambda self: self._min_height, doc="Least triangle height d, nm.")
+    epsilon = property(lambda self: self._epsilon, doc="ε of the triangle heights, kJ/mol.")
+    mass = property(lambda self: self._mass, doc="Mass of one vertex, amu.")
+    scheme = property(lambda self: self._scheme, doc="Bending scheme of `BendingForce`.")
+    spontaneous_curvature = property(lambda self: self._spontaneous_curvature, doc="C0, 1/nm.")
+    area = property(lambda self: self._area, doc="Target area A0, nm².")
+    volume = property(lambda self: self._volume, doc="Target volume V0, nm³.")
+
+    @property
+    def radius(self):
+        """Radius of the sphere of area A0, nm."""
+        return math.sqrt(self._area / (4 * math.pi))
+
+    @property
+    def reduced_volume(self):
+        """V0 over the volume of the sphere of area A0."""
+        return self._volume / (4 / 3 * math.pi * self.radius**3)
+
+    @property
+    def tau_2(self):
+        """Period of the slowest mode, l = 2, without friction, ps: τ_2 = 2π/ω_2 (A30)."""
+        return theory.mode_period(
+            2, self._rigidity, self._mass, self._mesh.num_vertices, self.radius
+        )
+
+    @property
+    def tau_fastest(self):
+        """Period of the fastest mode that the mesh has, ps.
+
+        (A30) in the limit of large l at l = √N: τ_2 √24 / N.
+        """
+        return self.tau_2 * math.sqrt(24) / self._mesh.num_vertices
+
+    @property
+    def tau_heights(self):
+        """Time in which triangle heights relax, ps: τ_h = d √(m/ε)."""
+        return self._min_height * math.sqrt(self._mass / self._epsilon)
+
+    @property
+    def max_time_step(self):
+        """Largest time step with which the paper's runs last, ps: 0.1 √Ξ τ_fastest (Fig. 5).
+
+        It is a rule of thumb for the defaults of the other moduli, not a proof of stability.
+        """
+        return 0.1 * math.sqrt(self._softness) * self.tau_fastest
+
+    def add_to(self, system, force_groups=None):
+        """Add the particles and the four forces to a System.
+
+        The particles follow those which the System has, so several vesicles can share one. Each
+        force gets a force group of its own and a name: "area", "volume", "bending", "heights".
+
+        Parameters
+        ----------
+        system : openmm.System
+        force_groups : sequence of four int, optional
+            Groups of area, volume, bending and heights. Default: the four lowest groups that no
+            force of the System uses.
+
+        Returns
+        -------
+        Placement
+            Where the vesicle is in the System, and its forces.
+
+        Raises
+        ------
+        ValueError
+            Fewer than four force groups are free, or `force_groups` is not four of 0 … 31.
+        """
+        if force_groups is None:
+            used = {force.getForceGroup() for force in system.getForces()}
+            force_groups = [group for group in range(_NUM_GROUPS) if group not in used][:4]
+            if len(force_groups) < 4:
+                raise ValueError(
+                    f"Vesicle: the System's forces use {len(used)} of the {_NUM_GROUPS} force "
+                    "groups, and four are needed; pass force_groups to share some"
+                )
+        groups = [int(group) for group in force_groups]
+        if len(groups) != 4 or not all(0 <= group < _NUM_GROUPS for group in groups):
+            raise ValueError(
+                f"Vesicle: force_groups needs four groups of 0 to {_NUM_GROUPS - 1}, "
+                f"got {list(force_groups)}"
+            )
+        offset = system.getNumParticles()
+        forces = self._forces(offset)
+        for (name, force), group in zip(forces.items(), groups, strict=True):
+            force.setName(name)
+            force.setForceGroup(group)
+        for _ in range(self._mesh.num_vertices):
+            system.addParticle(self._mass)
+        for force in forces.values():
+            system.addForce(force)
+        placement = Placement(system, offset, self._mesh.num_vertices, **forces)
+        self._placement = placement
+        return placement
+
+    def system(self):
+        """A new System that holds this vesicle alone: vertex i is particle i.
+
+        Returns
+        -------
+        openmm.System
+        """
+        system = openmm.System()
+        self.add_to(system)
+        return system
+
+    def simulation(self, integrator, platform=None):
+        """A Simulation of this vesicle alone, with the positions of the mesh and no velocities.
+
+        Parameters
+        ----------
+        integrator : openmm.Integrator
+        platform : openmm.Platform or str, optional
+            Default: the one that OpenMM prefers.
+
+        Returns
+        -------
+        openmm.app.Simulation
+        """
+        if isinstance(platform, str):
+            platform = openmm.Platform.getPlatformByName(platform)
+        simulation = app.Simulation(self._mesh.topology(), self.system(), integrator, platform)
+        simulation.context.setPositions(self._mesh.vertices)
+        return simulation
+
+    @property
+    def placement(self):
+        """The `Placement` in the System to which this vesicle was added last.
+
+        Raises RuntimeError if it was not added to one yet.
+        """
+        if self._placement is None:
+            raise RuntimeError(
+                "Vesicle: it is in no System yet; call simulation(), system() or add_to() first"
+            )
+        return self._placement
+
+    def energies(self, context):
+        """Energies per term of the System to which this vesicle was added last.
+
+        Parameters
+        ----------
+        context : openmm.Context
+            A Context of that System. For a vesicle that was added to several Systems, ask the
+            `Placement` that `add_to` returned.
+
+        Returns
+        -------
+        dict of str to float
+            "area", "volume", "bending" and "heights", kJ/mol.
+
+        Raises
+        ------
+        RuntimeError
+            The vesicle was not added to a System yet.
+        """
+        return self.placement.energies(context)
+
+    def _forces(self, offset):
+        """The four forces by name, for particles that start at `offset`."""
+        mesh = self._mesh
+        bending = BendingForce(
+            mesh,
+            self._rigidity,
+            self._spontaneous_curvature,
+            self._scheme,
+            offset=offset,
+        )
+        return {
+            "area": SurfaceAreaForce(mesh, self._area_modulus, self._area, offset=offset),
+            "volume": EnclosedVolumeForce(mesh, self._volume_modulus, self._volume, offset=offset),
+            "bending": bending,
+            "heights": TriangleHeightForce(mesh, self._min_height, self._epsilon, offset=offset),
+        }
+
+
+@dataclass(frozen=True)
+class Placement:
+    """Where one vesicle is in a System, and the forces that act on it."""
+
+    system: openmm.System
+    """The System; kept here because the forces live as long as it does."""
+    offset: int
+    """Index of the particle that is vertex 0."""
+    num_vertices: int
+    """Number of particles."""
+    area: SurfaceAreaForce
+    volume: EnclosedVolumeForce
+    bending: BendingForce
+    heights: TriangleHeightForce
+
+    @property
+    def forces(self):
+        """The forces by name, a dict."""
+        return {name: getattr(self, name) for name in ("area", "volume", "bending", "heights")}
+
+    @property
+    def particles(self):
+        """Indices of the particles, a range."""
+        return range(self.offset, self.offset + self.num_vertices)
+
+    def energies(self, context):
+        """Energy per term in a Context of the System, a dict of float, kJ/mol.
+
+        Each is the energy of the term's force group, and so holds other forces that share it.
+        """
+        return {
+            name: context.getState(getEnergy=True, groups={force.getForceGroup()})
+            .getPotentialEnergy()
+            .value_in_unit(_ENERGY)
+            for name, force in self.forces.items()
+        }
+
+
+def _plain(value, dimension):
+    return value.value_in_unit(dimension) if unit.is_quantity(value) else float(value)
+
+
+def _number(name, value, dimension, zero=True, negative=False):
+    """A checked number in OpenMM's units, for the parameter `name`."""
+    if unit.is_quantity(value) and not value.unit.is_compatible(dimension):
+        raise TypeError(f"Vesicle: {name} needs the unit {dimension}, got {value}")
+    try:
+        number = _plain(value, dimension)
+    except (TypeError, ValueError):
+        raise TypeError(f"Vesicle: {name} needs a number, got {value!r}") from None
+    if not math.isfinite(number):
+        raise ValueError(f"Vesicle: {name} needs a finite number, got {number}")
+    if not negative and (number < 0 or (number == 0 and not zero)):
+        need = "0 or more" if zero else "more than 0"
+        raise ValueError(f"Vesicle: {name} needs {need}, got {number}")
+    return number

@@ -1,0 +1,103 @@
+"""Builds the Rust library, the SWIG wrapper and the Python extension; pyproject.toml has the rest."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+from setuptools import Extension, setup
+from setuptools.command.build_ext import build_ext
+
+ROOT = Path(__file__).resolve().parent
+LIBRARY = "libOpenMMHelfrich.so"
+
+
+def find_openmm() -> Path:
+    """The folder with OpenMM's headers and libraries: ``$OPENMM_DIR``, else the installed wheel's."""
+    candidates = []
+    if os.environ.get("OPENMM_DIR"):
+        candidates.append(Path(os.environ["OPENMM_DIR"]))
+    spec = find_spec("openmm")
+    if spec is not None:
+        candidates.append(Path(spec.origin).parent.parent / "OpenMM.libs")
+    for candidate in candidates:
+        if (candidate / "include" / "OpenMM.h").exists():
+            return candidate
+    raise SystemExit("OpenMM was not found: pip install openmm==8.6.1, or set $OPENMM_DIR.")
+
+
+def find_swig() -> str:
+    """SWIG of this Python's environment, else of the PATH.
+
+    OpenMM's type table has the runtime version of SWIG 4.4: what an older one makes does not know
+    OpenMM's Force.
+    """
+    here = str(Path(sys.executable).parent)
+    swig = shutil.which("swig", path=os.pathsep.join([here, os.environ.get("PATH", "")]))
+    text = subprocess.run([swig, "-version"], capture_output=True, text=True).stdout if swig else ""
+    version = re.search(r"SWIG Version (\d+)\.(\d+)", text)
+    if version is None or (int(version[1]), int(version[2])) < (4, 4):
+        raise SystemExit("SWIG 4.4 or later is missing: pip install 'swig>=4.4'.")
+    return swig
+
+
+class BuildPlugin(build_ext):
+    """cargo, then SWIG, then the extension."""
+
+    def run(self):
+        """Build everything into the package folder (the source's, for an editable install)."""
+        if shutil.which("cargo") is None:
+            raise SystemExit("Rust is missing: install it from https://rustup.rs, then try again.")
+        package = ROOT / "python" if self.inplace else Path(self.build_lib)
+        package /= "openmmhelfrich"
+        openmm = find_openmm()
+        self.build_core(package, openmm)
+        self.build_wrapper(package, openmm)
+        super().run()
+
+    def build_core(self, package: Path, openmm: Path):
+        """The Rust library with the C++ shim, and the headers for C++ users."""
+        environment = dict(os.environ, OPENMM_DIR=str(openmm), PYTHON=sys.executable)
+        environment["HELFRICH_PACKAGE"] = "1"
+        target = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
+        command = ["cargo", "build", "--release", "--locked", "--lib"]
+        if subprocess.call(command, cwd=ROOT, env=environment) != 0:
+            raise SystemExit("The Rust library did not build; its messages are above.")
+        library = package / "lib" / LIBRARY
+        library.parent.mkdir(parents=True, exist_ok=True)
+        # Replacing the file instead of writing into it leaves programs that have it open in peace.
+        library.unlink(missing_ok=True)
+        shutil.copy2(target / "release" / "libopenmm_helfrich.so", library)
+        shutil.copytree(ROOT / "wrappers" / "include", package / "include", dirs_exist_ok=True)
+
+    def build_wrapper(self, package: Path, openmm: Path):
+        """The SWIG wrapper around the force classes, and its compiler flags."""
+        generated = Path(self.build_temp)
+        generated.mkdir(parents=True, exist_ok=True)
+        wrapper = generated / "forces_wrap.cpp"
+        includes = [str(ROOT / "wrappers" / "include"), str(openmm / "include")]
+        # The disabled warnings are about OpenMM's own declarations.
+        options = ["-python", "-c++", "-doxygen", "-w314,325,453"]
+        command = [find_swig(), *options, *(f"-I{path}" for path in includes)]
+        command += ["-outdir", str(package), "-o", str(wrapper), str(ROOT / "python" / "forces.i")]
+        subprocess.check_call(command)
+        extension = self.extensions[0]
+        extension.sources.insert(0, str(wrapper))
+        extension.include_dirs += includes
+        extension.library_dirs += [str(package / "lib"), str(openmm / "lib")]
+
+
+sources = sorted(str(path.relative_to(ROOT)) for path in ROOT.glob("wrappers/src/forces/*.cpp"))
+forces = Extension(
+    "openmmhelfrich._forces",
+    sources,
+    language="c++",
+    libraries=["OpenMMHelfrich", "OpenMM"],
+    extra_compile_args=["-std=c++17", "-O2", "-g0", "-w"],
+    extra_link_args=["-Wl,-rpath,$ORIGIN/lib:$ORIGIN/../OpenMM.libs/lib"],
+)
+
+setup(ext_modules=[forces], cmdclass={"build_ext": BuildPlugin})

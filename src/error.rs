@@ -1,0 +1,92 @@
+//! One variant per mistake; each message names the culprit and what to do about it.
+//!
+//! A message has no subject of its own: whoever reports the error puts the name of the class at fault
+//! in front of it, as in "BendingForce: edge (3, 7) belongs to one triangle only …".
+
+use thiserror::Error;
+
+/// What can be wrong with a mesh, a parameter or the positions of an evaluation.
+///
+/// Vertices are named by the indices that the user gave, which for a force are particle indices.
+#[allow(missing_docs, reason = "the message of each variant says what its fields are")]
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum Error {
+    /// There is nothing to compute on.
+    #[error("the mesh has no triangles; add at least four that close a surface")]
+    EmptyMesh,
+
+    /// A triangle refers to a vertex or particle that does not exist.
+    #[error("triangle {triangle} refers to index {index}, but indices run from 0 to {last}", last = *.count as i64 - 1)]
+    IndexOutOfRange { triangle: usize, index: i64, count: usize },
+
+    /// A triangle has two equal corners.
+    #[error("triangle {triangle} ({}, {}, {}) repeats vertex {vertex}; its three corners must differ", .corners[0], .corners[1], .corners[2])]
+    RepeatedCorner { triangle: usize, corners: [u32; 3], vertex: u32 },
+
+    /// Two triangles have the same three corners.
+    #[error("triangles {first} and {second} have the same corners ({}, {}, {}); remove one of them", .corners[0], .corners[1], .corners[2])]
+    DuplicateTriangle { first: usize, second: usize, corners: [u32; 3] },
+
+    /// The surface has a boundary.
+    #[error("edge ({}, {}) belongs to triangle {triangle} only, so the mesh is open there; close the hole", .edge[0], .edge[1])]
+    OpenEdge { edge: [u32; 2], triangle: usize },
+
+    /// More than two sheets meet in an edge.
+    #[error("edge ({}, {}) is shared by {count} triangles (the first three: {}, {}, {}); a surface has exactly two at each edge", .edge[0], .edge[1], .triangles[0], .triangles[1], .triangles[2])]
+    NonManifoldEdge { edge: [u32; 2], count: usize, triangles: [usize; 3] },
+
+    /// Two neighbours are listed with opposite senses of rotation.
+    #[error("triangles {} and {} run through edge ({}, {}) in the same direction, so their normals disagree; reverse one of them, or let openmmhelfrich.Mesh orient the surface", .triangles[0], .triangles[1], .edge[0], .edge[1])]
+    InconsistentOrientation { edge: [u32; 2], triangles: [usize; 2] },
+
+    /// No choice of orientation is consistent (a Möbius strip or Klein bottle is part of the mesh).
+    #[error("the surface is not orientable: going round it, triangles {} and {} disagree at edge ({}, {}); it has no inside", .triangles[0], .triangles[1], .edge[0], .edge[1])]
+    NonOrientable { edge: [u32; 2], triangles: [usize; 2] },
+
+    /// Two parts of the surface touch in one vertex.
+    #[error(
+        "the triangles at vertex {vertex} form {fans} separate fans, so the surface pinches there; split the vertex"
+    )]
+    NonManifoldVertex { vertex: u32, fans: usize },
+
+    /// A vertex without triangles.
+    #[error("vertex {vertex} belongs to no triangle; remove it")]
+    UnusedVertex { vertex: usize },
+
+    /// Two vertices in the same place.
+    #[error("vertices {first} and {second} are both at ({}, {}, {}) nm; merge them", .position[0], .position[1], .position[2])]
+    RepeatedVertex { first: usize, second: usize, position: [f64; 3] },
+
+    /// NaN or infinity among the coordinates of a mesh.
+    #[error("vertex {vertex} has a coordinate that is not finite ({}, {}, {})", .position[0], .position[1], .position[2])]
+    NonFiniteVertex { vertex: usize, position: [f64; 3] },
+
+    /// NaN or infinity among the positions of a running simulation.
+    #[error("particle {particle} is at ({}, {}, {}) nm, which is not finite: the simulation has blown up; use a smaller time step or a better relaxed start", .position[0], .position[1], .position[2])]
+    NonFinitePosition { particle: u32, position: [f64; 3] },
+
+    /// A triangle has no area and therefore no normal.
+    #[error("triangle {triangle} ({}, {}, {}) has no area, so its normal and the energy's gradient are undefined; keep its corners from falling on one line (TriangleHeightForce, or a smaller time step)", .corners[0], .corners[1], .corners[2])]
+    DegenerateTriangle { triangle: usize, corners: [u32; 3] },
+
+    /// The surface folds back onto itself exactly.
+    #[error(
+        "the energy is not finite ({energy} kJ/mol) although every position is: the mesh is folded or collapsed; use a smaller time step or a better relaxed start"
+    )]
+    NonFiniteEnergy { energy: f64 },
+
+    /// A scalar outside its domain.
+    #[error("{parameter} must be {domain}, got {value}")]
+    Parameter { parameter: String, domain: &'static str, value: f64 },
+
+    /// A name that the registry does not know.
+    #[error("there is no {what} called \"{name}\"; known are: {known}")]
+    UnknownName { what: &'static str, name: String, known: String },
+
+    /// A call through the C interface that breaks its contract.
+    #[error("{0}")]
+    Contract(String),
+}
+
+/// The result of everything that can fail in this crate.
+pub type Result<T> = std::result::Result<T, Error>;

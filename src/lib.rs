@@ -1,0 +1,39 @@
+//! Fluid membranes in OpenMM: energies and forces of triangulated vesicles.
+//!
+//! The crate has three layers. [`mesh`] validates a closed triangulated surface and holds its
+//! geometry; [`potentials`] state energies of geometric quantities; [`evaluator`] runs both over a
+//! mesh and turns the potentials' partial derivatives into forces. [`membrane`] lets the forces of one
+//! OpenMM Context that live on the same mesh share one evaluation, and [`ffi`] hands it all to C++.
+//!
+//! Units are OpenMM's (nm, ps, amu, kJ/mol). Orientation and signs are stated in [`mesh::geometry`].
+//!
+//! ```
+//! use openmm_helfrich::{evaluator::CpuEvaluator, mesh::Topology, potentials::{Contribution, Term}};
+//! use std::sync::Arc;
+//!
+//! // A regular octahedron of area 4√3 that would rather have half of it.
+//! let triangles =
+//!     [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
+//! let positions = [1., 0., 0., -1., 0., 0., 0., 1., 0., 0., -1., 0., 0., 0., 1., 0., 0., -1.];
+//! let topology = Arc::new(Topology::new(&triangles, 6)?);
+//! let area = Term::new("SurfaceAreaForce", 0, &[1.0, 2.0 * 3f64.sqrt()])?;
+//! let (mut energy, mut forces) = ([Contribution::default()], [0.0; 18]);
+//! CpuEvaluator::new(topology).evaluate([&area].into_iter(), &positions, &mut energy, Some(&mut forces))?;
+//! assert!((energy[0].energy - 3f64.sqrt()).abs() < 1e-12);
+//! assert!(forces[0] < 0.0);
+//! # Ok::<(), openmm_helfrich::error::Error>(())
+//! ```
+
+#![deny(unsafe_op_in_unsafe_fn)]
+#![warn(missing_docs)]
+
+pub mod error;
+pub mod evaluator;
+pub mod ffi;
+pub mod membrane;
+pub mod mesh;
+pub mod openmm;
+pub mod potentials;
+
+#[cfg(test)]
+mod test_meshes;

@@ -1,0 +1,58 @@
+//! A mesh as one OpenMM Context sees it: shared by all its forces on the same triangles.
+
+use crate::error::{Error, Result};
+use crate::evaluator::CpuEvaluator;
+use crate::mesh::Topology;
+use crate::potentials::{Contribution, Term};
+use std::sync::Arc;
+
+/// A mesh with the buffers to evaluate any terms on it.
+pub struct Membrane {
+    topology: Arc<Topology>,
+    evaluator: CpuEvaluator,
+    num_particles: usize,
+}
+
+impl Membrane {
+    /// For triangles of particles of a System with `num_particles` of them.
+    ///
+    /// # Errors
+    /// Those of [`Topology::new`].
+    pub fn new(triangles: &[[i64; 3]], num_particles: usize) -> Result<Self> {
+        let topology = Arc::new(Topology::new(triangles, num_particles)?);
+        let evaluator = CpuEvaluator::new(topology.clone());
+        Ok(Self { topology, evaluator, num_particles })
+    }
+
+    /// The mesh.
+    pub fn topology(&self) -> &Topology {
+        &self.topology
+    }
+
+    /// Evaluate terms together. Positions (nm) and forces (kJ/mol/nm) are those of all particles of the
+    /// System, x y z of one after the other; forces are added.
+    ///
+    /// # Errors
+    /// Those of [`CpuEvaluator::evaluate`], and a parameter outside its domain, as a Context parameter
+    /// can come to be.
+    pub fn evaluate(
+        &mut self,
+        terms: &[Term],
+        positions: &[f64],
+        contributions: &mut [Contribution],
+        forces: Option<&mut [f64]>,
+    ) -> Result<()> {
+        let length = 3 * self.num_particles;
+        let fits = forces.as_ref().is_none_or(|forces| forces.len() == length);
+        if positions.len() != length || !fits || contributions.len() != terms.len() {
+            return Err(Error::Contract(format!(
+                "needs positions and forces of {} particles and one contribution a term",
+                self.num_particles
+            )));
+        }
+        for term in terms {
+            term.check()?;
+        }
+        self.evaluator.evaluate(terms.iter(), positions, contributions, forces)
+    }
+}

@@ -1,0 +1,314 @@
+//! Geometry of a triangulated surface, forward (quantities) and backward (forces).
+//!
+//! Signs, once for the whole crate: triangles run counter-clockwise seen from outside; normals point
+//! outward; a dihedral angle φ is 0 when flat, positive at a convex edge, negative at a concave one;
+//! curvature is the sum of the principal curvatures, positive on a sphere.
+//!
+//! Everything here is a scalar function of one triangle, one edge or one vertex; which of them are
+//! evaluated, in which order and on how many threads is the evaluator's business.
+
+use nalgebra::Vector3;
+
+/// A vector in space.
+pub type Vec3 = Vector3<f64>;
+
+/// Forward geometry of one triangle with corners a, b, c.
+#[derive(Debug, Clone, Copy)]
+pub struct TriangleGeometry {
+    /// N = (b − a) × (c − a), nm².
+    pub normal: Vec3,
+    /// |N|, twice the area, nm².
+    pub twice_area: f64,
+    /// At each corner the scalar product of the two sides that leave it, nm². The cotangent of the
+    /// corner's angle is this over |N|; the squared length of a side is the sum of those at its ends.
+    pub dots: [f64; 3],
+}
+
+impl TriangleGeometry {
+    /// From the positions of the corners.
+    #[inline]
+    pub fn new(a: &Vec3, b: &Vec3, c: &Vec3) -> Self {
+        let (ab, bc, ca) = (b - a, c - b, a - c);
+        let normal = ca.cross(&ab);
+        Self { normal, twice_area: normal.norm(), dots: [-ca.dot(&ab), -ab.dot(&bc), -bc.dot(&ca)] }
+    }
+
+    /// Area, nm².
+    #[inline]
+    pub fn area(&self) -> f64 {
+        0.5 * self.twice_area
+    }
+
+    /// Squared length of side `k`, from corner `k` to corner `k + 1`, nm².
+    #[inline]
+    pub fn length_squared(&self, k: usize) -> f64 {
+        self.dots[k] + self.dots[(k + 1) % 3]
+    }
+}
+
+/// Forward geometry of one edge.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct EdgeGeometry {
+    /// l², nm².
+    pub length_squared: f64,
+    /// φ / l, 1/nm, with the dihedral angle φ in (−π, π].
+    pub bend: f64,
+}
+
+/// tan² of 22.5°: up to a dihedral angle of 45° the angle is a polynomial in its half's tangent.
+const POLYNOMIAL_RANGE: f64 = 0.171_572_875_253_809_9;
+
+/// arctan(t) / t for t² = `z` ≤ [`POLYNOMIAL_RANGE`], to 2e-18: the Chebyshev fit of degree 11 in z.
+#[inline]
+fn arctan_over_argument(z: f64) -> f64 {
+    const C: [f64; 12] = [
+        1.0,
+        -0.333_333_333_333_331_2,
+        0.199_999_999_999_408_93,
+        -0.142_857_142_792_502_45,
+        0.111_111_107_449_196_58,
+        -0.090_908_968_090_640_27,
+        0.076_920_453_309_022_25,
+        -0.066_629_518_136_291_92,
+        0.058_468_782_973_308_72,
+        -0.050_351_024_566_015_52,
+        0.037_965_257_453_865_93,
+        -0.017_805_397_205_419_446,
+    ];
+    // Estrin's scheme: the pairs do not wait for each other, as the steps of Horner's would.
+    let z2 = z * z;
+    let z4 = z2 * z2;
+    let low = (C[0] + z * C[1]) + z2 * (C[2] + z * C[3]);
+    let middle = (C[4] + z * C[5]) + z2 * (C[6] + z * C[7]);
+    let high = (C[8] + z * C[9]) + z2 * (C[10] + z * C[11]);
+    low + z4 * (middle + z4 * high)
+}
+
+impl EdgeGeometry {
+    /// From the start and end of the edge, a point of the right triangle off the edge, and the
+    /// geometry of the left and right triangles.
+    ///
+    /// With n₁, n₂ the normals, tan(φ/2) = l D / (n₁·n₂ + |n₁||n₂|), where D, six times the volume
+    /// of the tetrahedron that the two triangles span, carries the sign of φ.
+    #[inline]
+    pub fn new(
+        start: &Vec3,
+        end: &Vec3,
+        right_tip: &Vec3,
+        left: &TriangleGeometry,
+        right: &TriangleGeometry,
+    ) -> Self {
+        let length_squared = (end - start).norm_squared();
+        let cosine = left.normal.dot(&right.normal);
+        let norms = left.twice_area * right.twice_area;
+        let determinant = left.normal.dot(&(start - right_tip));
+        let slope = determinant / (cosine + norms);
+        let z = length_squared * slope * slope;
+        let bend = if z <= POLYNOMIAL_RANGE {
+            2.0 * slope * arctan_over_argument(z)
+        } else {
+            let length = length_squared.sqrt();
+            (length * determinant).atan2(cosine) / length
+        };
+        Self { length_squared, bend }
+    }
+}
+
+/// Forward geometry of one vertex.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct VertexGeometry {
+    /// Barycentric area a_B, a third of the areas of its triangles, nm² (B12).
+    pub area: f64,
+    /// Jülicher's integrated curvature J = Σ l φ / 2 over its edges, nm (B11).
+    pub curvature: f64,
+}
+
+/// Sums over the whole mesh.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Totals {
+    /// Area, nm² (B2).
+    pub area: f64,
+    /// Enclosed volume, nm³ (B3, B4).
+    pub volume: f64,
+}
+
+/// Derivatives of the energy with respect to the [`Totals`].
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct TotalPartials {
+    /// ∂E/∂A, kJ/mol/nm².
+    pub area: f64,
+    /// ∂E/∂V, kJ/mol/nm³.
+    pub volume: f64,
+}
+
+/// Derivatives of the energy with respect to a [`VertexGeometry`].
+#[derive(Debug, Clone, Copy, Default)]
+pub struct VertexPartials {
+    /// ∂E/∂a_B, kJ/mol/nm².
+    pub area: f64,
+    /// ∂E/∂J, kJ/mol/nm.
+    pub curvature: f64,
+}
+
+/// Derivatives of the energy with respect to area and sides of one triangle.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct TrianglePartials {
+    /// ∂E/∂a, kJ/mol/nm².
+    pub area: f64,
+    /// ∂E/∂l² of each side at fixed area, kJ/mol/nm².
+    pub length_squared: [f64; 3],
+}
+
+/// What an edge passes on to the forces of its two triangles.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct EdgeTension {
+    /// Half of the tension along the edge, kJ/mol/nm²: each of the two triangles applies its half.
+    pub half_tension: f64,
+    /// (∂E/∂φ) / l, kJ/mol/nm: the bending moment per length.
+    pub moment: f64,
+}
+
+impl EdgeTension {
+    /// The chain rule for Jülicher's curvature: with m the mean of ∂E/∂J at the two ends, the edge
+    /// adds m d(l φ), a tension m φ/l along the edge and a moment per length m.
+    #[inline]
+    pub fn from_curvature(
+        edge: &EdgeGeometry,
+        start: &VertexPartials,
+        end: &VertexPartials,
+    ) -> Self {
+        let moment = 0.5 * (start.curvature + end.curvature);
+        Self { half_tension: 0.5 * moment * edge.bend, moment }
+    }
+}
+
+/// The forces on the three corners of a triangle, kJ/mol/nm.
+///
+/// Every energy of areas, lengths, angles and volume comes down to scalar tensions along the sides
+/// and, at each corner, a scalar pressure on the triangle's normal:
+///
+/// - F_a = T_ab (b − a) + T_ca (c − a) − p_a N
+/// - T_ab = ½ (∂E/∂a) cot γ + 2 ∂E/∂l²_ab + ½ tension of the edge, with γ the angle opposite ab
+/// - p_a = [d_b (q_ab − q_bc) + d_c (q_ca − q_bc)] / |N|² + (∂E/∂V) / 6, with q the moments per
+///   length of the sides and d the corners' scalar products. It is the gradient of the dihedral
+///   angles: a corner that moves outward flattens the side opposite it and bends the other two.
+///
+/// The moment of an edge acts in both its triangles, and so does half of its tension.
+#[inline]
+pub fn corner_forces(
+    corners: [&Vec3; 3],
+    geometry: &TriangleGeometry,
+    area_partial: f64,
+    length_partials: &[f64; 3],
+    edges: [EdgeTension; 3],
+    volume_partial: f64,
+) -> [Vec3; 3] {
+    let inverse = 1.0 / geometry.twice_area;
+    let stress = 0.5 * area_partial * inverse;
+    let tension = |k: usize| {
+        stress * geometry.dots[(k + 2) % 3] + 2.0 * length_partials[k] + edges[k].half_tension
+    };
+    let inverse_squared = inverse * inverse;
+    let pressure = |k: usize| {
+        let (next, last) = ((k + 1) % 3, (k + 2) % 3);
+        let opposite = edges[next].moment;
+        let bending = geometry.dots[next] * (edges[k].moment - opposite)
+            + geometry.dots[last] * (edges[last].moment - opposite);
+        bending * inverse_squared + volume_partial / 6.0
+    };
+    let along = |k: usize| (corners[(k + 1) % 3] - corners[k]) * tension(k);
+    let (ab, bc, ca) = (along(0), along(1), along(2));
+    [
+        ab - ca - geometry.normal * pressure(0),
+        bc - ab - geometry.normal * pressure(1),
+        ca - bc - geometry.normal * pressure(2),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_meshes::noise;
+
+    #[test]
+    fn arctangent_polynomial_is_exact_to_rounding() {
+        for k in 1..=1000 {
+            let z = POLYNOMIAL_RANGE * f64::from(k) / 1000.0;
+            let t = z.sqrt();
+            let error = (arctan_over_argument(z) / (t.atan() / t) - 1.0).abs();
+            assert!(error < 5e-16, "{z}: {error}");
+        }
+    }
+
+    fn hinge(angle: f64) -> (EdgeGeometry, f64) {
+        // Triangles on either side of an edge along y; for a convex edge the right tip lies low.
+        let (start, end) = (Vec3::new(0.0, 0.0, 0.0), Vec3::new(0.1, 2.0, 0.0));
+        let left_tip = Vec3::new(-1.5, 0.3, 0.0);
+        let along = (end - start).normalize();
+        let out = along.cross(&Vec3::z());
+        let right_tip = start + 0.4 * along + 1.1 * (angle.cos() * out - angle.sin() * Vec3::z());
+        let left = TriangleGeometry::new(&start, &end, &left_tip);
+        let right = TriangleGeometry::new(&end, &start, &right_tip);
+        assert!(left.normal.z > 0.0);
+        (EdgeGeometry::new(&start, &end, &right_tip, &left, &right), (end - start).norm())
+    }
+
+    #[test]
+    fn dihedral_angles_have_the_right_sign_and_size() {
+        for angle in [1e-9, 1e-4, 0.3, 0.78, 0.79, 1.5, 2.5, 3.14] {
+            for angle in [angle, -angle] {
+                let (edge, length) = hinge(angle);
+                let error = (edge.bend * length / angle - 1.0).abs();
+                assert!(error < 1e-12 + 1e-16 / angle.abs(), "{angle}: {error}");
+            }
+        }
+        assert_eq!(hinge(0.0).0.bend, 0.0);
+    }
+
+    /// The corner forces of a lone hinge against finite differences of E = c φ + k a + Σ s l².
+    #[test]
+    fn corner_forces_are_minus_the_gradient() {
+        let mut random = noise(3);
+        let points: [Vec3; 4] = std::array::from_fn(|k| {
+            let base = [[0.0, 0.0], [1.0, 0.2], [0.3, 1.1], [0.5, -0.9]][k];
+            Vec3::new(base[0], base[1], 0.3 * random())
+        });
+        let (moment_arm, stress, springs) = (0.7, 1.3, [0.4, -0.2, 0.9]);
+        let triangles = |p: &[Vec3; 4]| {
+            (TriangleGeometry::new(&p[0], &p[1], &p[2]), TriangleGeometry::new(&p[1], &p[0], &p[3]))
+        };
+        let edge = |p: &[Vec3; 4]| {
+            let (left, right) = triangles(p);
+            EdgeGeometry::new(&p[0], &p[1], &p[3], &left, &right)
+        };
+        let energy = |p: &[Vec3; 4]| {
+            let (left, _) = triangles(p);
+            let edge = edge(p);
+            moment_arm * edge.bend * edge.length_squared.sqrt()
+                + stress * left.area()
+                + (0..3).map(|k| springs[k] * left.length_squared(k)).sum::<f64>()
+        };
+        let (left, right) = triangles(&points);
+        let tension = EdgeTension {
+            half_tension: 0.0,
+            moment: moment_arm / edge(&points).length_squared.sqrt(),
+        };
+        let sides = [tension, EdgeTension::default(), EdgeTension::default()];
+        let p = &points;
+        let on_left = corner_forces([&p[0], &p[1], &p[2]], &left, stress, &springs, sides, 0.0);
+        let on_right = corner_forces([&p[1], &p[0], &p[3]], &right, 0.0, &[0.0; 3], sides, 0.0);
+        let forces = [on_left[0] + on_right[1], on_left[1] + on_right[0], on_left[2], on_right[2]];
+        for vertex in 0..4 {
+            for axis in 0..3 {
+                let step = 1e-5;
+                let at = |shift: f64| {
+                    let mut moved = points;
+                    moved[vertex][axis] += shift;
+                    energy(&moved)
+                };
+                let expected = -(at(step) - at(-step)) / (2.0 * step);
+                assert!((forces[vertex][axis] - expected).abs() < 1e-8, "{vertex} {axis}");
+            }
+        }
+    }
+}

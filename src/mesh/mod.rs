@@ -1,0 +1,7 @@
+//! Triangulated closed surfaces: their topology, their orientation and their geometry.
+
+pub mod geometry;
+pub mod orientation;
+pub mod topology;
+
+pub use topology::Topology;

@@ -1,0 +1,188 @@
+//! Mending the orientation of a surface: every triangle counter-clockwise seen from outside.
+
+use super::topology::{Topology, checked_indices, neighbours};
+use crate::error::{Error, Result};
+use nalgebra::Vector3;
+use std::collections::HashMap;
+
+/// Validate a mesh and turn its triangles so that each closed component has positive volume.
+///
+/// Neighbours are made to agree by walking over the surface, so the shape need not be star-shaped;
+/// what remains, one sign for each component, is decided by the sign of the component's volume.
+/// The order of the triangles and the first corner of each stay as they are.
+///
+/// # Errors
+/// All of [`Topology::new`], and: coordinates that are not finite, vertices without triangles or in
+/// the same place, triangles without area, surfaces that are not orientable.
+pub fn oriented(vertices: &[[f64; 3]], triangles: &[[i64; 3]]) -> Result<Vec<[i64; 3]>> {
+    for (vertex, position) in vertices.iter().enumerate() {
+        if !position.iter().all(|x| x.is_finite()) {
+            return Err(Error::NonFiniteVertex { vertex, position: *position });
+        }
+    }
+    let corners = checked_indices(triangles, vertices.len())?;
+    check_vertices(vertices, &corners)?;
+    let neighbours = neighbours(&corners)?;
+
+    let mut flipped: Vec<Option<bool>> = vec![None; corners.len()];
+    let mut result = triangles.to_vec();
+    for seed in 0..corners.len() {
+        if flipped[seed].is_some() {
+            continue;
+        }
+        let component = walk(seed, &neighbours, &mut flipped).map_err(|triangles| {
+            let shared: Vec<u32> = corners[triangles[0]]
+                .into_iter()
+                .filter(|v| corners[triangles[1]].contains(v))
+                .collect();
+            Error::NonOrientable { edge: [shared[0], shared[1]], triangles }
+        })?;
+        let origin = Vector3::from(vertices[corners[seed][0] as usize]);
+        let mut volume = 0.0;
+        for &triangle in &component {
+            let [a, b, c] = corners[triangle].map(|v| Vector3::from(vertices[v as usize]) - origin);
+            let normal = (b - a).cross(&(c - a));
+            if normal.norm_squared() == 0.0 {
+                return Err(Error::DegenerateTriangle { triangle, corners: corners[triangle] });
+            }
+            let sign = if flipped[triangle] == Some(true) { -1.0 } else { 1.0 };
+            volume += sign * a.dot(&normal);
+        }
+        for &triangle in &component {
+            if (flipped[triangle] == Some(true)) != (volume < 0.0) {
+                result[triangle].swap(1, 2);
+            }
+        }
+    }
+    Topology::new(&result, vertices.len())?;
+    Ok(result)
+}
+
+/// Visit the component of `seed` and note which of its triangles must be flipped to agree with it.
+/// Fails with the two triangles that cannot agree.
+fn walk(
+    seed: usize,
+    neighbours: &[[(u32, bool); 3]],
+    flipped: &mut [Option<bool>],
+) -> std::result::Result<Vec<usize>, [usize; 2]> {
+    flipped[seed] = Some(false);
+    let mut component = vec![seed];
+    let mut next = 0;
+    while let Some(&triangle) = component.get(next) {
+        next += 1;
+        let here = flipped[triangle] == Some(true);
+        for (neighbour, agree) in neighbours[triangle] {
+            let neighbour = neighbour as usize;
+            let wanted = here == agree;
+            match flipped[neighbour] {
+                None => {
+                    flipped[neighbour] = Some(wanted);
+                    component.push(neighbour);
+                }
+                Some(found) if found != wanted => return Err([triangle, neighbour]),
+                Some(_) => {}
+            }
+        }
+    }
+    Ok(component)
+}
+
+/// Every vertex must be used, and be the only one in its place.
+fn check_vertices(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<()> {
+    let mut used = vec![false; vertices.len()];
+    for &vertex in triangles.iter().flatten() {
+        used[vertex as usize] = true;
+    }
+    if let Some(vertex) = used.iter().position(|used| !used) {
+        return Err(Error::UnusedVertex { vertex });
+    }
+    let mut seen = HashMap::with_capacity(vertices.len());
+    for (vertex, position) in vertices.iter().enumerate() {
+        // Adding zero turns −0 into 0, so that equal coordinates have equal bits.
+        let key = position.map(|x| (x + 0.0).to_bits());
+        if let Some(first) = seen.insert(key, vertex) {
+            return Err(Error::RepeatedVertex { first, second: vertex, position: *position });
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_meshes::{icosahedron, octahedron};
+
+    #[test]
+    fn any_mixture_of_orientations_is_mended() {
+        let (vertices, good) = icosahedron();
+        for pattern in [0b1u32, 0b10110111001, 0xfffff, 0x55555] {
+            let mut mixed = good.clone();
+            for (triangle, corners) in mixed.iter_mut().enumerate() {
+                if pattern >> triangle & 1 == 1 {
+                    corners.swap(1, 2);
+                }
+            }
+            assert_eq!(oriented(&vertices, &mixed).unwrap(), good);
+        }
+    }
+
+    #[test]
+    fn components_are_oriented_one_by_one() {
+        let (mut vertices, mut triangles) = octahedron();
+        let good: Vec<_> =
+            triangles.iter().copied().chain(triangles.iter().map(|t| t.map(|v| v + 6))).collect();
+        triangles.extend(triangles.clone().iter().map(|t| [t[0] + 6, t[2] + 6, t[1] + 6]));
+        vertices.extend(vertices.clone().iter().map(|v| [v[0] + 5.0, v[1] * 2.0, v[2]]));
+        assert_eq!(oriented(&vertices, &triangles).unwrap(), good);
+    }
+
+    /// The minimal triangulation of the projective plane: ten triangles on six vertices.
+    #[test]
+    fn the_projective_plane_is_not_orientable() {
+        let triangles = [
+            [0, 1, 2],
+            [0, 2, 3],
+            [0, 3, 4],
+            [0, 4, 5],
+            [0, 5, 1],
+            [1, 2, 4],
+            [2, 3, 5],
+            [3, 4, 1],
+            [4, 5, 2],
+            [5, 1, 3],
+        ];
+        let vertices: Vec<_> =
+            (0..6).map(|k| [f64::from(k), f64::from(k * k), f64::from(k * k * k)]).collect();
+        assert!(matches!(oriented(&vertices, &triangles), Err(Error::NonOrientable { .. })));
+    }
+
+    #[test]
+    fn vertices_are_checked() {
+        let (mut vertices, triangles) = octahedron();
+        vertices.push([9.0, 9.0, 9.0]);
+        assert_eq!(oriented(&vertices, &triangles), Err(Error::UnusedVertex { vertex: 6 }));
+        vertices.pop();
+        let kept = vertices[3];
+        vertices[3] = vertices[1];
+        assert!(matches!(
+            oriented(&vertices, &triangles),
+            Err(Error::RepeatedVertex { first: 1, second: 3, .. })
+        ));
+        vertices[3] = [kept[0], f64::NAN, 0.0];
+        assert!(matches!(
+            oriented(&vertices, &triangles),
+            Err(Error::NonFiniteVertex { vertex: 3, .. })
+        ));
+    }
+
+    #[test]
+    fn a_triangle_on_a_line_is_refused() {
+        let (mut vertices, triangles) = octahedron();
+        let [a, b, c] = triangles[0].map(|v| v as usize);
+        vertices[c] = std::array::from_fn(|k| 3.0 * vertices[a][k] - 2.0 * vertices[b][k]);
+        assert!(matches!(
+            oriented(&vertices, &triangles),
+            Err(Error::DegenerateTriangle { triangle: 0, .. })
+        ));
+    }
+}

@@ -1,0 +1,397 @@
+//! Which triangles, edges and vertices of a closed surface touch which.
+
+use crate::error::{Error, Result};
+
+/// A validated closed, oriented 2-manifold triangulation.
+///
+/// Vertices are numbered locally, from 0 without gaps, in ascending order of the indices that the user
+/// gave; [`Topology::particles`] translates back. Corner `3 t + k` is the `k`-th corner of triangle `t`.
+/// Edge `k` of a triangle runs from its corner `k` to its corner `k + 1`.
+///
+/// ```
+/// use openmm_helfrich::mesh::Topology;
+/// let tetrahedron = [[7, 5, 9], [7, 9, 8], [7, 8, 5], [5, 8, 9]];
+/// let topology = Topology::new(&tetrahedron, 10).unwrap();
+/// assert_eq!(topology.particles, [5, 7, 8, 9]);
+/// assert_eq!(topology.edges.len(), 6);
+/// ```
+#[derive(Debug, Clone)]
+pub struct Topology {
+    /// The user's index of each local vertex, ascending.
+    pub particles: Vec<u32>,
+    /// The local vertices of each triangle, counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// For each triangle, the index of its edges 01, 12 and 20.
+    pub triangle_edges: Vec<[u32; 3]>,
+    /// Each edge once.
+    pub edges: Vec<Edge>,
+    /// Where the corners of each vertex begin in `corners` (and its edges in `vertex_edges`, since a
+    /// closed surface has as many of the one as of the other); one entry more than vertices.
+    pub offsets: Vec<u32>,
+    /// The corners at each vertex, in ascending order.
+    pub corners: Vec<u32>,
+    /// The edges at each vertex, in ascending order.
+    pub vertex_edges: Vec<u32>,
+}
+
+/// An edge with its two triangles.
+///
+/// ```text
+///            opposite[0]
+///              /    \
+///   triangles[0]     \        seen from outside: triangles[0] runs through
+///            / start  \       the edge from start to end, triangles[1]
+///           0────────▶ 1      from end to start
+///            \   end  /
+///   triangles[1]     /
+///              \    /
+///            opposite[1]
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Edge {
+    /// Start and end.
+    pub vertices: [u32; 2],
+    /// The third vertex of either triangle.
+    pub opposite: [u32; 2],
+    /// The triangle on the left and the one on the right.
+    pub triangles: [u32; 2],
+}
+
+/// One triangle's passage along one of its edges.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct HalfEdge {
+    /// The two ends, the smaller first, so that sorting brings partners together.
+    ends: [u32; 2],
+    /// Triangle and side, as a corner index.
+    corner: u32,
+    /// Whether the passage runs from the smaller end to the larger.
+    ascending: bool,
+}
+
+impl Topology {
+    /// Validate triangles that hold indices from 0 to `count` − 1.
+    ///
+    /// # Errors
+    /// Names the triangle, edge or vertex at fault: empty mesh, index out of range, repeated corner,
+    /// duplicate triangle, open or non-manifold edge, inconsistent orientation, pinched vertex.
+    pub fn new(triangles: &[[i64; 3]], count: usize) -> Result<Self> {
+        let triangles = checked_indices(triangles, count)?;
+        let pairs = paired_half_edges(&triangles)?;
+        for pair in &pairs {
+            if pair[0].ascending == pair[1].ascending {
+                return Err(Error::InconsistentOrientation {
+                    edge: pair[0].ends,
+                    triangles: pair.map(|half| half.corner as usize / 3),
+                });
+            }
+        }
+        let (particles, triangles) = renumbered(&triangles);
+        let topology = Self::from_pairs(particles, triangles, &pairs);
+        topology.check_fans()?;
+        Ok(topology)
+    }
+
+    /// Number of vertices.
+    pub fn num_vertices(&self) -> usize {
+        self.particles.len()
+    }
+
+    /// The user's indices of the corners of a triangle.
+    pub fn particles_of(&self, triangle: usize) -> [u32; 3] {
+        self.triangles[triangle].map(|v| self.particles[v as usize])
+    }
+
+    /// The range of a vertex in `corners` and `vertex_edges`.
+    #[inline]
+    pub fn ring(&self, vertex: usize) -> std::ops::Range<usize> {
+        self.offsets[vertex] as usize..self.offsets[vertex + 1] as usize
+    }
+
+    fn from_pairs(particles: Vec<u32>, triangles: Vec<[u32; 3]>, pairs: &[[HalfEdge; 2]]) -> Self {
+        let num_vertices = particles.len();
+        let mut triangle_edges = vec![[0; 3]; triangles.len()];
+        let mut edges = Vec::with_capacity(pairs.len());
+        for (index, pair) in pairs.iter().enumerate() {
+            let corners = pair.map(|half| half.corner as usize);
+            for corner in corners {
+                triangle_edges[corner / 3][corner % 3] = index as u32;
+            }
+            let [left, right] = corners.map(|corner| (triangles[corner / 3], corner % 3));
+            let (triangle, side) = left;
+            edges.push(Edge {
+                vertices: [triangle[side], triangle[(side + 1) % 3]],
+                opposite: [triangle[(side + 2) % 3], right.0[(right.1 + 2) % 3]],
+                triangles: corners.map(|corner| (corner / 3) as u32),
+            });
+        }
+        let corner_ends = triangles.iter().flatten().copied();
+        let (offsets, corners) = incidence(num_vertices, corner_ends, 1);
+        let edge_ends = edges.iter().flat_map(|edge| edge.vertices);
+        let (edge_offsets, vertex_edges) = incidence(num_vertices, edge_ends, 2);
+        debug_assert_eq!(offsets, edge_offsets);
+        Self { particles, triangles, triangle_edges, edges, offsets, corners, vertex_edges }
+    }
+
+    /// Every vertex must be surrounded by a single closed fan of triangles.
+    fn check_fans(&self) -> Result<()> {
+        for vertex in 0..self.num_vertices() {
+            let ring = self.ring(vertex);
+            let degree = ring.len();
+            let start = self.corners[ring.start] as usize;
+            let mut corner = start;
+            let mut steps = 0;
+            // Crossing the edge that enters the corner leads to the next triangle counter-clockwise.
+            loop {
+                let (triangle, k) = (corner / 3, corner % 3);
+                let edge = &self.edges[self.triangle_edges[triangle][(k + 2) % 3] as usize];
+                let other = if edge.triangles[0] as usize == triangle { 1 } else { 0 };
+                let next = edge.triangles[other] as usize;
+                let position = |v: &u32| *v as usize == vertex;
+                let k = self.triangles[next].iter().position(position).unwrap_or(0);
+                corner = 3 * next + k;
+                steps += 1;
+                if corner == start || steps > degree {
+                    break;
+                }
+            }
+            if steps != degree {
+                return Err(Error::NonManifoldVertex {
+                    vertex: self.particles[vertex],
+                    fans: self.count_fans(vertex),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// The number of groups of triangles at a vertex that hang together by edges at this vertex.
+    fn count_fans(&self, vertex: usize) -> usize {
+        let mut fans: Vec<Vec<u32>> = Vec::new();
+        for &edge in &self.vertex_edges[self.ring(vertex)] {
+            let pair = self.edges[edge as usize].triangles;
+            let touches = |fan: &Vec<u32>| fan.contains(&pair[0]) || fan.contains(&pair[1]);
+            let (joined, rest): (Vec<_>, Vec<_>) = fans.into_iter().partition(touches);
+            fans = rest;
+            fans.push(joined.into_iter().flatten().chain(pair).collect());
+        }
+        fans.len()
+    }
+}
+
+/// Check indices, repeated corners and duplicates, and narrow the indices to 32 bits.
+pub(super) fn checked_indices(triangles: &[[i64; 3]], count: usize) -> Result<Vec<[u32; 3]>> {
+    if triangles.is_empty() {
+        return Err(Error::EmptyMesh);
+    }
+    if triangles.len() > (u32::MAX / 3) as usize {
+        return Err(Error::Contract(format!(
+            "a mesh can have {} triangles at most, got {}",
+            u32::MAX / 3,
+            triangles.len()
+        )));
+    }
+    let mut checked = Vec::with_capacity(triangles.len());
+    for (triangle, corners) in triangles.iter().enumerate() {
+        for &index in corners {
+            if index < 0 || index as u64 >= count as u64 || index > u32::MAX as i64 {
+                return Err(Error::IndexOutOfRange { triangle, index, count });
+            }
+        }
+        let corners = corners.map(|index| index as u32);
+        for k in 0..3 {
+            if corners[k] == corners[(k + 1) % 3] {
+                return Err(Error::RepeatedCorner { triangle, corners, vertex: corners[k] });
+            }
+        }
+        checked.push(corners);
+    }
+    let mut keys: Vec<([u32; 3], usize)> = checked
+        .iter()
+        .enumerate()
+        .map(|(triangle, corners)| {
+            let mut key = *corners;
+            key.sort_unstable();
+            (key, triangle)
+        })
+        .collect();
+    keys.sort_unstable();
+    for pair in keys.windows(2) {
+        if pair[0].0 == pair[1].0 {
+            let (first, second) = (pair[0].1, pair[1].1);
+            return Err(Error::DuplicateTriangle { first, second, corners: checked[first] });
+        }
+    }
+    Ok(checked)
+}
+
+/// Match the two half-edges of every edge; the one of the lower triangle comes first.
+///
+/// Edges come in the order in which the triangles first mention them, which keeps the edges of
+/// neighbouring triangles together in memory.
+fn paired_half_edges(triangles: &[[u32; 3]]) -> Result<Vec<[HalfEdge; 2]>> {
+    let mut halves = Vec::with_capacity(3 * triangles.len());
+    for (triangle, corners) in triangles.iter().enumerate() {
+        for side in 0..3 {
+            let (start, end) = (corners[side], corners[(side + 1) % 3]);
+            halves.push(HalfEdge {
+                ends: [start.min(end), start.max(end)],
+                corner: (3 * triangle + side) as u32,
+                ascending: start < end,
+            });
+        }
+    }
+    halves.sort_unstable();
+    let mut pairs = Vec::with_capacity(halves.len() / 2);
+    for group in halves.chunk_by(|a, b| a.ends == b.ends) {
+        let triangle = |k: usize| group[k].corner as usize / 3;
+        match group {
+            [_] => {
+                return Err(Error::OpenEdge { edge: group[0].ends, triangle: triangle(0) });
+            }
+            [first, second] => pairs.push([*first, *second]),
+            _ => {
+                return Err(Error::NonManifoldEdge {
+                    edge: group[0].ends,
+                    count: group.len(),
+                    triangles: [triangle(0), triangle(1), triangle(2)],
+                });
+            }
+        }
+    }
+    pairs.sort_unstable_by_key(|pair| pair[0].corner);
+    Ok(pairs)
+}
+
+/// The triangles on the other side of each triangle's edges 01, 12 and 20, with whether the two agree
+/// in orientation. The surface need not be oriented, but must be closed and manifold at its edges.
+pub(super) fn neighbours(triangles: &[[u32; 3]]) -> Result<Vec<[(u32, bool); 3]>> {
+    let mut neighbours = vec![[(0, true); 3]; triangles.len()];
+    for pair in paired_half_edges(triangles)? {
+        let agree = pair[0].ascending != pair[1].ascending;
+        for (here, there) in [(pair[0], pair[1]), (pair[1], pair[0])] {
+            let corner = here.corner as usize;
+            neighbours[corner / 3][corner % 3] = (there.corner / 3, agree);
+        }
+    }
+    Ok(neighbours)
+}
+
+/// Number the vertices from 0 without gaps, in ascending order.
+fn renumbered(triangles: &[[u32; 3]]) -> (Vec<u32>, Vec<[u32; 3]>) {
+    let mut particles: Vec<u32> = triangles.iter().flatten().copied().collect();
+    particles.sort_unstable();
+    particles.dedup();
+    // Every index is in the list that was made from it, so the search succeeds.
+    let local = |index: u32| particles.partition_point(|&particle| particle < index) as u32;
+    let triangles = triangles.iter().map(|corners| corners.map(local)).collect();
+    (particles, triangles)
+}
+
+/// For each vertex the items that touch it, in ascending order: `ends` lists the vertices of item 0,
+/// then of item 1 and so on, `per_item` of them each. Returns the offsets and the lists end to end.
+fn incidence(
+    num_vertices: usize,
+    ends: impl Iterator<Item = u32> + Clone,
+    per_item: usize,
+) -> (Vec<u32>, Vec<u32>) {
+    let mut offsets = vec![0u32; num_vertices + 1];
+    for vertex in ends.clone() {
+        offsets[vertex as usize + 1] += 1;
+    }
+    for vertex in 0..num_vertices {
+        offsets[vertex + 1] += offsets[vertex];
+    }
+    let mut next = offsets.clone();
+    let mut items = vec![0; offsets[num_vertices] as usize];
+    for (position, vertex) in ends.enumerate() {
+        let slot = &mut next[vertex as usize];
+        items[*slot as usize] = (position / per_item) as u32;
+        *slot += 1;
+    }
+    (offsets, items)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_meshes::{icosahedron, octahedron};
+
+    #[test]
+    fn icosahedron_has_euler_characteristic_two() {
+        let topology = Topology::new(&icosahedron().1, 12).unwrap();
+        let (v, e, f) = (topology.num_vertices(), topology.edges.len(), topology.triangles.len());
+        assert_eq!((v, e, f), (12, 30, 20));
+        assert!((0..12).all(|vertex| topology.ring(vertex).len() == 5));
+    }
+
+    #[test]
+    fn edges_know_their_triangles() {
+        let topology = Topology::new(&octahedron().1, 6).unwrap();
+        for (index, edge) in topology.edges.iter().enumerate() {
+            for side in 0..2 {
+                let triangle = edge.triangles[side] as usize;
+                assert!(topology.triangle_edges[triangle].contains(&(index as u32)));
+                let corners = topology.triangles[triangle];
+                let k = corners.iter().position(|&v| v == edge.opposite[side]).unwrap();
+                let (start, end) = (corners[(k + 1) % 3], corners[(k + 2) % 3]);
+                assert_eq!([start, end], [edge.vertices[side], edge.vertices[1 - side]]);
+            }
+        }
+    }
+
+    #[test]
+    fn gaps_in_the_indices_are_closed() {
+        let triangles: Vec<_> = octahedron().1.iter().map(|t| t.map(|v| 10 * v + 3)).collect();
+        let topology = Topology::new(&triangles, 54).unwrap();
+        assert_eq!(topology.particles, [3, 13, 23, 33, 43, 53]);
+        assert_eq!(topology.particles_of(0).map(i64::from), triangles[0]);
+    }
+
+    #[test]
+    fn mistakes_name_their_culprit() {
+        let good = octahedron().1;
+        let broken = |change: &dyn Fn(&mut Vec<[i64; 3]>)| {
+            let mut triangles = good.clone();
+            change(&mut triangles);
+            Topology::new(&triangles, 12).unwrap_err()
+        };
+        assert_eq!(broken(&|t| t.clear()), Error::EmptyMesh);
+        assert_eq!(
+            broken(&|t| t[2][1] = 12),
+            Error::IndexOutOfRange { triangle: 2, index: 12, count: 12 }
+        );
+        assert_eq!(
+            broken(&|t| t[2][1] = -1),
+            Error::IndexOutOfRange { triangle: 2, index: -1, count: 12 }
+        );
+        assert!(matches!(
+            broken(&|t| t[3][1] = t[3][0]),
+            Error::RepeatedCorner { triangle: 3, .. }
+        ));
+        assert!(matches!(
+            broken(&|t| t.push([t[1][1], t[1][2], t[1][0]])),
+            Error::DuplicateTriangle { first: 1, second: 8, .. }
+        ));
+        assert!(matches!(broken(&|t| t.truncate(7)), Error::OpenEdge { .. }));
+        let [a, b, _] = good[0].map(|v| v as u32);
+        assert!(matches!(
+            broken(&|t| t.push([t[0][0], t[0][1], 7])),
+            Error::NonManifoldEdge { edge, count: 3, .. } if edge == [a.min(b), a.max(b)]
+        ));
+        assert!(matches!(
+            broken(&|t| t[5].swap(0, 1)),
+            Error::InconsistentOrientation { triangles: [_, 5], .. }
+                | Error::InconsistentOrientation { triangles: [5, _], .. }
+        ));
+    }
+
+    #[test]
+    fn two_octahedra_that_share_a_vertex_are_pinched() {
+        let mut triangles = octahedron().1;
+        let second: Vec<_> =
+            triangles.iter().map(|t| t.map(|v| if v == 0 { 0 } else { v + 5 })).collect();
+        triangles.extend(second);
+        let error = Topology::new(&triangles, 11).unwrap_err();
+        assert_eq!(error, Error::NonManifoldVertex { vertex: 0, fans: 2 });
+    }
+}

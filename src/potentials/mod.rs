@@ -1,0 +1,260 @@
+//! Potentials: energies of geometric quantities, and their partial derivatives.
+//!
+//! A potential states its energy and its derivatives with respect to geometry and never touches a
+//! coordinate; the chain rule from there to forces is in [`crate::mesh::geometry`]. Each potential is
+//! one file here, and one line in [`REGISTRY`].
+
+mod bending;
+mod enclosed_volume;
+mod surface_area;
+mod triangle_height;
+
+use crate::error::{Error, Result};
+use crate::mesh::geometry::{
+    TotalPartials, Totals, TriangleGeometry, TrianglePartials, VertexGeometry, VertexPartials,
+};
+use bitflags::bitflags;
+use std::ffi::CStr;
+
+/// All potentials, by the names of their OpenMM classes.
+pub static REGISTRY: [&dyn Potential; 4] = [
+    &surface_area::SurfaceArea,
+    &enclosed_volume::EnclosedVolume,
+    &bending::Bending,
+    &triangle_height::TriangleHeight,
+];
+
+/// The most scalars that a potential can have.
+pub const MAX_PARAMETERS: usize = 4;
+
+bitflags! {
+    /// On which elements of the mesh a potential adds energy.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub struct Stages: u8 {
+        /// Total area and volume.
+        const TOTALS = 1;
+        /// Each triangle's area and sides.
+        const TRIANGLES = 2;
+        /// Each vertex' area and curvature.
+        const VERTICES = 4;
+    }
+}
+
+/// Which values a scalar may take.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Domain {
+    /// Finite and above zero.
+    Positive,
+    /// Finite and not below zero.
+    NonNegative,
+    /// Finite.
+    Real,
+}
+
+/// A scalar parameter of a potential. Its unit is (kJ/mol)^`energy` · nm^`length`.
+#[derive(Debug, Clone, Copy)]
+pub struct Parameter {
+    /// As in XML, `setContextParameter` and the Python constructor.
+    pub name: &'static CStr,
+    /// Power of kJ/mol.
+    pub energy: i8,
+    /// Power of nm.
+    pub length: i8,
+    /// Allowed values.
+    pub domain: Domain,
+    /// What it is if the user does not say; `None` if the user must.
+    pub default: Option<f64>,
+}
+
+impl Parameter {
+    /// A scalar that the user must give, with its powers of kJ/mol and nm.
+    const fn new(name: &'static CStr, energy: i8, length: i8, domain: Domain) -> Self {
+        Self { name, energy, length, domain, default: None }
+    }
+
+    /// The same with a default.
+    const fn or(self, default: f64) -> Self {
+        Self { default: Some(default), ..self }
+    }
+
+    /// Refuse a value outside the domain, NaN and infinity in any case.
+    pub fn check(&self, value: f64) -> Result<()> {
+        let (allowed, domain) = match self.domain {
+            Domain::Positive => (value > 0.0, "a finite number above zero"),
+            Domain::NonNegative => (value >= 0.0, "a finite number, zero or above"),
+            Domain::Real => (true, "a finite number"),
+        };
+        if allowed && value.is_finite() {
+            return Ok(());
+        }
+        Err(Error::Parameter { parameter: self.name.to_string_lossy().into_owned(), domain, value })
+    }
+}
+
+/// An energy and its derivatives with respect to the potential's scalars. The C++ shim reads it.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Contribution {
+    /// kJ/mol.
+    pub energy: f64,
+    /// ∂E/∂(parameter), in the order of [`Potential::parameters`].
+    pub by_parameter: [f64; MAX_PARAMETERS],
+}
+
+impl std::ops::AddAssign for Contribution {
+    fn add_assign(&mut self, other: Self) {
+        self.energy += other.energy;
+        for (sum, value) in self.by_parameter.iter_mut().zip(other.by_parameter) {
+            *sum += value;
+        }
+    }
+}
+
+/// The values that a potential is evaluated with.
+pub type Values = [f64; MAX_PARAMETERS];
+
+/// One kind of energy. The methods for elements get a run of them and add to their partial
+/// derivatives; a potential implements those of its [`Stages`].
+pub trait Potential: Sync {
+    /// The name of the OpenMM class.
+    fn name(&self) -> &'static str;
+
+    /// The scalars.
+    fn parameters(&self) -> &'static [Parameter];
+
+    /// What the variants are called as a whole ("scheme"), and their names.
+    fn forms(&self) -> Option<(&'static CStr, &'static [&'static CStr])> {
+        None
+    }
+
+    /// Where energy is added.
+    fn stages(&self, form: usize) -> Stages;
+
+    /// Energy of the total area and volume.
+    fn totals(&self, _: &Term, _: &Totals, _: &mut TotalPartials) -> Contribution {
+        Contribution::default()
+    }
+
+    /// Energy of a run of triangles.
+    fn triangles(
+        &self,
+        _: &Term,
+        _: &[TriangleGeometry],
+        _: &mut [TrianglePartials],
+    ) -> Contribution {
+        Contribution::default()
+    }
+
+    /// Energy of a run of vertices.
+    fn vertices(&self, _: &Term, _: &[VertexGeometry], _: &mut [VertexPartials]) -> Contribution {
+        Contribution::default()
+    }
+}
+
+/// A potential with its variant and values.
+#[derive(Clone)]
+pub struct Term {
+    /// From the [`REGISTRY`].
+    pub potential: &'static dyn Potential,
+    /// Index into the names of [`Potential::forms`]; 0 if there are none.
+    pub form: usize,
+    /// One for each parameter; the rest is unused.
+    pub values: Values,
+}
+
+impl Term {
+    /// Look up a potential and check its values.
+    ///
+    /// # Errors
+    /// An unknown name or variant, too few or too many values, a value outside its domain.
+    pub fn new(name: &str, form: usize, values: &[f64]) -> Result<Self> {
+        let potential = find(name)?;
+        let forms = potential.forms().map_or(1, |(_, names)| names.len());
+        if form >= forms {
+            return Err(Error::Contract(format!("there is no variant {form}, only {forms}")));
+        }
+        let count = potential.parameters().len();
+        if values.len() != count {
+            return Err(Error::Contract(format!("needs {count} values, got {}", values.len())));
+        }
+        let mut padded = Values::default();
+        padded[..count].copy_from_slice(values);
+        let term = Self { potential, form, values: padded };
+        term.check()?;
+        Ok(term)
+    }
+
+    /// Refuse values outside their domains.
+    ///
+    /// # Errors
+    /// Names the parameter.
+    pub fn check(&self) -> Result<()> {
+        let parameters = self.potential.parameters();
+        parameters
+            .iter()
+            .zip(&self.values)
+            .try_for_each(|(parameter, value)| parameter.check(*value))
+    }
+}
+
+/// The potential of a class name.
+pub fn find(name: &str) -> Result<&'static dyn Potential> {
+    REGISTRY.into_iter().find(|potential| potential.name() == name).ok_or_else(|| {
+        Error::UnknownName {
+            what: "potential",
+            name: name.to_owned(),
+            known: REGISTRY.map(|potential| potential.name()).join(", "),
+        }
+    })
+}
+
+/// Energy ½ k (x − x₀)² / x₀ of a quantity x around its target, and its derivative with respect to x.
+/// The derivatives with respect to k and x₀ are those of the contribution, in this order.
+fn relative_spring(modulus: f64, target: f64, value: f64) -> (Contribution, f64) {
+    let strain = (value - target) / target;
+    let energy = 0.5 * modulus * strain * (value - target);
+    let by_modulus = 0.5 * strain * (value - target);
+    let by_target = -modulus * (strain + 0.5 * strain * strain);
+    let mut by_parameter = [0.0; MAX_PARAMETERS];
+    by_parameter[..2].copy_from_slice(&[by_modulus, by_target]);
+    (Contribution { energy, by_parameter }, modulus * strain)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_unique_and_found() {
+        for potential in REGISTRY {
+            assert_eq!(find(potential.name()).unwrap().name(), potential.name());
+            assert!(potential.parameters().len() <= MAX_PARAMETERS);
+        }
+        assert!(find("NoSuchForce").is_err());
+    }
+
+    #[test]
+    fn domains_are_kept() {
+        let parameter =
+            |domain| Parameter { name: c"x", energy: 0, length: 1, domain, default: None };
+        for domain in [Domain::Positive, Domain::NonNegative, Domain::Real] {
+            assert!(parameter(domain).check(f64::NAN).is_err());
+            assert!(parameter(domain).check(f64::INFINITY).is_err());
+            assert!(parameter(domain).check(1.0).is_ok());
+            assert_eq!(parameter(domain).check(0.0).is_ok(), domain != Domain::Positive);
+            assert_eq!(parameter(domain).check(-1.0).is_ok(), domain == Domain::Real);
+        }
+    }
+
+    #[test]
+    fn relative_spring_has_exact_derivatives() {
+        let (k, x0, x, h) = (1.7, 3.0, 3.4, 1e-6);
+        let energy = |k, x0, x| relative_spring(k, x0, x).0.energy;
+        let (contribution, slope) = relative_spring(k, x0, x);
+        let [by_k, by_x0, ..] = contribution.by_parameter;
+        let central = |f: &dyn Fn(f64) -> f64| (f(h) - f(-h)) / (2.0 * h);
+        assert!((slope - central(&|s| energy(k, x0, x + s))).abs() < 1e-9);
+        assert!((by_k - central(&|s| energy(k + s, x0, x))).abs() < 1e-9);
+        assert!((by_x0 - central(&|s| energy(k, x0 + s, x))).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,129 @@
+//! Triangle heights: E = Σ_t Σ_h ε [ (d/h)⁸ − (d/h)⁴ + ¼ ] over the three heights h of each triangle
+//! where h < 2^¼ d, else 0: the auxiliary potential of doi:10.1103/PhysRevE.108.015301. It keeps a
+//! fluid mesh from degenerating: no vertex can cross the side opposite it.
+
+use super::{Contribution, Domain, Parameter, Potential, Stages, Term};
+use crate::mesh::geometry::{TriangleGeometry, TrianglePartials};
+
+/// A purely repulsive potential on the heights of triangles, of Weeks, Chandler and Andersen's kind.
+pub struct TriangleHeight;
+
+impl Potential for TriangleHeight {
+    fn name(&self) -> &'static str {
+        "TriangleHeightForce"
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        const {
+            &[
+                Parameter::new(c"minHeight", 0, 1, Domain::NonNegative),
+                Parameter::new(c"epsilon", 1, 0, Domain::NonNegative),
+            ]
+        }
+    }
+
+    fn stages(&self, _: usize) -> Stages {
+        Stages::TRIANGLES
+    }
+
+    /// With h = 2a/l and x = (d/h)⁴ = (d l / 2a)⁴ the energy of a height is ε (x − ½)², for x > ½.
+    fn triangles(
+        &self,
+        &Term { values: [min_height, epsilon, ..], .. }: &Term,
+        triangles: &[TriangleGeometry],
+        partials: &mut [TrianglePartials],
+    ) -> Contribution {
+        let mut squares = 0.0;
+        let mut by_height = 0.0;
+        let min_height_squared = min_height * min_height;
+        let threshold = std::f64::consts::FRAC_1_SQRT_2;
+        for (triangle, partial) in triangles.iter().zip(partials) {
+            let scale = min_height_squared / (triangle.twice_area * triangle.twice_area);
+            let sides: [f64; 3] = std::array::from_fn(|k| triangle.length_squared(k));
+            let longest = sides[0].max(sides[1]).max(sides[2]);
+            if scale * longest <= threshold {
+                continue;
+            }
+            for (side, length_squared) in sides.into_iter().enumerate() {
+                let ratio_squared = scale * length_squared;
+                if ratio_squared <= threshold {
+                    continue;
+                }
+                let x = ratio_squared * ratio_squared;
+                let excess = x - 0.5;
+                squares += excess * excess;
+                let slope = 2.0 * excess * x;
+                by_height += 4.0 * slope / min_height;
+                partial.area -= 8.0 * epsilon * slope / triangle.twice_area;
+                partial.length_squared[side] += 2.0 * epsilon * slope / length_squared;
+            }
+        }
+        Contribution {
+            energy: epsilon * squares,
+            by_parameter: [epsilon * by_height, squares, 0.0, 0.0],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::geometry::Vec3;
+
+    #[test]
+    fn energy_is_that_of_the_formula() {
+        let (d, epsilon) = (1.0, 2.5);
+        let triangle = TriangleGeometry::new(
+            &Vec3::new(0.0, 0.0, 0.0),
+            &Vec3::new(2.0, 0.1, 0.0),
+            &Vec3::new(0.7, 1.1, 0.4),
+        );
+        let mut partials = [TrianglePartials::default()];
+        let term = Term::new("TriangleHeightForce", 0, &[d, epsilon]).unwrap();
+        let found = TriangleHeight.triangles(&term, &[triangle], &mut partials);
+        let expected: f64 = (0..3)
+            .map(|k| triangle.twice_area / triangle.length_squared(k).sqrt())
+            .filter(|h| *h < 2f64.powf(0.25) * d)
+            .map(|h| epsilon * ((d / h).powi(8) - (d / h).powi(4) + 0.25))
+            .sum();
+        assert!(expected > 0.0 && (found.energy / expected - 1.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn partial_derivatives_match_finite_differences() {
+        // A triangle by twice its area and its corners' products; two of its heights are active.
+        let at = |area: f64, sides: [f64; 3], d: f64, epsilon: f64| {
+            let half = 0.5 * (sides[0] + sides[1] + sides[2]);
+            let dots = [half - sides[1], half - sides[2], half - sides[0]];
+            let triangle = TriangleGeometry { normal: Vec3::zeros(), twice_area: 2.0 * area, dots };
+            let mut partials = [TrianglePartials::default()];
+            let term = Term::new("TriangleHeightForce", 0, &[d, epsilon]).unwrap();
+            (TriangleHeight.triangles(&term, &[triangle], &mut partials), partials[0])
+        };
+        let (area, sides, d, epsilon) = (0.7, [2.0, 1.0, 1.7], 1.0, 1.5);
+        let (sum, partials) = at(area, sides, d, epsilon);
+        let h = 1e-6;
+        let central = |f: &dyn Fn(f64) -> f64| (f(h) - f(-h)) / (2.0 * h);
+        let mut checks = vec![
+            (partials.area, central(&|s| at(area + s, sides, d, epsilon).0.energy)),
+            (sum.by_parameter[0], central(&|s| at(area, sides, d + s, epsilon).0.energy)),
+            (sum.by_parameter[1], central(&|s| at(area, sides, d, epsilon + s).0.energy)),
+        ];
+        for k in 0..3 {
+            let moved = |s: f64| {
+                let mut moved = sides;
+                moved[k] += s;
+                moved
+            };
+            let slope = central(&|s| at(area, moved(s), d, epsilon).0.energy);
+            checks.push((partials.length_squared[k], slope));
+        }
+        assert_eq!(partials.length_squared.iter().filter(|x| **x != 0.0).count(), 2);
+        for (found, expected) in checks {
+            assert!(
+                (found - expected).abs() < 1e-7 * expected.abs().max(1.0),
+                "{found} {expected}"
+            );
+        }
+    }
+}

@@ -1,0 +1,111 @@
+//! Small closed meshes for the unit tests.
+
+/// Vertices and outward triangles.
+pub type TestMesh = (Vec<[f64; 3]>, Vec<[i64; 3]>);
+
+/// The octahedron with corners on the axes.
+pub fn octahedron() -> TestMesh {
+    let vertices = vec![
+        [1.0, 0.0, 0.0],
+        [-1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [0.0, -1.0, 0.0],
+        [0.0, 0.0, 1.0],
+        [0.0, 0.0, -1.0],
+    ];
+    let triangles = vec![
+        [0, 2, 4],
+        [2, 1, 4],
+        [1, 3, 4],
+        [3, 0, 4],
+        [2, 0, 5],
+        [1, 2, 5],
+        [3, 1, 5],
+        [0, 3, 5],
+    ];
+    (vertices, triangles)
+}
+
+/// The icosahedron with edges of length 2.
+pub fn icosahedron() -> TestMesh {
+    let g = (1.0 + 5f64.sqrt()) / 2.0;
+    let vertices = vec![
+        [-1.0, g, 0.0],
+        [1.0, g, 0.0],
+        [-1.0, -g, 0.0],
+        [1.0, -g, 0.0],
+        [0.0, -1.0, g],
+        [0.0, 1.0, g],
+        [0.0, -1.0, -g],
+        [0.0, 1.0, -g],
+        [g, 0.0, -1.0],
+        [g, 0.0, 1.0],
+        [-g, 0.0, -1.0],
+        [-g, 0.0, 1.0],
+    ];
+    let triangles = vec![
+        [0, 11, 5],
+        [0, 5, 1],
+        [0, 1, 7],
+        [0, 7, 10],
+        [0, 10, 11],
+        [1, 5, 9],
+        [5, 11, 4],
+        [11, 10, 2],
+        [10, 7, 6],
+        [7, 1, 8],
+        [3, 9, 4],
+        [3, 4, 2],
+        [3, 2, 6],
+        [3, 6, 8],
+        [3, 8, 9],
+        [4, 9, 5],
+        [2, 4, 11],
+        [6, 2, 10],
+        [8, 6, 7],
+        [9, 8, 1],
+    ];
+    (vertices, triangles)
+}
+
+/// Numbers in [−1, 1) that look random and never change.
+pub fn noise(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
+    move || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}
+
+/// Split each triangle into four, `times` times, on the unit sphere; then stretch and jitter, so that
+/// no symmetry can hide an error.
+pub fn jittered_sphere(times: usize, radius: f64, jitter: f64) -> TestMesh {
+    let (mut vertices, mut triangles) = icosahedron();
+    for _ in 0..times {
+        let mut middle = std::collections::HashMap::new();
+        let mut finer = Vec::with_capacity(4 * triangles.len());
+        for &[a, b, c] in &triangles {
+            let mut between = |i: i64, j: i64| {
+                *middle.entry((i.min(j), i.max(j))).or_insert_with(|| {
+                    let (p, q) = (vertices[i as usize], vertices[j as usize]);
+                    vertices.push(std::array::from_fn(|k| 0.5 * (p[k] + q[k])));
+                    vertices.len() as i64 - 1
+                })
+            };
+            let (ab, bc, ca) = (between(a, b), between(b, c), between(c, a));
+            finer.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
+        }
+        triangles = finer;
+    }
+    let mut random = noise(42);
+    for vertex in &mut vertices {
+        let norm = vertex.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let stretch = [1.0, 1.2, 0.7];
+        for k in 0..3 {
+            vertex[k] = radius * (vertex[k] / norm * stretch[k] + jitter * random()) + 3.0;
+        }
+    }
+    (vertices, triangles)
+}

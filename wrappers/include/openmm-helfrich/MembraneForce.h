@@ -1,0 +1,187 @@
+#ifndef HELFRICH_MEMBRANE_FORCE_H_
+#define HELFRICH_MEMBRANE_FORCE_H_
+
+#include <openmm/Context.h>
+#include <openmm/Force.h>
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace HelfrichPlugin {
+
+/**
+ * The common part of all forces on a membrane: a closed triangulated surface, and named scalars.
+ *
+ * The triangles refer to particles of the System. They must form one or several closed, oriented
+ * 2-manifold surfaces, each triangle counter-clockwise seen from outside; this is checked when a Context
+ * is created. Particles that no triangle mentions feel no force.
+ *
+ * Forces on the same triangles in one Context share one evaluation of the geometry.
+ *
+ * If a triangle loses all its area during a simulation, its normal and with it the energy's gradient
+ * are undefined; the evaluation then throws an OpenMMException that names the triangle, and so it does
+ * for a particle at a position that is not finite. The Context stays usable with other positions.
+ */
+class MembraneForce : public OpenMM::Force {
+public:
+    /**
+     * Add a triangle.
+     *
+     * @param particle1  the index of the first corner
+     * @param particle2  the index of the second corner, counter-clockwise seen from outside
+     * @param particle3  the index of the third corner
+     * @return the index of the triangle that was added
+     */
+    int addTriangle(int particle1, int particle2, int particle3);
+    /**
+     * Get the number of triangles.
+     */
+    int getNumTriangles() const {
+        return (int) triangles.size() / 3;
+    }
+    /**
+     * Get the corners of a triangle.
+     *
+     * @param index            the index of the triangle
+     * @param[out] particle1   the index of the first corner
+     * @param[out] particle2   the index of the second corner
+     * @param[out] particle3   the index of the third corner
+     */
+    void getTriangle(int index, int& particle1, int& particle2, int& particle3) const;
+    /**
+     * Get the corners of all triangles, one after the other.
+     */
+    const std::vector<int>& getTriangles() const {
+        return triangles;
+    }
+    /**
+     * Add many triangles.
+     *
+     * @param corners  the particle indices of the corners, three for each triangle
+     */
+    void addTriangles(const std::vector<int>& corners);
+    /**
+     * Get the number of scalar parameters.
+     */
+    int getNumParameters() const {
+        return (int) parameters.size();
+    }
+    /**
+     * Get the name of a scalar parameter, as setContextParameter() takes it.
+     *
+     * @param index  the index of the parameter
+     */
+    const std::string& getParameterName(int index) const;
+    /**
+     * Get the value of a scalar parameter in OpenMM's units (nm, kJ/mol).
+     *
+     * @param name  the name of the parameter
+     */
+    double getParameterValue(const std::string& name) const;
+    /**
+     * Set the value of a scalar parameter.
+     *
+     * @param name   the name of the parameter
+     * @param value  the value in OpenMM's units (nm, kJ/mol)
+     */
+    void setParameterValue(const std::string& name, double value);
+    /**
+     * Let a parameter of the Context take the place of a scalar, so that Context::setParameter() changes
+     * it during a simulation. Its initial value is that of the scalar. Several forces may share a
+     * parameter of the Context if their initial values agree.
+     *
+     * @param parameter  the name of the scalar, for example "target"
+     * @param name       the name of the Context parameter; empty to go back to the scalar itself
+     */
+    void setContextParameter(const std::string& parameter, const std::string& name);
+    /**
+     * Get the name of the Context parameter that stands in for a scalar, empty if there is none.
+     *
+     * @param parameter  the name of the scalar
+     */
+    const std::string& getContextParameter(const std::string& parameter) const;
+    /**
+     * Ask for the derivative of the energy with respect to a Context parameter, which
+     * Context::getState() then returns. Available on the Reference and CPU platforms.
+     *
+     * @param name  the name of the Context parameter, given to setContextParameter() before
+     */
+    void addEnergyParameterDerivative(const std::string& name);
+    /**
+     * Get the number of Context parameters whose derivatives are asked for.
+     */
+    int getNumEnergyParameterDerivatives() const {
+        return (int) derivatives.size();
+    }
+    /**
+     * Get the name of a Context parameter whose derivative is asked for.
+     *
+     * @param index  the index of the derivative
+     */
+    const std::string& getEnergyParameterDerivativeName(int index) const;
+    /**
+     * Copy the scalars of this object to a Context. The triangles cannot be changed this way, nor what
+     * is a Context parameter: use Context::reinitialize() and Context::setParameter().
+     *
+     * @param context  the Context to update
+     */
+    void updateParametersInContext(OpenMM::Context& context);
+    /**
+     * Membranes do not know periodic boundary conditions.
+     *
+     * @return false
+     */
+    bool usesPeriodicBoundaryConditions() const {
+        return false;
+    }
+    /**
+     * Get the name of the class, as messages and XML have it.
+     */
+    const std::string& getTypeName() const {
+        return type;
+    }
+    /**
+     * Get which variant of the potential is computed, 0 if there are none.
+     */
+    int getForm() const {
+        return form;
+    }
+    /**
+     * Choose the variant of the potential.
+     *
+     * @param form  the number of the variant
+     */
+    void setForm(int form);
+
+protected:
+    /**
+     * @param type       the name of the class, under which the core knows the potential
+     * @param triangles  the particle indices of the corners, three for each triangle
+     * @param values     the scalars, in the core's order
+     * @param form       the number of the variant
+     */
+    MembraneForce(const std::string& type, const std::vector<int>& triangles,
+                  const std::vector<double>& values, int form = 0);
+    OpenMM::ForceImpl* createImpl() const;
+
+private:
+    struct Parameter {
+        std::string name;
+        double value;
+        std::string contextParameter;
+    };
+    int findParameter(const std::string& name) const;
+    [[noreturn]] void fail(const std::string& message) const;
+
+    std::string type;
+    std::vector<int> triangles;
+    std::vector<Parameter> parameters;
+    std::vector<std::string> derivatives;
+    int form;
+};
+
+} // namespace HelfrichPlugin
+
+#endif /*HELFRICH_MEMBRANE_FORCE_H_*/

@@ -1,0 +1,70 @@
+#ifndef HELFRICH_CORE_H_
+#define HELFRICH_CORE_H_
+
+/**
+ * The C functions of the Rust core (src/ffi.rs; the two change together). A function that returns int
+ * returns 0 for success; otherwise check() turns the core's message into an OpenMMException.
+ */
+
+#include <openmm/OpenMMException.h>
+
+#include <cstdint>
+#include <string>
+
+extern "C" {
+
+struct HelfrichMembrane;
+
+/** The scalars a potential can have at most. */
+#define HELFRICH_MAX_PARAMETERS 4
+
+struct HelfrichParameterInfo {
+    const char* name;
+    /** The unit is (kJ/mol)^energy nm^length. */
+    int energy, length;
+    /** NaN if there is none. */
+    double defaultValue;
+};
+
+struct HelfrichTerm {
+    int potential, form;
+    double values[HELFRICH_MAX_PARAMETERS];
+};
+
+struct HelfrichContribution {
+    double energy;
+    double byParameter[HELFRICH_MAX_PARAMETERS];
+};
+
+int64_t Helfrich_lastError(char* buffer, int64_t size);
+const char* Helfrich_openmmVersion();
+int Helfrich_Potential_find(const char* potential, int* index);
+int Helfrich_Potential_parameter(const char* potential, int index, HelfrichParameterInfo* info);
+int Helfrich_Potential_form(const char* potential, int index, const char** what, const char** name);
+int Helfrich_Potential_check(const char* potential, int index, double value);
+int Helfrich_Membrane_create(const char* subject, const int* triangles, int64_t numTriangles,
+                             int64_t numParticles, HelfrichMembrane** membrane);
+void Helfrich_Membrane_destroy(HelfrichMembrane* membrane);
+int64_t Helfrich_Membrane_numEdges(const HelfrichMembrane* membrane);
+void Helfrich_Membrane_edges(const HelfrichMembrane* membrane, int* particles);
+int Helfrich_Membrane_evaluate(const char* subject, HelfrichMembrane* membrane, const HelfrichTerm* terms,
+                               int64_t numTerms, int64_t numParticles, const double* positions,
+                               HelfrichContribution* contributions, double* forces);
+void* Helfrich_createImpl(const void* force);
+}
+
+namespace HelfrichPlugin {
+
+/** Throw the core's message if a function of the core has failed. */
+inline void check(int status) {
+    if (status == 0)
+        return;
+    std::string message(Helfrich_lastError(nullptr, 0) + 1, '\0');
+    Helfrich_lastError(&message[0], (int64_t) message.size());
+    message.pop_back();
+    throw OpenMM::OpenMMException(message);
+}
+
+} // namespace HelfrichPlugin
+
+#endif /*HELFRICH_CORE_H_*/

@@ -1,0 +1,116 @@
+#include "MembraneForceImpl.h"
+
+#include <openmm/System.h>
+#include <openmm/reference/ReferencePlatform.h>
+
+#include <algorithm>
+
+using namespace HelfrichPlugin;
+using namespace OpenMM;
+using std::map;
+using std::string;
+using std::vector;
+
+MembraneForceImpl::MembraneForceImpl(const MembraneForce& owner)
+    : CustomCPPForceImpl(owner), owner(owner), term(), inPlace(false), initialGroup(owner.getForceGroup()) {
+    // OpenMM asks for the default parameters before it initialises the force.
+    for (int i = 0; i < owner.getNumParameters(); i++)
+        contextParameters.push_back(owner.getContextParameter(owner.getParameterName(i)));
+    for (int i = 0; i < owner.getNumEnergyParameterDerivatives(); i++)
+        derivatives.push_back(owner.getEnergyParameterDerivativeName(i));
+}
+
+MembraneForceImpl::~MembraneForceImpl() {
+    if (membrane != nullptr)
+        membrane->leave(this);
+}
+
+void MembraneForceImpl::initialize(ContextImpl& context) {
+    inPlace = dynamic_cast<const ReferencePlatform*>(&context.getPlatform()) != nullptr;
+    if (!inPlace && !derivatives.empty())
+        throw OpenMMException(owner.getTypeName() + ": energy parameter derivatives need the Reference or CPU "
+                                                    "platform, not " +
+                              context.getPlatform().getName());
+    check(Helfrich_Potential_find(owner.getTypeName().c_str(), &term.potential));
+    term.form = owner.getForm();
+    for (int i = 0; i < owner.getNumParameters(); i++)
+        term.values[i] = owner.getParameterValue(owner.getParameterName(i));
+    membrane = SharedMembrane::acquire(owner.getTypeName(), context, owner.getTriangles());
+    membrane->join(this);
+    if (!inPlace)
+        CustomCPPForceImpl::initialize(context);
+}
+
+vector<string> MembraneForceImpl::getKernelNames() {
+    // On Reference and CPU the kernel is not used, but both have it.
+    return CustomCPPForceImpl::getKernelNames();
+}
+
+bool MembraneForceImpl::isInGroups(int groups) const {
+    int group = inPlace ? owner.getForceGroup() : initialGroup;
+    return (groups & (1 << group)) != 0;
+}
+
+double MembraneForceImpl::calcForcesAndEnergy(ContextImpl& context, bool includeForces, bool includeEnergy,
+                                              int groups) {
+    if (!inPlace)
+        return CustomCPPForceImpl::calcForcesAndEnergy(context, includeForces, includeEnergy, groups);
+    if (!membrane->isLeader(*this, groups))
+        return 0;
+    auto* data = static_cast<ReferencePlatform::PlatformData*>(context.getPlatformData());
+    double energy =
+        membrane->evaluate(owner.getTypeName(), context, groups, *data->positions,
+                           includeForces ? data->forces : nullptr,
+                           includeEnergy ? data->energyParameterDerivatives : nullptr);
+    return includeEnergy ? energy : 0;
+}
+
+double MembraneForceImpl::computeForce(ContextImpl& context, const vector<Vec3>& positions, vector<Vec3>& forces) {
+    std::fill(forces.begin(), forces.end(), Vec3());
+    // OpenMM notes the groups before it starts any force.
+    int groups = context.getLastForceGroups();
+    if (!membrane->isLeader(*this, groups))
+        return 0;
+    return membrane->evaluate(owner.getTypeName(), context, groups, positions, &forces, nullptr);
+}
+
+map<string, double> MembraneForceImpl::getDefaultParameters() {
+    map<string, double> defaults;
+    for (int i = 0; i < owner.getNumParameters(); i++) {
+        if (contextParameters[i].empty())
+            continue;
+        double value = owner.getParameterValue(owner.getParameterName(i));
+        auto [entry, isNew] = defaults.emplace(contextParameters[i], value);
+        if (!isNew && entry->second != value)
+            throw OpenMMException(owner.getTypeName() + ": two scalars with different values share the Context "
+                                                        "parameter \"" +
+                                  contextParameters[i] + "\"; give them one value");
+    }
+    return defaults;
+}
+
+vector<std::pair<int, int>> MembraneForceImpl::getBondedParticles() const {
+    return membrane->getEdges();
+}
+
+void MembraneForceImpl::updateParametersInContext(ContextImpl& context) {
+    for (int i = 0; i < owner.getNumParameters(); i++)
+        term.values[i] = owner.getParameterValue(owner.getParameterName(i));
+    context.systemChanged();
+}
+
+HelfrichTerm MembraneForceImpl::getTerm(ContextImpl& context) const {
+    HelfrichTerm current = term;
+    for (size_t i = 0; i < contextParameters.size(); i++)
+        if (!contextParameters[i].empty())
+            current.values[i] = context.getParameter(contextParameters[i]);
+    return current;
+}
+
+void MembraneForceImpl::addDerivatives(const HelfrichContribution& contribution,
+                                       map<string, double>& sums) const {
+    for (const string& name : derivatives)
+        for (size_t i = 0; i < contextParameters.size(); i++)
+            if (contextParameters[i] == name)
+                sums[name] += contribution.byParameter[i];
+}

@@ -1,0 +1,56 @@
+#ifndef HELFRICH_MEMBRANE_FORCE_IMPL_H_
+#define HELFRICH_MEMBRANE_FORCE_IMPL_H_
+
+#include "SharedMembrane.h"
+#include "UpdatableImpl.h"
+#include "openmm-helfrich/MembraneForce.h"
+
+#include <openmm/internal/CustomCPPForceImpl.h>
+
+namespace HelfrichPlugin {
+
+/**
+ * The one implementation of all membrane forces.
+ *
+ * On Reference, CPU and what derives from them, it reads and writes OpenMM's arrays in place. On every
+ * other platform OpenMM's support for forces in plain C++ carries positions to the processor and forces
+ * back.
+ */
+class MembraneForceImpl : public OpenMM::CustomCPPForceImpl, public UpdatableImpl {
+public:
+    explicit MembraneForceImpl(const MembraneForce& owner);
+    ~MembraneForceImpl();
+    void initialize(OpenMM::ContextImpl& context);
+    const MembraneForce& getOwner() const {
+        return owner;
+    }
+    double calcForcesAndEnergy(OpenMM::ContextImpl& context, bool includeForces, bool includeEnergy, int groups);
+    double computeForce(OpenMM::ContextImpl& context, const std::vector<OpenMM::Vec3>& positions,
+                        std::vector<OpenMM::Vec3>& forces);
+    std::map<std::string, double> getDefaultParameters();
+    std::vector<std::pair<int, int>> getBondedParticles() const;
+    std::vector<std::string> getKernelNames();
+    void updateParametersInContext(OpenMM::ContextImpl& context);
+    /** Whether the force belongs to one of some groups, given as bits. */
+    bool isInGroups(int groups) const;
+    /** What to compute, with the present values of Context parameters. */
+    HelfrichTerm getTerm(OpenMM::ContextImpl& context) const;
+    /** Add the derivatives that the user asked for. */
+    void addDerivatives(const HelfrichContribution& contribution, std::map<std::string, double>& derivatives) const;
+
+private:
+    const MembraneForce& owner;
+    std::shared_ptr<SharedMembrane> membrane;
+    HelfrichTerm term;
+    /** For each scalar the Context parameter that stands in for it, or an empty text. */
+    std::vector<std::string> contextParameters;
+    std::vector<std::string> derivatives;
+    /** Whether positions and forces are OpenMM's own arrays of doubles. */
+    bool inPlace;
+    /** The group in which OpenMM's GPU platforms have placed the force for good. */
+    int initialGroup;
+};
+
+} // namespace HelfrichPlugin
+
+#endif /*HELFRICH_MEMBRANE_FORCE_IMPL_H_*/

@@ -1,0 +1,49 @@
+#include "MembraneForceImpl.h"
+#include "MembraneForceProxy.h"
+#include "OpenMMHelfrich.h"
+
+#include <openmm/Platform.h>
+
+#include <iostream>
+#include <typeinfo>
+
+using namespace HelfrichPlugin;
+
+namespace {
+
+/** A force with scalars that every potential allows. */
+template <class ForceClass>
+MembraneForce* makeForce() {
+    return new ForceClass({}, 1.0, 1.0);
+}
+
+template <class ForceClass>
+void registerForce(const std::string& name) {
+    OpenMM::SerializationProxy::registerProxy(typeid(ForceClass),
+                                              new MembraneForceProxy(name, makeForce<ForceClass>));
+}
+
+} // namespace
+
+// The core exports these under names that OpenMM's plugin loader and the force classes look for.
+extern "C" {
+
+int helfrich_shim_registerSerialization() {
+    std::string found = OpenMM::Platform::getOpenMMVersion();
+    if (found != HELFRICH_OPENMM_VERSION) {
+        std::cerr << "openmm-helfrich was built against OpenMM " << HELFRICH_OPENMM_VERSION
+                  << " and cannot be used with OpenMM " << found << ". Rebuild it against this version.\n";
+        return 1;
+    }
+    registerForce<SurfaceAreaForce>("SurfaceAreaForce");
+    registerForce<EnclosedVolumeForce>("EnclosedVolumeForce");
+    registerForce<BendingForce>("BendingForce");
+    registerForce<TriangleHeightForce>("TriangleHeightForce");
+    return 0;
+}
+
+void* helfrich_shim_createImpl(const void* force) {
+    OpenMM::ForceImpl* impl = new MembraneForceImpl(*static_cast<const MembraneForce*>(force));
+    return impl;
+}
+}

@@ -1,0 +1,32 @@
+#include "openmm-helfrich/BendingForce.h"
+
+using namespace HelfrichPlugin;
+
+BendingForce::BendingForce(const std::vector<int>& triangles, double rigidity, double spontaneousCurvature,
+                           Scheme scheme)
+    : MembraneForce("BendingForce", triangles, {rigidity, spontaneousCurvature}, scheme) {
+}
+
+double BendingForce::getRigidity() const {
+    return getParameterValue("rigidity");
+}
+
+void BendingForce::setRigidity(double rigidity) {
+    setParameterValue("rigidity", rigidity);
+}
+
+double BendingForce::getSpontaneousCurvature() const {
+    return getParameterValue("spontaneousCurvature");
+}
+
+void BendingForce::setSpontaneousCurvature(double spontaneousCurvature) {
+    setParameterValue("spontaneousCurvature", spontaneousCurvature);
+}
+
+BendingForce::Scheme BendingForce::getScheme() const {
+    return (Scheme) getForm();
+}
+
+void BendingForce::setScheme(Scheme scheme) {
+    setForm(scheme);
+}
