@@ -53,7 +53,7 @@ using namespace HelfrichPlugin;
 
 
 /* `system.getForce(i)` and XML give plain openmm.Force objects; each class tells and casts its own. */
-%define %MEMBRANE_FORCE(CLASS)
+%define MEMBRANE_FORCE(CLASS)
 %extend HelfrichPlugin::CLASS {
     static bool isinstance(OpenMM::Force& force) {
         return dynamic_cast<HelfrichPlugin::CLASS*>(&force) != nullptr;
@@ -70,15 +70,15 @@ using namespace HelfrichPlugin;
 %enddef
 
 %template(_IntVector) std::vector<int>;
+%template(_DoubleVector) std::vector<double>;
 %include "openmm-helfrich/MembraneForce.h"
-%MEMBRANE_FORCE(SurfaceAreaForce)
-%MEMBRANE_FORCE(EnclosedVolumeForce)
-%MEMBRANE_FORCE(BendingForce)
-%MEMBRANE_FORCE(TriangleHeightForce)
+%include "OpenMMHelfrich.h"
+HELFRICH_FORCES(MEMBRANE_FORCE)
 
 %pythoncode %{
 from openmmhelfrich import _arguments
 for _class in MembraneForce.__subclasses__():
     _arguments.accept_units(_class)
 _arguments.accept_arrays(MembraneForce)
+__all__ = ["MembraneForce", *(_class.__name__ for _class in MembraneForce.__subclasses__())]
 %}

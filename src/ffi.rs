@@ -9,7 +9,7 @@
 use crate::error::{Error, Result};
 use crate::membrane::Membrane;
 use crate::mesh::orientation;
-use crate::potentials::{self, Contribution, MAX_PARAMETERS, REGISTRY, Term};
+use crate::potentials::{self, Contribution, Element, MAX_PARAMETERS, REGISTRY, Term};
 use std::cell::RefCell;
 use std::ffi::{CStr, c_char, c_int, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -121,6 +121,8 @@ pub struct ParameterInfo {
     energy: c_int,
     length: c_int,
     default_value: f64,
+    /// 0: only as a scalar; 1: also for each vertex; 2: also for each triangle.
+    per: c_int,
 }
 
 /// Describe the parameter `index` of a potential; fails if there is none.
@@ -141,14 +143,13 @@ pub unsafe extern "C" fn Helfrich_Potential_parameter(
         })?;
         let default_value = parameter.default.unwrap_or(f64::NAN);
         let (energy, length) = (parameter.energy.into(), parameter.length.into());
-        unsafe {
-            info.write(ParameterInfo {
-                name: parameter.name.as_ptr(),
-                energy,
-                length,
-                default_value,
-            })
+        let per = match parameter.per {
+            None => 0,
+            Some(Element::Vertex) => 1,
+            Some(Element::Triangle) => 2,
         };
+        let name = parameter.name.as_ptr();
+        unsafe { info.write(ParameterInfo { name, energy, length, default_value, per }) };
         Ok(())
     })
 }
@@ -181,6 +182,26 @@ pub unsafe extern "C" fn Helfrich_Potential_form(
             name.write(form.as_ptr());
         }
         Ok(())
+    })
+}
+
+/// The name of switch `index` of a potential; fails if there is none.
+///
+/// # Safety
+/// `potential` must end with a NUL; `name` must be writable.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Potential_switch(
+    potential: *const c_char,
+    index: c_int,
+    name: *mut *const c_char,
+) -> c_int {
+    let subject = unsafe { text(potential) };
+    guarded(subject, || match potentials::find(subject)?.switches().get(index as usize) {
+        Some(switch) => {
+            unsafe { name.write(switch.as_ptr()) };
+            Ok(())
+        }
+        None => Err(Error::Contract(format!("there is no switch {index}"))),
     })
 }
 
@@ -280,7 +301,42 @@ pub unsafe extern "C" fn Helfrich_Membrane_edges(membrane: *const Membrane, part
 pub struct TermInput {
     potential: c_int,
     form: c_int,
+    switches: u32,
+    wants_derivatives: c_int,
     values: [f64; MAX_PARAMETERS],
+    /// Values of single elements, null where there are none.
+    fields: [*const f64; MAX_PARAMETERS],
+    field_lengths: [i64; MAX_PARAMETERS],
+}
+
+impl TermInput {
+    /// # Safety
+    /// The fields must hold as many values as they say.
+    unsafe fn term(&self) -> Term<'_> {
+        let field = |k: usize| unsafe { slice(self.fields[k], self.field_lengths[k] as usize) };
+        Term {
+            potential: REGISTRY[self.potential as usize],
+            form: self.form as usize,
+            switches: self.switches,
+            values: self.values,
+            fields: std::array::from_fn(field),
+            wants_derivatives: self.wants_derivatives != 0,
+        }
+    }
+}
+
+/// Refuse a term that cannot be evaluated on a membrane.
+///
+/// # Safety
+/// `subject` must end with a NUL; `membrane` must be alive; `term` must be readable with its fields.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Membrane_checkTerm(
+    subject: *const c_char,
+    membrane: *const Membrane,
+    term: *const TermInput,
+) -> c_int {
+    let subject = unsafe { text(subject) };
+    guarded(subject, || unsafe { &*membrane }.check(&unsafe { (*term).term() }))
 }
 
 /// Evaluate terms together. `forces` may be null; otherwise forces are added to it.
@@ -306,13 +362,9 @@ pub unsafe extern "C" fn Helfrich_Membrane_evaluate(
         let positions = unsafe { slice(positions, length) };
         let forces =
             (!forces.is_null()).then(|| unsafe { slice::from_raw_parts_mut(forces, length) });
-        let term = |input: &TermInput| Term {
-            potential: REGISTRY[input.potential as usize],
-            form: input.form as usize,
-            values: input.values,
-        };
         // The usual handful of terms costs no allocation.
-        let terms: smallvec::SmallVec<[Term; 8]> = inputs.iter().map(term).collect();
+        let terms: smallvec::SmallVec<[Term; 8]> =
+            inputs.iter().map(|input| unsafe { input.term() }).collect();
         unsafe { &mut *membrane }.evaluate(&terms, positions, contributions, forces)
     })
 }
@@ -359,7 +411,15 @@ mod tests {
     fn provoke_panic() -> c_int {
         let triangles = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]];
         let mut membrane = std::ptr::null_mut();
-        let term = TermInput { potential: 99, form: 0, values: [1.0; MAX_PARAMETERS] };
+        let term = TermInput {
+            potential: 99,
+            form: 0,
+            switches: 0,
+            wants_derivatives: 0,
+            values: [1.0; MAX_PARAMETERS],
+            fields: [std::ptr::null(); MAX_PARAMETERS],
+            field_lengths: [0; MAX_PARAMETERS],
+        };
         let mut contribution = Contribution::default();
         unsafe {
             let made = Helfrich_Membrane_create(

@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::evaluator::CpuEvaluator;
 use crate::mesh::Topology;
-use crate::potentials::{Contribution, Term};
+use crate::potentials::{Contribution, Element, Term};
 use std::sync::Arc;
 
 /// A mesh with the buffers to evaluate any terms on it.
@@ -51,8 +51,33 @@ impl Membrane {
             )));
         }
         for term in terms {
-            term.check()?;
+            self.check(term)?;
         }
         self.evaluator.evaluate(terms.iter(), positions, contributions, forces)
+    }
+
+    /// Refuse a term with values outside their domains, or with more or fewer values for single
+    /// elements than there are elements.
+    ///
+    /// # Errors
+    /// Names the parameter.
+    pub fn check(&self, term: &Term) -> Result<()> {
+        term.check()?;
+        for (parameter, field) in term.potential.parameters().iter().zip(term.fields) {
+            let (count, elements) = match parameter.per {
+                _ if field.is_empty() => continue,
+                Some(Element::Vertex) => (self.topology.num_vertices(), "vertices"),
+                Some(Element::Triangle) => (self.topology.triangles.len(), "triangles"),
+                None => (0, "elements that can have their own"),
+            };
+            if field.len() != count {
+                let name = parameter.name.to_string_lossy();
+                return Err(Error::Contract(format!(
+                    "{name} has {} values, but the mesh has {count} {elements}; give one for each",
+                    field.len()
+                )));
+            }
+        }
+        Ok(())
     }
 }

@@ -21,26 +21,11 @@ _plugin.load()
 
 from . import analysis  # noqa: E402
 from .errors import MeshError  # noqa: E402
-from .forces import (  # noqa: E402
-    BendingForce,
-    EnclosedVolumeForce,
-    MembraneForce,
-    SurfaceAreaForce,
-    TriangleHeightForce,
-)
+from .forces import *  # noqa: E402, F403
+from .forces import __all__ as _force_names  # noqa: E402
 from .mesh import Mesh  # noqa: E402
 from .vesicle import Vesicle  # noqa: E402
 
 __version__ = _plugin.version()
 
-__all__ = [
-    "BendingForce",
-    "EnclosedVolumeForce",
-    "MembraneForce",
-    "Mesh",
-    "MeshError",
-    "SurfaceAreaForce",
-    "TriangleHeightForce",
-    "Vesicle",
-    "analysis",
-]
+__all__ = ["Mesh", "MeshError", "Vesicle", "analysis", *_force_names]

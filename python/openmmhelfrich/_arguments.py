@@ -30,6 +30,8 @@ class Scalar(NamedTuple):
     unit: unit.Unit
     #: The default, or ``inspect.Parameter.empty``.
     default: object
+    #: The setter for values of single elements, None if there is only the scalar.
+    element_setter: str | None
 
 
 class _ParameterInfo(ctypes.Structure):
@@ -38,7 +40,12 @@ class _ParameterInfo(ctypes.Structure):
         ("energy", ctypes.c_int),
         ("length", ctypes.c_int),
         ("default", ctypes.c_double),
+        ("per", ctypes.c_int),
     ]
+
+
+#: How the setters for values of single vertices and triangles are called, by the core's code.
+_ELEMENT_SETTERS = {0: None, 1: "setVertex{}", 2: "setTriangle{}s"}
 
 
 def scalars_of(force: str) -> list[Scalar]:
@@ -55,8 +62,15 @@ def scalars_of(force: str) -> list[Scalar]:
     while core.Helfrich_Potential_parameter(force.encode(), len(found), ctypes.byref(info)) == 0:
         dimension = unit.kilojoule_per_mole**info.energy * unit.nanometer**info.length
         default = inspect.Parameter.empty if math.isnan(info.default) else info.default
-        found.append(Scalar(info.name.decode(), dimension, default))
+        name = info.name.decode()
+        setter = _ELEMENT_SETTERS[info.per]
+        setter = setter and setter.format(_capitalised(name))
+        found.append(Scalar(name, dimension, default, setter))
     return found
+
+
+def _capitalised(name: str) -> str:
+    return name[0].upper() + name[1:]
 
 
 def form_name(force: str) -> str | None:
@@ -66,6 +80,45 @@ def form_name(force: str) -> str | None:
         force.encode(), 0, ctypes.byref(what), ctypes.byref(name)
     )
     return what.value.decode() if status == 0 else None
+
+
+def _plain(where: str, parameter: Scalar, value):
+    """`value` without its unit, which must be that of the parameter."""
+    if not unit.is_quantity(value):
+        return value
+    if not value.unit.is_compatible(parameter.unit):
+        wanted = parameter.unit.get_symbol()
+        raise TypeError(f"{where} must be in units of {wanted}, got {value}")
+    return value.value_in_unit(parameter.unit)
+
+
+def element_values(force: str, parameter: Scalar, values) -> list[float]:
+    """Plain numbers, one for each vertex or triangle.
+
+    Parameters
+    ----------
+    force : str
+        The name of the class, for messages.
+    parameter : Scalar
+        What the numbers are.
+    values : array_like of float, or Quantity
+        In OpenMM's units if they are plain.
+
+    Raises
+    ------
+    TypeError
+        If the values are not numbers, or a Quantity with another dimension.
+    ValueError
+        If they are not one list.
+    """
+    where = f"{force}: {parameter.name}"
+    try:
+        array = np.asarray(_plain(where, parameter, values), dtype=np.float64)
+    except (TypeError, ValueError):
+        raise TypeError(f"{where} must be a list of numbers, got {values!r}") from None
+    if array.ndim != 1:
+        raise ValueError(f"{where} must be one list of numbers, got the shape {array.shape}")
+    return array.tolist()
 
 
 def scalar(force: str, parameter: Scalar, value) -> float:
@@ -86,11 +139,7 @@ def scalar(force: str, parameter: Scalar, value) -> float:
         If the value is not one number, or a Quantity with another dimension.
     """
     where = f"{force}: {parameter.name}"
-    if unit.is_quantity(value):
-        if not value.unit.is_compatible(parameter.unit):
-            wanted = parameter.unit.get_symbol()
-            raise TypeError(f"{where} must be in units of {wanted}, got {value}")
-        value = value.value_in_unit(parameter.unit)
+    value = _plain(where, parameter, value)
     if isinstance(value, (bool, str, bytes)):
         raise TypeError(f"{where} must be a number, got {value!r}")
     try:
@@ -172,10 +221,19 @@ def accept_units(force: type) -> None:
         bound.apply_defaults()
         arguments = bound.arguments
         corners = triangles(name, arguments["triangles"], arguments["offset"])
-        values = [scalar(name, s, arguments[s.name]) for s in known]
+        values, elements = [], {}
+        for s in known:
+            given = arguments[s.name]
+            if s.element_setter is not None and np.ndim(_plain(name, s, given)) > 0:
+                elements[s.name] = element_values(name, s, given)
+                # The scalar is not used then, but must be a possible value.
+                given = float(np.mean(elements[s.name])) if elements[s.name] else np.nan
+            values.append(scalar(name, s, given))
         if form is not None:
             values.append(arguments[form])
         swig_init(self, [], *values)
+        for key, list_ in elements.items():
+            self.setElementValues(key, list_)
         self._addTriangleBuffer(corners.data)
 
     init.__signature__ = signature.replace(
@@ -187,14 +245,25 @@ def accept_units(force: type) -> None:
 
 
 def _accept_unit_in_setter(force: type, parameter: Scalar) -> None:
-    method = "set" + parameter.name[0].upper() + parameter.name[1:]
+    """Let the setters of a scalar, and of its values for elements, take Quantities and arrays."""
+    name = force.__name__
+    method = "set" + _capitalised(parameter.name)
     swig_setter = getattr(force, method)
 
     @functools.wraps(swig_setter)
     def setter(self, value):
-        swig_setter(self, scalar(force.__name__, parameter, value))
+        swig_setter(self, scalar(name, parameter, value))
 
     setattr(force, method, setter)
+    if parameter.element_setter is None:
+        return
+    swig_element_setter = getattr(force, parameter.element_setter)
+
+    @functools.wraps(swig_element_setter)
+    def element_setter(self, values):
+        swig_element_setter(self, element_values(name, parameter, values))
+
+    setattr(force, parameter.element_setter, element_setter)
 
 
 def accept_arrays(force: type) -> None:

@@ -214,7 +214,7 @@ class Mesh:
 
     @property
     def reduced_volume(self) -> float:
-        """v = 6 √π V / A^{3/2}, of the total area and volume; 1 for a perfect sphere."""
+        """Volume over that of the sphere of equal total area, v = 6 √π V / A^{3/2}; at most 1."""
         return geometry.reduced_volume(self.area, self.volume)
 
     @property

@@ -1,13 +1,14 @@
 //! The double-precision evaluator on the processor.
 
-use super::passes::{Nothing, fill};
+use super::passes::{Nothing, fill, fill_pair};
 use crate::error::{Error, Result};
 use crate::mesh::Topology;
 use crate::mesh::geometry::{
-    EdgeGeometry, EdgeTension, TotalPartials, Totals, TriangleGeometry, TrianglePartials, Vec3,
-    VertexGeometry, VertexPartials, corner_forces,
+    EdgeGeometry, EdgePartials, EdgeTension, TotalPartials, Totals, TriangleGeometry,
+    TrianglePartials, Vec3, VertexGeometry, VertexPartials, corner_forces,
 };
-use crate::potentials::{Contribution, Stages, Term};
+use crate::mesh::vertex_vectors::{VertexVectors, add_corner, corner_stress};
+use crate::potentials::{Contribution, Needs, Term, VertexSlopes, Vertices};
 use std::ops::AddAssign;
 use std::sync::Arc;
 
@@ -26,8 +27,12 @@ pub struct CpuEvaluator {
     triangles: Vec<TriangleGeometry>,
     edges: Vec<EdgeGeometry>,
     vertices: Vec<VertexGeometry>,
+    /// Empty until a term needs them, as are their partials.
+    vectors: Vec<VertexVectors>,
     triangle_partials: Vec<TrianglePartials>,
+    edge_partials: Vec<EdgePartials>,
     vertex_partials: Vec<VertexPartials>,
+    vector_partials: Vec<VertexVectors>,
     tensions: Vec<EdgeTension>,
     corner_forces: Vec<[Vec3; 3]>,
     forces: Vec<Vec3>,
@@ -65,8 +70,11 @@ impl CpuEvaluator {
             triangles: vec![geometry; t],
             edges: vec![EdgeGeometry::default(); topology.edges.len()],
             vertices: vec![VertexGeometry::default(); v],
+            vectors: Vec::new(),
             triangle_partials: vec![TrianglePartials::default(); t],
+            edge_partials: vec![EdgePartials::default(); topology.edges.len()],
             vertex_partials: vec![VertexPartials::default(); v],
+            vector_partials: Vec::new(),
             tensions: vec![EdgeTension::default(); topology.edges.len()],
             corner_forces: vec![[Vec3::zeros(); 3]; t],
             forces: vec![Vec3::zeros(); v],
@@ -84,29 +92,34 @@ impl CpuEvaluator {
     /// Nothing has been added to the forces then.
     pub fn evaluate<'a>(
         &mut self,
-        terms: impl Iterator<Item = &'a Term> + Clone,
+        terms: impl Iterator<Item = &'a Term<'a>> + Clone,
         positions: &[f64],
         contributions: &mut [Contribution],
         forces: Option<&mut [f64]>,
     ) -> Result<()> {
-        let stages =
-            terms.clone().fold(Stages::empty(), |all, term| all | term.potential.stages(term.form));
+        let needs =
+            terms.clone().fold(Needs::empty(), |all, term| all | term.potential.needs(term));
         self.gather_positions(positions);
         let totals = self.forward_triangles().ok_or_else(|| self.culprit(positions))?;
-        if stages.contains(Stages::VERTICES) {
+        if needs.intersects(Needs::EDGES | Needs::CURVATURES) {
             self.forward_edges();
-            self.forward_vertices();
         }
-        let total_partials = self.potentials(terms, stages, &totals, contributions);
+        if needs.contains(Needs::VERTICES) {
+            self.forward_vertices(needs);
+        }
+        if needs.contains(Needs::VECTORS) {
+            self.forward_vectors(needs);
+        }
+        let total_partials = self.potentials(terms, needs, &totals, contributions);
         let energy = contributions.iter().map(|part| part.energy).sum::<f64>();
         if !energy.is_finite() {
             return Err(Error::NonFiniteEnergy { energy });
         }
         if let Some(forces) = forces {
-            if stages.contains(Stages::VERTICES) {
-                self.backward_edges();
+            if needs.intersects(Needs::EDGES | Needs::CURVATURES) {
+                self.backward_edges(needs);
             }
-            self.backward_triangles(stages, &total_partials);
+            self.backward_triangles(needs, &total_partials);
             self.add_forces(forces);
         }
         Ok(())
@@ -171,7 +184,7 @@ impl CpuEvaluator {
         });
     }
 
-    fn forward_vertices(&mut self) {
+    fn forward_vertices(&mut self, needs: Needs) {
         let (triangles, edges, topology) = (&self.triangles, &self.edges, &self.topology);
         fill(self.parallel, &mut self.vertices, |first, chunk| {
             for (offset, slot) in chunk.iter_mut().enumerate() {
@@ -181,97 +194,164 @@ impl CpuEvaluator {
                     twice_area += triangles[corner as usize / 3].twice_area;
                 }
                 let mut twice_curvature = 0.0;
-                for &edge in &topology.vertex_edges[ring] {
-                    let edge = &edges[edge as usize];
-                    twice_curvature += edge.length_squared * edge.bend;
+                if needs.contains(Needs::CURVATURES) {
+                    for &edge in &topology.vertex_edges[ring] {
+                        let edge = &edges[edge as usize];
+                        twice_curvature += edge.length_squared * edge.bend;
+                    }
                 }
-                *slot = VertexGeometry { area: twice_area / 6.0, curvature: 0.5 * twice_curvature };
+                *slot = VertexGeometry {
+                    area: twice_area / 6.0,
+                    voronoi_area: 0.0,
+                    curvature: 0.5 * twice_curvature,
+                };
             }
             Nothing
         });
+    }
+
+    /// Voronoi areas and vectors of the vertices, after their other geometry.
+    fn forward_vectors(&mut self, needs: Needs) {
+        self.vectors.resize(self.vertices.len(), VertexVectors::default());
+        self.vector_partials.resize(self.vertices.len(), VertexVectors::default());
+        let (positions, triangles) = (&self.positions, &self.triangles);
+        let topology = &self.topology;
+        let normals = needs.contains(Needs::NORMALS);
+        fill_pair(
+            self.parallel,
+            &mut self.vertices,
+            &mut self.vectors,
+            |first, scalars, vectors| {
+                for (offset, (vertex, vectors)) in scalars.iter_mut().zip(vectors).enumerate() {
+                    *vectors = VertexVectors::default();
+                    for &corner in &topology.corners[topology.ring(first + offset)] {
+                        let (triangle, k) = (corner as usize / 3, corner as usize % 3);
+                        let corners = topology.triangles[triangle];
+                        let around = [k, (k + 1) % 3, (k + 2) % 3];
+                        let points = around.map(|k| &positions[corners[k] as usize]);
+                        add_corner(vertex, vectors, points, &triangles[triangle], k, normals);
+                    }
+                }
+                Nothing
+            },
+        );
     }
 
     /// Let every term add its energy and its partial derivatives.
     fn potentials<'a>(
         &mut self,
-        terms: impl Iterator<Item = &'a Term>,
-        stages: Stages,
+        terms: impl Iterator<Item = &'a Term<'a>>,
+        needs: Needs,
         totals: &Totals,
         contributions: &mut [Contribution],
     ) -> TotalPartials {
         let mut total_partials = TotalPartials::default();
-        if stages.contains(Stages::TRIANGLES) {
+        if needs.contains(Needs::TRIANGLES) {
             self.triangle_partials.fill(TrianglePartials::default());
         }
-        if stages.contains(Stages::VERTICES) {
+        if needs.contains(Needs::EDGES) {
+            self.edge_partials.fill(EdgePartials::default());
+        }
+        if needs.contains(Needs::VERTICES) {
             self.vertex_partials.fill(VertexPartials::default());
         }
+        if needs.contains(Needs::VECTORS) {
+            self.vector_partials.fill(VertexVectors::default());
+        }
         for (term, contribution) in terms.zip(contributions) {
-            let (potential, stages) = (term.potential, term.potential.stages(term.form));
+            let (potential, needs) = (term.potential, term.potential.needs(term));
             *contribution = Contribution::default();
-            if stages.contains(Stages::TOTALS) {
+            if needs.contains(Needs::TOTALS) {
                 *contribution += potential.totals(term, totals, &mut total_partials);
             }
-            if stages.contains(Stages::TRIANGLES) {
+            if needs.contains(Needs::TRIANGLES) {
                 let triangles = &self.triangles;
                 *contribution +=
                     fill(self.parallel, &mut self.triangle_partials, |first, chunk| {
-                        potential.triangles(term, &triangles[first..][..chunk.len()], chunk)
+                        potential.triangles(term, first, &triangles[first..][..chunk.len()], chunk)
                     });
             }
-            if stages.contains(Stages::VERTICES) {
-                let vertices = &self.vertices;
-                *contribution += fill(self.parallel, &mut self.vertex_partials, |first, chunk| {
-                    potential.vertices(term, &vertices[first..][..chunk.len()], chunk)
+            if needs.contains(Needs::EDGES) {
+                let edges = &self.edges;
+                *contribution += fill(self.parallel, &mut self.edge_partials, |first, chunk| {
+                    potential.edges(term, &edges[first..][..chunk.len()], chunk)
                 });
+            }
+            if needs.contains(Needs::VERTICES) {
+                *contribution += self.potential_of_vertices(term, needs);
             }
         }
         total_partials
     }
 
-    fn backward_edges(&mut self) {
-        let (edges, partials, topology) = (&self.edges, &self.vertex_partials, &self.topology);
+    fn potential_of_vertices(&mut self, term: &Term, needs: Needs) -> Contribution {
+        let (vertices, all_vectors) = (&self.vertices, &self.vectors);
+        let wants_vectors = needs.contains(Needs::VECTORS);
+        let beside: &mut [_] = if wants_vectors { &mut self.vector_partials } else { &mut [] };
+        fill_pair(self.parallel, &mut self.vertex_partials, beside, |first, scalars, vectors| {
+            let run = first..first + scalars.len();
+            let known: &[_] = if wants_vectors { &all_vectors[run.clone()] } else { &[] };
+            let total = vertices.len();
+            let vertices = Vertices { first, total, scalars: &vertices[run], vectors: known };
+            term.potential.vertices(term, vertices, VertexSlopes { scalars, vectors })
+        })
+    }
+
+    fn backward_edges(&mut self, needs: Needs) {
+        let (edges, topology) = (&self.edges, &self.topology);
+        let (vertex_partials, edge_partials) = (&self.vertex_partials, &self.edge_partials);
         fill(self.parallel, &mut self.tensions, |first, chunk| {
-            let here = edges[first..].iter().zip(&topology.edges[first..]);
-            for (slot, (geometry, edge)) in chunk.iter_mut().zip(here) {
-                let [start, end] = edge.vertices.map(|v| &partials[v as usize]);
-                *slot = EdgeTension::from_curvature(geometry, start, end);
+            for (offset, slot) in chunk.iter_mut().enumerate() {
+                let (geometry, edge) = (&edges[first + offset], &topology.edges[first + offset]);
+                *slot = EdgeTension::default();
+                if needs.contains(Needs::CURVATURES) {
+                    let [start, end] = edge.vertices.map(|v| &vertex_partials[v as usize]);
+                    *slot = EdgeTension::from_curvature(geometry, start, end);
+                }
+                if needs.contains(Needs::EDGES) {
+                    slot.add_angle(geometry, &edge_partials[first + offset]);
+                }
             }
             Nothing
         });
     }
 
-    fn backward_triangles(&mut self, stages: Stages, totals: &TotalPartials) {
+    fn backward_triangles(&mut self, needs: Needs, totals: &TotalPartials) {
         let topology = &self.topology;
         let (positions, triangles) = (&self.positions, &self.triangles);
         let (tensions, triangle_partials) = (&self.tensions, &self.triangle_partials);
-        let vertex_partials = &self.vertex_partials;
-        let by_vertices = stages.contains(Stages::VERTICES);
-        let by_triangles = stages.contains(Stages::TRIANGLES);
+        let (vertex_partials, vector_partials) = (&self.vertex_partials, &self.vector_partials);
+        let by_edges = needs.intersects(Needs::EDGES | Needs::CURVATURES);
         fill(self.parallel, &mut self.corner_forces, |first, chunk| {
             for (offset, slot) in chunk.iter_mut().enumerate() {
                 let triangle = first + offset;
-                let corners = topology.triangles[triangle];
+                let geometry = &triangles[triangle];
+                let vertices = topology.triangles[triangle].map(|v| v as usize);
+                let corners = vertices.map(|v| &positions[v]);
                 let mut area = totals.area;
                 let mut lengths = [0.0; 3];
                 let mut edges = [EdgeTension::default(); 3];
-                if by_triangles {
+                if needs.contains(Needs::TRIANGLES) {
                     area += triangle_partials[triangle].area;
                     lengths = triangle_partials[triangle].length_squared;
                 }
-                if by_vertices {
-                    let [a, b, c] = corners.map(|v| vertex_partials[v as usize].area);
+                if needs.contains(Needs::VERTICES) {
+                    let [a, b, c] = vertices.map(|v| vertex_partials[v].area);
                     area += (a + b + c) / 3.0;
+                }
+                if by_edges {
                     edges = topology.triangle_edges[triangle].map(|edge| tensions[edge as usize]);
                 }
-                *slot = corner_forces(
-                    corners.map(|v| &positions[v as usize]),
-                    &triangles[triangle],
-                    area,
-                    &lengths,
-                    edges,
-                    totals.volume,
-                );
+                *slot = corner_forces(corners, geometry, area, &lengths, edges, totals.volume);
+                if needs.contains(Needs::VECTORS) {
+                    let voronoi = vertices.map(|v| vertex_partials[v].voronoi_area);
+                    let partials = vertices.map(|v| &vector_partials[v]);
+                    let normals = needs.contains(Needs::NORMALS);
+                    let stress = corner_stress(corners, geometry, voronoi, partials, normals);
+                    for (sum, force) in slot.iter_mut().zip(stress.applied(corners, geometry)) {
+                        *sum += force;
+                    }
+                }
             }
             Nothing
         });

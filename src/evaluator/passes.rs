@@ -29,6 +29,33 @@ where
     sum
 }
 
+/// [`fill`] for two arrays side by side, of which the second may be empty instead.
+pub fn fill_pair<T, U, R, F>(parallel: bool, out: &mut [T], beside: &mut [U], body: F) -> R
+where
+    T: Send,
+    U: Send,
+    R: AddAssign + Default + Send,
+    F: Fn(usize, &mut [T], &mut [U]) -> R + Sync,
+{
+    if beside.is_empty() {
+        return fill(parallel, out, |first, chunk| body(first, chunk, &mut []));
+    }
+    debug_assert_eq!(out.len(), beside.len());
+    let mut sum = R::default();
+    if parallel {
+        let chunks = out.par_chunks_mut(CHUNK).zip(beside.par_chunks_mut(CHUNK)).enumerate();
+        let parts: Vec<R> = chunks.map(|(k, (one, two))| body(k * CHUNK, one, two)).collect();
+        for part in parts {
+            sum += part;
+        }
+    } else {
+        for (k, (one, two)) in out.chunks_mut(CHUNK).zip(beside.chunks_mut(CHUNK)).enumerate() {
+            sum += body(k * CHUNK, one, two);
+        }
+    }
+    sum
+}
+
 /// For a pass that has nothing to sum.
 #[derive(Default)]
 pub struct Nothing;

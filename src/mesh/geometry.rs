@@ -119,6 +119,8 @@ impl EdgeGeometry {
 pub struct VertexGeometry {
     /// Barycentric area a_B, a third of the areas of its triangles, nm² (B12).
     pub area: f64,
+    /// Voronoi's area a_V = Σ_j l² (cot θ₁ + cot θ₂) / 8, nm² (B8); it can be zero or negative.
+    pub voronoi_area: f64,
     /// Jülicher's integrated curvature J = Σ l φ / 2 over its edges, nm (B11).
     pub curvature: f64,
 }
@@ -146,6 +148,8 @@ pub struct TotalPartials {
 pub struct VertexPartials {
     /// ∂E/∂a_B, kJ/mol/nm².
     pub area: f64,
+    /// ∂E/∂a_V, kJ/mol/nm².
+    pub voronoi_area: f64,
     /// ∂E/∂J, kJ/mol/nm.
     pub curvature: f64,
 }
@@ -157,6 +161,13 @@ pub struct TrianglePartials {
     pub area: f64,
     /// ∂E/∂l² of each side at fixed area, kJ/mol/nm².
     pub length_squared: [f64; 3],
+}
+
+/// Derivative of the energy with respect to the dihedral angle of an edge.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct EdgePartials {
+    /// ∂E/∂φ, kJ/mol.
+    pub angle: f64,
 }
 
 /// What an edge passes on to the forces of its two triangles.
@@ -179,6 +190,12 @@ impl EdgeTension {
     ) -> Self {
         let moment = 0.5 * (start.curvature + end.curvature);
         Self { half_tension: 0.5 * moment * edge.bend, moment }
+    }
+
+    /// Add the moment of a potential of the angle itself.
+    #[inline]
+    pub fn add_angle(&mut self, edge: &EdgeGeometry, partials: &EdgePartials) {
+        self.moment += partials.angle / edge.length_squared.sqrt();
     }
 }
 

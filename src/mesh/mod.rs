@@ -3,5 +3,6 @@
 pub mod geometry;
 pub mod orientation;
 pub mod topology;
+pub mod vertex_vectors;
 
 pub use topology::Topology;

@@ -1,6 +1,6 @@
 //! Global volume: E = ½ k_V (V − V₀)² / V₀, equation (2) of doi:10.1103/PhysRevE.108.015301.
 
-use super::{Contribution, Domain, Parameter, Potential, Stages, Term, relative_spring};
+use super::{Contribution, Domain, Needs, Parameter, Potential, Term, relative_spring};
 use crate::mesh::geometry::{TotalPartials, Totals};
 
 /// The membrane resists changes of the volume that it encloses.
@@ -20,8 +20,8 @@ impl Potential for EnclosedVolume {
         }
     }
 
-    fn stages(&self, _: usize) -> Stages {
-        Stages::TOTALS
+    fn needs(&self, _: &Term) -> Needs {
+        Needs::TOTALS
     }
 
     fn totals(

@@ -1,43 +1,71 @@
 //! Potentials: energies of geometric quantities, and their partial derivatives.
 //!
 //! A potential states its energy and its derivatives with respect to geometry and never touches a
-//! coordinate; the chain rule from there to forces is in [`crate::mesh::geometry`]. Each potential is
-//! one file here, and one line in [`REGISTRY`].
+//! coordinate; the chain rule from there to forces is in [`crate::mesh`]. Each potential is one file
+//! here, and one line in [`REGISTRY`].
 
 mod bending;
+mod dihedral;
 mod enclosed_volume;
+mod plaquette_area;
 mod surface_area;
+mod triangle_area;
+mod triangle_area_repulsion;
 mod triangle_height;
 
 use crate::error::{Error, Result};
 use crate::mesh::geometry::{
-    TotalPartials, Totals, TriangleGeometry, TrianglePartials, VertexGeometry, VertexPartials,
+    EdgeGeometry, EdgePartials, TotalPartials, Totals, TriangleGeometry, TrianglePartials,
+    VertexGeometry, VertexPartials,
 };
+use crate::mesh::vertex_vectors::VertexVectors;
 use bitflags::bitflags;
 use std::ffi::CStr;
 
 /// All potentials, by the names of their OpenMM classes.
-pub static REGISTRY: [&dyn Potential; 4] = [
+pub static REGISTRY: [&dyn Potential; 8] = [
     &surface_area::SurfaceArea,
     &enclosed_volume::EnclosedVolume,
     &bending::Bending,
     &triangle_height::TriangleHeight,
+    &dihedral::Dihedral,
+    &triangle_area::TriangleArea,
+    &plaquette_area::PlaquetteArea,
+    &triangle_area_repulsion::TriangleAreaRepulsion,
 ];
 
 /// The most scalars that a potential can have.
 pub const MAX_PARAMETERS: usize = 4;
 
 bitflags! {
-    /// On which elements of the mesh a potential adds energy.
+    /// On which elements of the mesh a potential adds energy, and what it wants to know of them
+    /// beyond areas, lengths and volume.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-    pub struct Stages: u8 {
-        /// Total area and volume.
+    pub struct Needs: u8 {
+        /// Adds energy of the total area and volume.
         const TOTALS = 1;
-        /// Each triangle's area and sides.
+        /// Adds energy of each triangle's area and sides.
         const TRIANGLES = 2;
-        /// Each vertex' area and curvature.
-        const VERTICES = 4;
+        /// Adds energy of each edge's dihedral angle.
+        const EDGES = 4;
+        /// Adds energy of each vertex' area and curvature.
+        const VERTICES = 8;
+        /// Wants Jülicher's curvature of the vertices.
+        const CURVATURES = 16;
+        /// Wants the vectors and Voronoi areas of the vertices.
+        const VECTORS = 32;
+        /// Wants the normals of the vertices, too.
+        const NORMALS = 64;
     }
+}
+
+/// What a scalar may be given for one by one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Element {
+    /// A value for each vertex, in ascending order of particle index.
+    Vertex,
+    /// A value for each triangle.
+    Triangle,
 }
 
 /// Which values a scalar may take.
@@ -64,17 +92,24 @@ pub struct Parameter {
     pub domain: Domain,
     /// What it is if the user does not say; `None` if the user must.
     pub default: Option<f64>,
+    /// For what it can be given one by one.
+    pub per: Option<Element>,
 }
 
 impl Parameter {
     /// A scalar that the user must give, with its powers of kJ/mol and nm.
     const fn new(name: &'static CStr, energy: i8, length: i8, domain: Domain) -> Self {
-        Self { name, energy, length, domain, default: None }
+        Self { name, energy, length, domain, default: None, per: None }
     }
 
     /// The same with a default.
     const fn or(self, default: f64) -> Self {
         Self { default: Some(default), ..self }
+    }
+
+    /// The same, but it can be given for each element.
+    const fn per(self, element: Element) -> Self {
+        Self { per: Some(element), ..self }
     }
 
     /// Refuse a value outside the domain, NaN and infinity in any case.
@@ -113,8 +148,29 @@ impl std::ops::AddAssign for Contribution {
 /// The values that a potential is evaluated with.
 pub type Values = [f64; MAX_PARAMETERS];
 
-/// One kind of energy. The methods for elements get a run of them and add to their partial
-/// derivatives; a potential implements those of its [`Stages`].
+/// A run of vertices.
+#[derive(Clone, Copy)]
+pub struct Vertices<'a> {
+    /// The index of the first one in the mesh.
+    pub first: usize,
+    /// How many the mesh has.
+    pub total: usize,
+    /// Areas and curvatures.
+    pub scalars: &'a [VertexGeometry],
+    /// Curvature vectors and normals; empty unless the potential wants them.
+    pub vectors: &'a [VertexVectors],
+}
+
+/// The derivatives of the energy with respect to a run of [`Vertices`], to be added to.
+pub struct VertexSlopes<'a> {
+    /// With respect to the scalars.
+    pub scalars: &'a mut [VertexPartials],
+    /// With respect to the vectors; empty unless the potential wants them.
+    pub vectors: &'a mut [VertexVectors],
+}
+
+/// One kind of energy. The methods for elements get a run of them, `first` being the index of the
+/// first, and add to their partial derivatives; a potential implements those that it [`Needs`].
 pub trait Potential: Sync {
     /// The name of the OpenMM class.
     fn name(&self) -> &'static str;
@@ -127,8 +183,13 @@ pub trait Potential: Sync {
         None
     }
 
-    /// Where energy is added.
-    fn stages(&self, form: usize) -> Stages;
+    /// The names of what can be switched on; all are off by default.
+    fn switches(&self) -> &'static [&'static CStr] {
+        &[]
+    }
+
+    /// Where energy is added, and from what.
+    fn needs(&self, term: &Term) -> Needs;
 
     /// Energy of the total area and volume.
     fn totals(&self, _: &Term, _: &Totals, _: &mut TotalPartials) -> Contribution {
@@ -139,30 +200,43 @@ pub trait Potential: Sync {
     fn triangles(
         &self,
         _: &Term,
+        _first: usize,
         _: &[TriangleGeometry],
         _: &mut [TrianglePartials],
     ) -> Contribution {
         Contribution::default()
     }
 
+    /// Energy of a run of edges.
+    fn edges(&self, _: &Term, _: &[EdgeGeometry], _: &mut [EdgePartials]) -> Contribution {
+        Contribution::default()
+    }
+
     /// Energy of a run of vertices.
-    fn vertices(&self, _: &Term, _: &[VertexGeometry], _: &mut [VertexPartials]) -> Contribution {
+    fn vertices(&self, _: &Term, _: Vertices, _: VertexSlopes) -> Contribution {
         Contribution::default()
     }
 }
 
 /// A potential with its variant and values.
-#[derive(Clone)]
-pub struct Term {
+#[derive(Clone, Copy)]
+pub struct Term<'a> {
     /// From the [`REGISTRY`].
     pub potential: &'static dyn Potential,
     /// Index into the names of [`Potential::forms`]; 0 if there are none.
     pub form: usize,
+    /// One bit for each of [`Potential::switches`].
+    pub switches: u32,
     /// One for each parameter; the rest is unused.
     pub values: Values,
+    /// For each parameter the values of the single elements that replace it; empty if there are none.
+    pub fields: [&'a [f64]; MAX_PARAMETERS],
+    /// Whether the derivatives with respect to the scalars will be read; those that cost extra may be
+    /// wrong otherwise.
+    pub wants_derivatives: bool,
 }
 
-impl Term {
+impl<'a> Term<'a> {
     /// Look up a potential and check its values.
     ///
     /// # Errors
@@ -179,7 +253,9 @@ impl Term {
         }
         let mut padded = Values::default();
         padded[..count].copy_from_slice(values);
-        let term = Self { potential, form, values: padded };
+        let fields = [&[] as &[f64]; MAX_PARAMETERS];
+        let values = padded;
+        let term = Self { potential, form, switches: 0, values, fields, wants_derivatives: false };
         term.check()?;
         Ok(term)
     }
@@ -195,6 +271,23 @@ impl Term {
             .zip(&self.values)
             .try_for_each(|(parameter, value)| parameter.check(*value))
     }
+
+    /// The value of a parameter at an element.
+    #[inline]
+    pub fn value(&self, parameter: usize, element: usize) -> f64 {
+        self.fields[parameter].get(element).copied().unwrap_or(self.values[parameter])
+    }
+
+    /// Whether a parameter is a single value that may change what is computed: zero everywhere.
+    pub fn vanishes(&self, parameter: usize) -> bool {
+        self.fields[parameter].is_empty() && self.values[parameter] == 0.0
+    }
+
+    /// Whether a derivative with respect to this parameter makes sense: a field hides the scalar.
+    #[inline]
+    pub fn is_scalar(&self, parameter: usize) -> bool {
+        self.fields[parameter].is_empty()
+    }
 }
 
 /// The potential of a class name.
@@ -206,6 +299,14 @@ pub fn find(name: &str) -> Result<&'static dyn Potential> {
             known: REGISTRY.map(|potential| potential.name()).join(", "),
         }
     })
+}
+
+/// Energy of the kind of Weeks, Chandler and Andersen, ε (x − ½)² = ε (x² − x + ¼) with x = (d/h)⁴, of
+/// the repulsion below a distance: (x − ½)² and its derivative with respect to x, 0 below x = ½.
+#[inline]
+fn repulsion(x: f64) -> Option<(f64, f64)> {
+    let excess = x - 0.5;
+    (excess > 0.0).then_some((excess * excess, 2.0 * excess))
 }
 
 /// Energy ½ k (x − x₀)² / x₀ of a quantity x around its target, and its derivative with respect to x.
@@ -235,8 +336,7 @@ mod tests {
 
     #[test]
     fn domains_are_kept() {
-        let parameter =
-            |domain| Parameter { name: c"x", energy: 0, length: 1, domain, default: None };
+        let parameter = |domain| Parameter::new(c"x", 0, 1, domain);
         for domain in [Domain::Positive, Domain::NonNegative, Domain::Real] {
             assert!(parameter(domain).check(f64::NAN).is_err());
             assert!(parameter(domain).check(f64::INFINITY).is_err());

@@ -2,7 +2,7 @@
 //! where h < 2^¼ d, else 0: the auxiliary potential of doi:10.1103/PhysRevE.108.015301. It keeps a
 //! fluid mesh from degenerating: no vertex can cross the side opposite it.
 
-use super::{Contribution, Domain, Parameter, Potential, Stages, Term};
+use super::{Contribution, Domain, Needs, Parameter, Potential, Term, repulsion};
 use crate::mesh::geometry::{TriangleGeometry, TrianglePartials};
 
 /// A purely repulsive potential on the heights of triangles, of Weeks, Chandler and Andersen's kind.
@@ -22,14 +22,15 @@ impl Potential for TriangleHeight {
         }
     }
 
-    fn stages(&self, _: usize) -> Stages {
-        Stages::TRIANGLES
+    fn needs(&self, _: &Term) -> Needs {
+        Needs::TRIANGLES
     }
 
     /// With h = 2a/l and x = (d/h)⁴ = (d l / 2a)⁴ the energy of a height is ε (x − ½)², for x > ½.
     fn triangles(
         &self,
         &Term { values: [min_height, epsilon, ..], .. }: &Term,
+        _: usize,
         triangles: &[TriangleGeometry],
         partials: &mut [TrianglePartials],
     ) -> Contribution {
@@ -46,13 +47,10 @@ impl Potential for TriangleHeight {
             }
             for (side, length_squared) in sides.into_iter().enumerate() {
                 let ratio_squared = scale * length_squared;
-                if ratio_squared <= threshold {
-                    continue;
-                }
                 let x = ratio_squared * ratio_squared;
-                let excess = x - 0.5;
-                squares += excess * excess;
-                let slope = 2.0 * excess * x;
+                let Some((square, by_x)) = repulsion(x) else { continue };
+                squares += square;
+                let slope = by_x * x;
                 by_height += 4.0 * slope / min_height;
                 partial.area -= 8.0 * epsilon * slope / triangle.twice_area;
                 partial.length_squared[side] += 2.0 * epsilon * slope / length_squared;
@@ -80,7 +78,7 @@ mod tests {
         );
         let mut partials = [TrianglePartials::default()];
         let term = Term::new("TriangleHeightForce", 0, &[d, epsilon]).unwrap();
-        let found = TriangleHeight.triangles(&term, &[triangle], &mut partials);
+        let found = TriangleHeight.triangles(&term, 0, &[triangle], &mut partials);
         let expected: f64 = (0..3)
             .map(|k| triangle.twice_area / triangle.length_squared(k).sqrt())
             .filter(|h| *h < 2f64.powf(0.25) * d)
@@ -98,7 +96,7 @@ mod tests {
             let triangle = TriangleGeometry { normal: Vec3::zeros(), twice_area: 2.0 * area, dots };
             let mut partials = [TrianglePartials::default()];
             let term = Term::new("TriangleHeightForce", 0, &[d, epsilon]).unwrap();
-            (TriangleHeight.triangles(&term, &[triangle], &mut partials), partials[0])
+            (TriangleHeight.triangles(&term, 0, &[triangle], &mut partials), partials[0])
         };
         let (area, sides, d, epsilon) = (0.7, [2.0, 1.0, 1.7], 1.0, 1.5);
         let (sum, partials) = at(area, sides, d, epsilon);

@@ -4,8 +4,23 @@
 /** All forces of the plugin. */
 
 #include "openmm-helfrich/BendingForce.h"
+#include "openmm-helfrich/DihedralForce.h"
 #include "openmm-helfrich/EnclosedVolumeForce.h"
+#include "openmm-helfrich/PlaquetteAreaForce.h"
 #include "openmm-helfrich/SurfaceAreaForce.h"
+#include "openmm-helfrich/TriangleAreaForce.h"
+#include "openmm-helfrich/TriangleAreaRepulsionForce.h"
 #include "openmm-helfrich/TriangleHeightForce.h"
+
+/** Apply a macro to the name of each force class: the list that the plugin and Python are made from. */
+#define HELFRICH_FORCES(apply) \
+    apply(SurfaceAreaForce) \
+    apply(EnclosedVolumeForce) \
+    apply(BendingForce) \
+    apply(TriangleHeightForce) \
+    apply(DihedralForce) \
+    apply(TriangleAreaForce) \
+    apply(PlaquetteAreaForce) \
+    apply(TriangleAreaRepulsionForce)
 
 #endif /*OPENMM_HELFRICH_H_*/

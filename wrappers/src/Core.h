@@ -24,11 +24,19 @@ struct HelfrichParameterInfo {
     int energy, length;
     /** NaN if there is none. */
     double defaultValue;
+    /** 0: only as a scalar; 1: also for each vertex; 2: also for each triangle. */
+    int per;
 };
 
 struct HelfrichTerm {
     int potential, form;
+    /** One bit for each switch. */
+    uint32_t switches;
+    int wantsDerivatives;
     double values[HELFRICH_MAX_PARAMETERS];
+    /** Values of single elements, null where there are none. */
+    const double* fields[HELFRICH_MAX_PARAMETERS];
+    int64_t fieldLengths[HELFRICH_MAX_PARAMETERS];
 };
 
 struct HelfrichContribution {
@@ -41,12 +49,14 @@ const char* Helfrich_openmmVersion();
 int Helfrich_Potential_find(const char* potential, int* index);
 int Helfrich_Potential_parameter(const char* potential, int index, HelfrichParameterInfo* info);
 int Helfrich_Potential_form(const char* potential, int index, const char** what, const char** name);
+int Helfrich_Potential_switch(const char* potential, int index, const char** name);
 int Helfrich_Potential_check(const char* potential, int index, double value);
 int Helfrich_Membrane_create(const char* subject, const int* triangles, int64_t numTriangles,
                              int64_t numParticles, HelfrichMembrane** membrane);
 void Helfrich_Membrane_destroy(HelfrichMembrane* membrane);
 int64_t Helfrich_Membrane_numEdges(const HelfrichMembrane* membrane);
 void Helfrich_Membrane_edges(const HelfrichMembrane* membrane, int* particles);
+int Helfrich_Membrane_checkTerm(const char* subject, const HelfrichMembrane* membrane, const HelfrichTerm* term);
 int Helfrich_Membrane_evaluate(const char* subject, HelfrichMembrane* membrane, const HelfrichTerm* terms,
                                int64_t numTerms, int64_t numParticles, const double* positions,
                                HelfrichContribution* contributions, double* forces);
@@ -55,14 +65,18 @@ void* Helfrich_createImpl(const void* force);
 
 namespace HelfrichPlugin {
 
-/** Throw the core's message if a function of the core has failed. */
-inline void check(int status) {
-    if (status == 0)
-        return;
+/** The core's message of this thread's last failure. */
+inline std::string lastError() {
     std::string message(Helfrich_lastError(nullptr, 0) + 1, '\0');
     Helfrich_lastError(&message[0], (int64_t) message.size());
     message.pop_back();
-    throw OpenMM::OpenMMException(message);
+    return message;
+}
+
+/** Throw the core's message if a function of the core has failed. */
+inline void check(int status) {
+    if (status != 0)
+        throw OpenMM::OpenMMException(lastError());
 }
 
 } // namespace HelfrichPlugin

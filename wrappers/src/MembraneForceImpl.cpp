@@ -33,12 +33,32 @@ void MembraneForceImpl::initialize(ContextImpl& context) {
                               context.getPlatform().getName());
     check(Helfrich_Potential_find(owner.getTypeName().c_str(), &term.potential));
     term.form = owner.getForm();
-    for (int i = 0; i < owner.getNumParameters(); i++)
-        term.values[i] = owner.getParameterValue(owner.getParameterName(i));
+    term.switches = owner.getSwitches();
+    term.wantsDerivatives = !derivatives.empty();
     membrane = SharedMembrane::acquire(owner.getTypeName(), context, owner.getTriangles());
+    copyValues();
     membrane->join(this);
     if (!inPlace)
         CustomCPPForceImpl::initialize(context);
+}
+
+void MembraneForceImpl::copyValues() {
+    HelfrichTerm updated = term;
+    vector<vector<double>> copies;
+    for (int i = 0; i < owner.getNumParameters(); i++) {
+        const string& name = owner.getParameterName(i);
+        updated.values[i] = owner.getParameterValue(name);
+        copies.push_back(owner.getElementValues(name));
+        if (!copies.back().empty() && !contextParameters[i].empty())
+            throw OpenMMException(owner.getTypeName() + ": " + name + " has both values for single elements and the " +
+                                  "Context parameter \"" + contextParameters[i] + "\"; choose one of them");
+        updated.fields[i] = copies.back().data();
+        updated.fieldLengths[i] = (int64_t) copies.back().size();
+    }
+    membrane->checkTerm(owner.getTypeName(), updated);
+    // Moving the vectors leaves their contents where the term points.
+    fields = std::move(copies);
+    term = updated;
 }
 
 vector<string> MembraneForceImpl::getKernelNames() {
@@ -94,8 +114,7 @@ vector<std::pair<int, int>> MembraneForceImpl::getBondedParticles() const {
 }
 
 void MembraneForceImpl::updateParametersInContext(ContextImpl& context) {
-    for (int i = 0; i < owner.getNumParameters(); i++)
-        term.values[i] = owner.getParameterValue(owner.getParameterName(i));
+    copyValues();
     context.systemChanged();
 }
 

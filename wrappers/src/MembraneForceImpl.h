@@ -39,9 +39,14 @@ public:
     void addDerivatives(const HelfrichContribution& contribution, std::map<std::string, double>& derivatives) const;
 
 private:
+    /** Copy the values of the force; if they are refused, everything stays as it was. */
+    void copyValues();
+
     const MembraneForce& owner;
     std::shared_ptr<SharedMembrane> membrane;
     HelfrichTerm term;
+    /** What the fields of the term point to. */
+    std::vector<std::vector<double>> fields;
     /** For each scalar the Context parameter that stands in for it, or an empty text. */
     std::vector<std::string> contextParameters;
     std::vector<std::string> derivatives;

@@ -6,11 +6,13 @@
 
 #include <memory>
 #include <set>
+#include <vector>
 
 using namespace HelfrichPlugin;
 using namespace OpenMM;
 using std::set;
 using std::string;
+using std::vector;
 
 namespace {
 
@@ -26,6 +28,15 @@ bool findForm(const string& force, int index, string& what, string& name) {
     return true;
 }
 
+/** The names of a potential's switches. */
+vector<string> findSwitches(const string& force) {
+    vector<string> names;
+    const char* name;
+    while (Helfrich_Potential_switch(force.c_str(), (int) names.size(), &name) == 0)
+        names.push_back(name);
+    return names;
+}
+
 /** Refuse what a node should not have, so that nothing is lost unnoticed. */
 void allow(const string& force, const SerializationNode& node, const set<string>& properties,
            const set<string>& children) {
@@ -33,7 +44,6 @@ void allow(const string& force, const SerializationNode& node, const set<string>
     for (const auto& property : node.getProperties())
         if (properties.count(property.first) == 0)
             throw OpenMMException(where + "has an unknown attribute \"" + property.first + "\"");
-    set<string> seen;
     for (const SerializationNode& child : node.getChildren()) {
         if (children.count(child.getName()) == 0)
             throw OpenMMException(where + "has an unknown child <" + child.getName() + ">");
@@ -68,6 +78,8 @@ void MembraneForceProxy::serialize(const void* object, SerializationNode& node) 
     string what, name;
     if (findForm(forceName, force.getForm(), what, name))
         node.setStringProperty(what, name);
+    for (const string& name : findSwitches(forceName))
+        node.setBoolProperty(name, force.getSwitch(name));
     SerializationNode& parameters = node.createChildNode("Parameters");
     for (int i = 0; i < force.getNumParameters(); i++) {
         const string& parameter = force.getParameterName(i);
@@ -75,6 +87,8 @@ void MembraneForceProxy::serialize(const void* object, SerializationNode& node) 
         element.setStringProperty("name", parameter).setDoubleProperty("value", force.getParameterValue(parameter));
         if (!force.getContextParameter(parameter).empty())
             element.setStringProperty("contextParameter", force.getContextParameter(parameter));
+        for (double value : force.getElementValues(parameter))
+            element.createChildNode("Element").setDoubleProperty("value", value);
     }
     SerializationNode& derivatives = node.createChildNode("EnergyParameterDerivatives");
     for (int i = 0; i < force.getNumEnergyParameterDerivatives(); i++)
@@ -101,6 +115,8 @@ void* MembraneForceProxy::deserialize(const SerializationNode& node) const {
     set<string> attributes = {"type", "version", "forceGroup", "name"};
     if (hasForms)
         attributes.insert(what);
+    vector<string> switches = findSwitches(forceName);
+    attributes.insert(switches.begin(), switches.end());
     allow(forceName, node, attributes, {"Parameters", "EnergyParameterDerivatives", "Triangles"});
     force->setForceGroup(node.getIntProperty("forceGroup", 0));
     force->setName(node.getStringProperty("name", force->getName()));
@@ -115,6 +131,8 @@ void* MembraneForceProxy::deserialize(const SerializationNode& node) const {
                                   wanted + "\"");
         force->setForm(form);
     }
+    for (const string& name : switches)
+        force->setSwitch(name, node.getBoolProperty(name, false));
 
     const SerializationNode& parameters = child(forceName, node, "Parameters");
     allow(forceName, parameters, {}, {"Parameter"});
@@ -122,13 +140,21 @@ void* MembraneForceProxy::deserialize(const SerializationNode& node) const {
     for (int i = 0; i < force->getNumParameters(); i++)
         missing.insert(force->getParameterName(i));
     for (const SerializationNode& element : parameters.getChildren()) {
-        allow(forceName, element, {"name", "value", "contextParameter"}, {});
+        allow(forceName, element, {"name", "value", "contextParameter"}, {"Element"});
         require(forceName, element, "name");
         require(forceName, element, "value");
         string parameter = element.getStringProperty("name");
         force->setParameterValue(parameter, element.getDoubleProperty("value"));
         force->setContextParameter(parameter, element.getStringProperty("contextParameter", ""));
-        missing.erase(parameter);
+        vector<double> values;
+        for (const SerializationNode& child : element.getChildren()) {
+            allow(forceName, child, {"value"}, {});
+            require(forceName, child, "value");
+            values.push_back(child.getDoubleProperty("value"));
+        }
+        force->setElementValues(parameter, values);
+        if (missing.erase(parameter) == 0)
+            throw OpenMMException(forceName + ": element <Parameters> has \"" + parameter + "\" twice");
     }
     if (!missing.empty())
         throw OpenMMException(forceName + ": element <Parameters> lacks \"" + *missing.begin() + "\"");

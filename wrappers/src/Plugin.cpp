@@ -5,6 +5,7 @@
 #include <openmm/Platform.h>
 
 #include <iostream>
+#include <type_traits>
 #include <typeinfo>
 
 using namespace HelfrichPlugin;
@@ -14,7 +15,11 @@ namespace {
 /** A force with scalars that every potential allows. */
 template <class ForceClass>
 MembraneForce* makeForce() {
-    return new ForceClass({}, 1.0, 1.0);
+    std::vector<int> none;
+    if constexpr (std::is_constructible_v<ForceClass, std::vector<int>, double, double>)
+        return new ForceClass(none, 1.0, 1.0);
+    else
+        return new ForceClass(none, 1.0);
 }
 
 template <class ForceClass>
@@ -35,10 +40,9 @@ int helfrich_shim_registerSerialization() {
                   << " and cannot be used with OpenMM " << found << ". Rebuild it against this version.\n";
         return 1;
     }
-    registerForce<SurfaceAreaForce>("SurfaceAreaForce");
-    registerForce<EnclosedVolumeForce>("EnclosedVolumeForce");
-    registerForce<BendingForce>("BendingForce");
-    registerForce<TriangleHeightForce>("TriangleHeightForce");
+#define REGISTER(ForceClass) registerForce<ForceClass>(#ForceClass);
+    HELFRICH_FORCES(REGISTER)
+#undef REGISTER
     return 0;
 }
 

@@ -59,7 +59,7 @@ def icosphere(n, radius: float) -> tuple[np.ndarray, np.ndarray]:
     def vertex(face: np.ndarray, weights: tuple[int, int, int]) -> int:
         # Two faces name a point of their common side by the same corners and weights, so that
         # neighbours share it without a comparison of coordinates.
-        key = tuple(sorted((int(c), w) for c, w in zip(face, weights) if w > 0))
+        key = tuple(sorted((int(c), w) for c, w in zip(face, weights, strict=True) if w > 0))
         if key not in index:
             index[key] = len(points)
             points.append(sum(w * corners[c] for c, w in key))

@@ -36,7 +36,7 @@ def volume_enclosed(vertices: np.ndarray, triangles: np.ndarray) -> float:
 
 
 def reduced_volume(area: float, volume: float) -> float:
-    """v = 6 √π V / A^{3/2}: the volume over that of the sphere of equal area, 1 for a sphere."""
+    """Volume over that of the sphere of equal area, v = 6 √π V / A^{3/2}; 1 for a sphere."""
     return float(6 * np.sqrt(np.pi) * volume / area**1.5)
 
 

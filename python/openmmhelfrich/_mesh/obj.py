@@ -28,7 +28,7 @@ def read(source: Source) -> tuple[np.ndarray, np.ndarray]:
         elif "\0" in keyword:
             raise source.error(f"expected text, got {shorten(words)}")
     # A face may come before its vertices in the file, so that the range is known only at the end.
-    for face, (corners, line) in enumerate(zip(triangles, lines), start=1):
+    for face, (corners, line) in enumerate(zip(triangles, lines, strict=True), start=1):
         for corner in corners:
             if not 0 <= corner < len(vertices):
                 raise source.error(

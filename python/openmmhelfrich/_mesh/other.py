@@ -74,10 +74,7 @@ def write_meshio(path: Path, vertices: np.ndarray, triangles: np.ndarray) -> Non
     import meshio
 
     file_format = {".vtk": "vtk", ".vtu": "vtu", ".msh": "gmsh"}[path.suffix.lower()]
-    with warnings.catch_warnings(), contextlib.redirect_stderr(io.StringIO()):
-        # meshio remarks on standard error that a bare mesh has no Gmsh tags; it needs none.
-        warnings.simplefilter("ignore")
-        meshio.Mesh(vertices, [("triangle", triangles)]).write(path, file_format=file_format)
+    meshio.Mesh(vertices, [("triangle", triangles)]).write(path, file_format=file_format)
 
 
 def read_trimesh(path: Path) -> tuple[np.ndarray, np.ndarray]:

@@ -81,7 +81,7 @@ def write(vertices: np.ndarray, triangles: np.ndarray) -> str:
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     lines = ["solid openmm-helfrich"]
-    for normal, facet in zip(normals.tolist(), corners.tolist()):
+    for normal, facet in zip(normals.tolist(), corners.tolist(), strict=True):
         lines += [
             "facet normal " + " ".join(f"{x:.9g}" for x in normal),
             "  outer loop",

@@ -18,7 +18,7 @@ __all__ = ["deformed", "rotated", "scaled", "spheroid", "translated"]
 
 
 def scaled(vertices: np.ndarray, factor) -> np.ndarray:
-    """x → s x, with one factor or one per axis."""
+    """Multiply, x → s x, with one factor or one per axis."""
     factors = numbers(factor, "Mesh.scaled", "factor")
     if factors.shape not in ((), (3,)) or not (np.isfinite(factors) & (factors != 0)).all():
         raise MeshError(
@@ -29,7 +29,7 @@ def scaled(vertices: np.ndarray, factor) -> np.ndarray:
 
 
 def translated(vertices: np.ndarray, displacement) -> np.ndarray:
-    """x → x + v."""
+    """Move, x → x + v."""
     vector = length_array(displacement, "Mesh.translated", "displacement")
     if vector.shape != (3,) or not np.isfinite(vector).all():
         raise MeshError(
@@ -40,7 +40,7 @@ def translated(vertices: np.ndarray, displacement) -> np.ndarray:
 
 
 def rotated(vertices: np.ndarray, rotation) -> np.ndarray:
-    """x → R x, with a 3 × 3 matrix or a Rotation of scipy."""
+    """Rotate, x → R x, with a 3 × 3 matrix or a Rotation of scipy."""
     where = "Mesh.rotated"
     as_matrix = getattr(rotation, "as_matrix", None)
     matrix = numbers(as_matrix() if as_matrix else rotation, where, "rotation")
@@ -54,7 +54,7 @@ def rotated(vertices: np.ndarray, rotation) -> np.ndarray:
 
 
 def deformed(vertices: np.ndarray, l, m, amplitude) -> np.ndarray:
-    """r → r (1 + u Y_lm) about the origin."""
+    """Deform, r → r (1 + u Y_lm), about the origin."""
     where = "Mesh.deformed"
     l = integer(l, where, "l", 0)
     m = integer(m, where, "m", -l)

@@ -6,17 +6,23 @@
 namespace HelfrichPlugin {
 
 /**
- * Bending energy of a fluid membrane (Helfrich), with spontaneous curvature:
+ * Bending energy of a fluid membrane (Helfrich), with spontaneous curvature, in five discretisations:
  *
- *     E = 1/2 kappa sum_i [ J_i^2 / a_i - 2 C0 J_i + C0^2 a_i ]
+ *     E = 1/2 kappa sum_i [ c_i^2 / a_i - 2 C0 c_i + C0^2 a_i ]
  *
- * over the vertices i, with a_i a third of the area of the triangles at i and J_i = sum_j l_ij phi_ij / 2
- * over the edges at i, l the length of an edge and phi the angle between the normals of its two triangles,
- * positive where the surface is convex. This is Juelicher's discretisation, equation (B13) of Farnudi,
- * Ejtehadi and Everaers, Phys. Rev. E 108, 015301 (2023), doi:10.1103/PhysRevE.108.015301.
- *
+ * over the vertices i, with an integrated curvature c_i and an area a_i that the scheme chooses.
  * kappa multiplies half the square of the sum of the principal curvatures less C0: a sphere of radius R
  * has E = 8 pi kappa (1 - C0 R / 2)^2 up to the error of the mesh.
+ *
+ * Where c is a vector, c^2 is its square and the linear term takes n.c, with n the mean of the normals of
+ * the triangles at the vertex weighted by their angles (B9); setUnsignedSpontaneousCurvature() chooses |c|
+ * instead, as VCM does, which cannot tell a bulge from a dent.
+ *
+ * The Voronoi area of the schemes GompperKroll and JulicherVoronoi goes through zero where triangles
+ * are obtuse. The energy then has pits and poles, as the formula has; it is not clamped.
+ *
+ * Source: Farnudi, Ejtehadi and Everaers, Phys. Rev. E 108, 015301 (2023),
+ * doi:10.1103/PhysRevE.108.015301.
  */
 class BendingForce : public MembraneForce {
 public:
@@ -25,9 +31,28 @@ public:
      */
     enum Scheme {
         /**
-         * Dihedral angles times edge lengths, over barycentric areas (B13).
+         * c = J = sum_j l_ij phi_ij / 2 over the edges, with phi the angle between the normals of their two
+         * triangles, positive where the surface is convex; a is barycentric (B13).
          */
-        Julicher = 0
+        Julicher = 0,
+        /**
+         * c = S = sum_j (cot theta_1 + cot theta_2)(r_i - r_j) / 2 with the two angles opposite the edge; a is
+         * Voronoi's, sum_j l_ij^2 (cot theta_1 + cot theta_2) / 8 (B10).
+         */
+        GompperKroll = 1,
+        /**
+         * c = S; a is barycentric, a third of the area of the triangles at the vertex (B15).
+         */
+        GompperKrollBarycentric = 2,
+        /**
+         * c = J; a is Voronoi's (B16).
+         */
+        JulicherVoronoi = 3,
+        /**
+         * c = sum_j (r_i - r_j) / sqrt(3), as S if all triangles were equilateral; a is barycentric. At C0 = 0
+         * this is VCM's Espiru1987, kappa sum_i |sum_j r_j - n_i r_i|^2 / (6 a_i).
+         */
+        Espriu = 4
     };
     /**
      * @param triangles             the particle indices of the corners, three for each triangle
@@ -61,6 +86,36 @@ public:
      * Set the discretisation. Existing Contexts keep theirs until they are reinitialised.
      */
     void setScheme(Scheme scheme);
+    /**
+     * Get whether the linear term of the spontaneous curvature takes |c|.
+     */
+    bool getUnsignedSpontaneousCurvature() const;
+    /**
+     * Choose whether the linear term of the spontaneous curvature takes |c| (VCM) instead of n.c.
+     *
+     * @param isUnsigned  true for |c|; false, the default, for n.c
+     */
+    void setUnsignedSpontaneousCurvature(bool isUnsigned);
+    /**
+     * Get the bending rigidity of each vertex, kJ/mol; empty if all have the same.
+     */
+    const std::vector<double>& getVertexRigidity() const;
+    /**
+     * Give each vertex its own bending rigidity, which replaces the scalar: domains.
+     *
+     * @param values  one for each vertex, in ascending order of particle index, kJ/mol; empty to go back
+     */
+    void setVertexRigidity(const std::vector<double>& values);
+    /**
+     * Get the spontaneous curvature of each vertex, 1/nm; empty if all have the same.
+     */
+    const std::vector<double>& getVertexSpontaneousCurvature() const;
+    /**
+     * Give each vertex its own spontaneous curvature, which replaces the scalar: domains.
+     *
+     * @param values  one for each vertex, in ascending order of particle index, 1/nm; empty to go back
+     */
+    void setVertexSpontaneousCurvature(const std::vector<double>& values);
 };
 
 } // namespace HelfrichPlugin

@@ -4,8 +4,6 @@
 #include <openmm/Context.h>
 #include <openmm/Force.h>
 
-#include <array>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -88,6 +86,20 @@ public:
      */
     void setParameterValue(const std::string& name, double value);
     /**
+     * Give a scalar its own value for each vertex or triangle, where the potential allows it.
+     *
+     * @param name    the name of the parameter
+     * @param values  one value for each vertex, in ascending order of particle index, or for each
+     *                triangle; in OpenMM's units. An empty list goes back to the scalar.
+     */
+    void setElementValues(const std::string& name, const std::vector<double>& values);
+    /**
+     * Get the values of a parameter for each vertex or triangle, empty if it is a scalar.
+     *
+     * @param name  the name of the parameter
+     */
+    const std::vector<double>& getElementValues(const std::string& name) const;
+    /**
      * Let a parameter of the Context take the place of a scalar, so that Context::setParameter() changes
      * it during a simulation. Its initial value is that of the scalar. Several forces may share a
      * parameter of the Context if their initial values agree.
@@ -154,6 +166,25 @@ public:
      * @param form  the number of the variant
      */
     void setForm(int form);
+    /**
+     * Get whether something is switched on.
+     *
+     * @param name  the name of the switch
+     */
+    bool getSwitch(const std::string& name) const;
+    /**
+     * Switch something on or off. Existing Contexts keep their state until they are reinitialised.
+     *
+     * @param name  the name of the switch
+     * @param on    whether it shall be on
+     */
+    void setSwitch(const std::string& name, bool on);
+    /**
+     * Get the state of all switches, one bit for each in the core's order.
+     */
+    unsigned int getSwitches() const {
+        return switches;
+    }
 
 protected:
     /**
@@ -171,8 +202,13 @@ private:
         std::string name;
         double value;
         std::string contextParameter;
+        /** Values of single vertices or triangles; empty if there is only the scalar. */
+        std::vector<double> elementValues;
+        /** Whether it may have those. */
+        bool perElement;
     };
     int findParameter(const std::string& name) const;
+    unsigned int findSwitch(const std::string& name) const;
     [[noreturn]] void fail(const std::string& message) const;
 
     std::string type;
@@ -180,6 +216,7 @@ private:
     std::vector<Parameter> parameters;
     std::vector<std::string> derivatives;
     int form;
+    unsigned int switches;
 };
 
 } // namespace HelfrichPlugin

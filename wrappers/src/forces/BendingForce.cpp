@@ -30,3 +30,27 @@ BendingForce::Scheme BendingForce::getScheme() const {
 void BendingForce::setScheme(Scheme scheme) {
     setForm(scheme);
 }
+
+bool BendingForce::getUnsignedSpontaneousCurvature() const {
+    return getSwitch("unsignedSpontaneousCurvature");
+}
+
+void BendingForce::setUnsignedSpontaneousCurvature(bool isUnsigned) {
+    setSwitch("unsignedSpontaneousCurvature", isUnsigned);
+}
+
+const std::vector<double>& BendingForce::getVertexRigidity() const {
+    return getElementValues("rigidity");
+}
+
+void BendingForce::setVertexRigidity(const std::vector<double>& values) {
+    setElementValues("rigidity", values);
+}
+
+const std::vector<double>& BendingForce::getVertexSpontaneousCurvature() const {
+    return getElementValues("spontaneousCurvature");
+}
+
+void BendingForce::setVertexSpontaneousCurvature(const std::vector<double>& values) {
+    setElementValues("spontaneousCurvature", values);
+}

@@ -10,14 +10,14 @@ using std::vector;
 
 MembraneForce::MembraneForce(const string& type, const vector<int>& triangles, const vector<double>& values,
                              int form)
-    : type(type), form(0) {
+    : type(type), form(0), switches(0) {
     setName(type);
     for (double value : values) {
         int index = (int) parameters.size();
         HelfrichParameterInfo info;
         check(Helfrich_Potential_parameter(type.c_str(), index, &info));
         check(Helfrich_Potential_check(type.c_str(), index, value));
-        parameters.push_back({info.name, value, ""});
+        parameters.push_back({info.name, value, "", {}, info.per != 0});
     }
     if (form != 0)
         setForm(form);
@@ -73,6 +73,20 @@ void MembraneForce::setParameterValue(const string& name, double value) {
     parameters[index].value = value;
 }
 
+void MembraneForce::setElementValues(const string& name, const vector<double>& values) {
+    int index = findParameter(name);
+    if (!parameters[index].perElement && !values.empty())
+        fail(name + " is one value for the whole membrane; it cannot be given for single elements");
+    for (size_t i = 0; i < values.size(); i++)
+        if (Helfrich_Potential_check(type.c_str(), index, values[i]) != 0)
+            throw OpenMMException(lastError() + " at index " + std::to_string(i));
+    parameters[index].elementValues = values;
+}
+
+const vector<double>& MembraneForce::getElementValues(const string& name) const {
+    return parameters[findParameter(name)].elementValues;
+}
+
 void MembraneForce::setContextParameter(const string& parameter, const string& name) {
     parameters[findParameter(parameter)].contextParameter = name;
 }
@@ -100,6 +114,23 @@ void MembraneForce::setForm(int number) {
     const char *what, *name;
     check(Helfrich_Potential_form(type.c_str(), number, &what, &name));
     form = number;
+}
+
+unsigned int MembraneForce::findSwitch(const string& name) const {
+    const char* found;
+    for (int i = 0; Helfrich_Potential_switch(type.c_str(), i, &found) == 0; i++)
+        if (name == found)
+            return 1u << i;
+    fail("there is no switch called \"" + name + "\"");
+}
+
+bool MembraneForce::getSwitch(const string& name) const {
+    return (switches & findSwitch(name)) != 0;
+}
+
+void MembraneForce::setSwitch(const string& name, bool on) {
+    unsigned int bit = findSwitch(name);
+    switches = on ? switches | bit : switches & ~bit;
 }
 
 void MembraneForce::updateParametersInContext(Context& context) {
