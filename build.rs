@@ -25,9 +25,7 @@ fn main() {
     // OpenMM's headers are not ours to mend: as system headers they raise no warnings.
     shim.flag("-isystem").flag(&include).flag_if_supported("-Wno-unused-parameter");
     shim.define("HELFRICH_OPENMM_VERSION", format!("\"{version}\"").as_str());
-    for source in
-        ["wrappers/src", "wrappers/src/forces"].iter().flat_map(|path| sources(Path::new(path)))
-    {
+    for source in sources(Path::new("wrappers/src")) {
         shim.file(source);
     }
     // Nothing in Rust refers to most of the shim, so the linker must be told to keep all of it.

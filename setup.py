@@ -90,10 +90,9 @@ class BuildPlugin(build_ext):
         extension.library_dirs += [str(package / "lib"), str(openmm / "lib")]
 
 
-sources = sorted(str(path.relative_to(ROOT)) for path in ROOT.glob("wrappers/src/forces/*.cpp"))
 forces = Extension(
     "openmmhelfrich._forces",
-    sources,
+    [],
     language="c++",
     libraries=["OpenMMHelfrich", "OpenMM"],
     extra_compile_args=["-std=c++17", "-O2", "-g0", "-w"],

@@ -1,6 +1,6 @@
 #include "MembraneForceProxy.h"
 
-#include "Core.h"
+#include "openmm-helfrich/internal/Core.h"
 
 #include <openmm/serialization/SerializationNode.h>
 

@@ -1,7 +1,7 @@
 #ifndef HELFRICH_SHARED_MEMBRANE_H_
 #define HELFRICH_SHARED_MEMBRANE_H_
 
-#include "Core.h"
+#include "openmm-helfrich/internal/Core.h"
 
 #include <openmm/Vec3.h>
 #include <openmm/internal/ContextImpl.h>

@@ -61,61 +61,87 @@ public:
      * @param scheme                the discretisation
      */
     BendingForce(const std::vector<int>& triangles, double rigidity, double spontaneousCurvature = 0,
-                 Scheme scheme = Julicher);
+                 Scheme scheme = Julicher)
+        : MembraneForce("BendingForce", triangles, {rigidity, spontaneousCurvature}, scheme) {
+    }
     /**
      * Get the bending rigidity kappa, kJ/mol.
      */
-    double getRigidity() const;
+    double getRigidity() const {
+        return getParameterValue("rigidity");
+    }
     /**
      * Set the bending rigidity kappa, kJ/mol, zero or above.
      */
-    void setRigidity(double rigidity);
+    void setRigidity(double rigidity) {
+        setParameterValue("rigidity", rigidity);
+    }
     /**
      * Get the spontaneous curvature C0, 1/nm, positive for bulging outward.
      */
-    double getSpontaneousCurvature() const;
+    double getSpontaneousCurvature() const {
+        return getParameterValue("spontaneousCurvature");
+    }
     /**
      * Set the spontaneous curvature C0, 1/nm, positive for bulging outward.
      */
-    void setSpontaneousCurvature(double spontaneousCurvature);
+    void setSpontaneousCurvature(double spontaneousCurvature) {
+        setParameterValue("spontaneousCurvature", spontaneousCurvature);
+    }
     /**
      * Get the discretisation.
      */
-    Scheme getScheme() const;
+    Scheme getScheme() const {
+        return (Scheme) getForm();
+    }
     /**
      * Set the discretisation. Existing Contexts keep theirs until they are reinitialised.
      */
-    void setScheme(Scheme scheme);
+    void setScheme(Scheme scheme) {
+        setForm(scheme);
+    }
     /**
      * Get whether the linear term of the spontaneous curvature takes |c|.
      */
-    bool getUnsignedSpontaneousCurvature() const;
+    bool getUnsignedSpontaneousCurvature() const {
+        return getSwitch("unsignedSpontaneousCurvature");
+    }
     /**
      * Choose whether the linear term of the spontaneous curvature takes |c| (VCM) instead of n.c.
      *
      * @param isUnsigned  true for |c|; false, the default, for n.c
      */
-    void setUnsignedSpontaneousCurvature(bool isUnsigned);
+    void setUnsignedSpontaneousCurvature(bool isUnsigned) {
+        setSwitch("unsignedSpontaneousCurvature", isUnsigned);
+    }
     /**
      * Get the bending rigidity of each vertex, kJ/mol; empty if all have the same.
      */
-    const std::vector<double>& getVertexRigidity() const;
+    const std::vector<double>& getVertexRigidity() const {
+        return getElementValues("rigidity");
+    }
     /**
      * Give each vertex its own bending rigidity, which replaces the scalar: domains.
      *
      * @param values  one for each vertex, in ascending order of particle index, kJ/mol; empty to go back
      */
-    void setVertexRigidity(const std::vector<double>& values);
+    void setVertexRigidity(const std::vector<double>& values) {
+        setElementValues("rigidity", values);
+    }
     /**
      * Get the spontaneous curvature of each vertex, 1/nm; empty if all have the same.
      */
-    const std::vector<double>& getVertexSpontaneousCurvature() const;
+    const std::vector<double>& getVertexSpontaneousCurvature() const {
+        return getElementValues("spontaneousCurvature");
+    }
     /**
      * Give each vertex its own spontaneous curvature, which replaces the scalar: domains.
      *
      * @param values  one for each vertex, in ascending order of particle index, 1/nm; empty to go back
      */
-    void setVertexSpontaneousCurvature(const std::vector<double>& values);
+    void setVertexSpontaneousCurvature(const std::vector<double>& values) {
+        setElementValues("spontaneousCurvature", values);
+    }
 };
 
 } // namespace HelfrichPlugin

@@ -48,23 +48,33 @@ public:
      * @param stiffness  the stiffness K, kJ/mol, zero or above
      * @param form  the function f
      */
-    DihedralForce(const std::vector<int>& triangles, double stiffness, Form form = Quartic);
+    DihedralForce(const std::vector<int>& triangles, double stiffness, Form form = Quartic)
+        : MembraneForce("DihedralForce", triangles, {stiffness}, form) {
+    }
     /**
      * Get the stiffness K, kJ/mol.
      */
-    double getStiffness() const;
+    double getStiffness() const {
+        return getParameterValue("stiffness");
+    }
     /**
      * Set the stiffness K, kJ/mol, zero or above.
      */
-    void setStiffness(double stiffness);
+    void setStiffness(double stiffness) {
+        setParameterValue("stiffness", stiffness);
+    }
     /**
      * Get the function of the angle.
      */
-    Form getForm() const;
+    Form getForm() const {
+        return (Form) MembraneForce::getForm();
+    }
     /**
      * Set the function of the angle. Existing Contexts keep theirs until they are reinitialised.
      */
-    void setForm(Form form);
+    void setForm(Form form) {
+        MembraneForce::setForm(form);
+    }
 };
 
 } // namespace HelfrichPlugin

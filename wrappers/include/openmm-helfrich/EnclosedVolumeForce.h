@@ -21,23 +21,33 @@ public:
      * @param modulus    the volume modulus kV, kJ/mol/nm^3, zero or above
      * @param target     the target volume V0, nm^3, above zero
      */
-    EnclosedVolumeForce(const std::vector<int>& triangles, double modulus, double target);
+    EnclosedVolumeForce(const std::vector<int>& triangles, double modulus, double target)
+        : MembraneForce("EnclosedVolumeForce", triangles, {modulus, target}) {
+    }
     /**
      * Get the volume modulus kV, kJ/mol/nm^3.
      */
-    double getModulus() const;
+    double getModulus() const {
+        return getParameterValue("modulus");
+    }
     /**
      * Set the volume modulus kV, kJ/mol/nm^3, zero or above.
      */
-    void setModulus(double modulus);
+    void setModulus(double modulus) {
+        setParameterValue("modulus", modulus);
+    }
     /**
      * Get the target volume V0, nm^3.
      */
-    double getTarget() const;
+    double getTarget() const {
+        return getParameterValue("target");
+    }
     /**
      * Set the target volume V0, nm^3, above zero.
      */
-    void setTarget(double target);
+    void setTarget(double target) {
+        setParameterValue("target", target);
+    }
 };
 
 } // namespace HelfrichPlugin

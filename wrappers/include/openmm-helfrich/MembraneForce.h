@@ -1,6 +1,9 @@
 #ifndef HELFRICH_MEMBRANE_FORCE_H_
 #define HELFRICH_MEMBRANE_FORCE_H_
 
+#include "internal/Core.h"
+#include "internal/UpdatableImpl.h"
+
 #include <openmm/Context.h>
 #include <openmm/Force.h>
 
@@ -218,6 +221,147 @@ private:
     int form;
     unsigned int switches;
 };
+
+/*
+ * The classes are all in their headers, on top of the C functions that the library exports: whoever uses
+ * them needs no other library than the plugin.
+ */
+#ifndef SWIG
+
+inline MembraneForce::MembraneForce(const std::string& type, const std::vector<int>& triangles, const std::vector<double>& values,
+                             int form)
+    : type(type), form(0), switches(0) {
+    setName(type);
+    for (double value : values) {
+        int index = (int) parameters.size();
+        HelfrichParameterInfo info;
+        check(Helfrich_Potential_parameter(type.c_str(), index, &info));
+        check(Helfrich_Potential_check(type.c_str(), index, value));
+        parameters.push_back({info.name, value, "", {}, info.per != 0});
+    }
+    if (form != 0)
+        setForm(form);
+    addTriangles(triangles);
+}
+
+inline void MembraneForce::fail(const std::string& message) const {
+    throw OpenMM::OpenMMException(type + ": " + message);
+}
+
+inline int MembraneForce::addTriangle(int particle1, int particle2, int particle3) {
+    triangles.insert(triangles.end(), {particle1, particle2, particle3});
+    return getNumTriangles() - 1;
+}
+
+inline void MembraneForce::addTriangles(const std::vector<int>& corners) {
+    if (corners.size() % 3 != 0)
+        fail("a list of " + std::to_string(corners.size()) + " corners is not made of triangles");
+    triangles.insert(triangles.end(), corners.begin(), corners.end());
+}
+
+inline void MembraneForce::getTriangle(int index, int& particle1, int& particle2, int& particle3) const {
+    if (index < 0 || index >= getNumTriangles())
+        fail("there is no triangle " + std::to_string(index) + " among " + std::to_string(getNumTriangles()));
+    particle1 = triangles[3 * index];
+    particle2 = triangles[3 * index + 1];
+    particle3 = triangles[3 * index + 2];
+}
+
+inline const std::string& MembraneForce::getParameterName(int index) const {
+    if (index < 0 || index >= getNumParameters())
+        fail("there is no parameter " + std::to_string(index) + " among " + std::to_string(getNumParameters()));
+    return parameters[index].name;
+}
+
+inline int MembraneForce::findParameter(const std::string& name) const {
+    std::string known;
+    for (int i = 0; i < getNumParameters(); i++) {
+        if (parameters[i].name == name)
+            return i;
+        known += (i == 0 ? "" : ", ") + parameters[i].name;
+    }
+    fail("there is no parameter called \"" + name + "\"; known are: " + known);
+}
+
+inline double MembraneForce::getParameterValue(const std::string& name) const {
+    return parameters[findParameter(name)].value;
+}
+
+inline void MembraneForce::setParameterValue(const std::string& name, double value) {
+    int index = findParameter(name);
+    check(Helfrich_Potential_check(type.c_str(), index, value));
+    parameters[index].value = value;
+}
+
+inline void MembraneForce::setElementValues(const std::string& name, const std::vector<double>& values) {
+    int index = findParameter(name);
+    if (!parameters[index].perElement && !values.empty())
+        fail(name + " is one value for the whole membrane; it cannot be given for single elements");
+    for (size_t i = 0; i < values.size(); i++)
+        if (Helfrich_Potential_check(type.c_str(), index, values[i]) != 0)
+            throw OpenMM::OpenMMException(lastError() + " at index " + std::to_string(i));
+    parameters[index].elementValues = values;
+}
+
+inline const std::vector<double>& MembraneForce::getElementValues(const std::string& name) const {
+    return parameters[findParameter(name)].elementValues;
+}
+
+inline void MembraneForce::setContextParameter(const std::string& parameter, const std::string& name) {
+    parameters[findParameter(parameter)].contextParameter = name;
+}
+
+inline const std::string& MembraneForce::getContextParameter(const std::string& parameter) const {
+    return parameters[findParameter(parameter)].contextParameter;
+}
+
+inline void MembraneForce::addEnergyParameterDerivative(const std::string& name) {
+    for (const Parameter& parameter : parameters)
+        if (!name.empty() && parameter.contextParameter == name) {
+            derivatives.push_back(name);
+            return;
+        }
+    fail("no scalar has the Context parameter \"" + name + "\"; call setContextParameter() first");
+}
+
+inline const std::string& MembraneForce::getEnergyParameterDerivativeName(int index) const {
+    if (index < 0 || index >= getNumEnergyParameterDerivatives())
+        fail("there is no derivative " + std::to_string(index));
+    return derivatives[index];
+}
+
+inline void MembraneForce::setForm(int number) {
+    const char *what, *name;
+    check(Helfrich_Potential_form(type.c_str(), number, &what, &name));
+    form = number;
+}
+
+inline unsigned int MembraneForce::findSwitch(const std::string& name) const {
+    const char* found;
+    for (int i = 0; Helfrich_Potential_switch(type.c_str(), i, &found) == 0; i++)
+        if (name == found)
+            return 1u << i;
+    fail("there is no switch called \"" + name + "\"");
+}
+
+inline bool MembraneForce::getSwitch(const std::string& name) const {
+    return (switches & findSwitch(name)) != 0;
+}
+
+inline void MembraneForce::setSwitch(const std::string& name, bool on) {
+    unsigned int bit = findSwitch(name);
+    switches = on ? switches | bit : switches & ~bit;
+}
+
+inline void MembraneForce::updateParametersInContext(OpenMM::Context& context) {
+    dynamic_cast<UpdatableImpl&>(getImplInContext(context)).updateParametersInContext(getContextImpl(context));
+}
+
+inline OpenMM::ForceImpl* MembraneForce::createImpl() const {
+    return static_cast<OpenMM::ForceImpl*>(Helfrich_createImpl(this));
+}
+
+#endif /*SWIG*/
 
 } // namespace HelfrichPlugin
 

@@ -22,23 +22,33 @@ public:
      * @param stiffness  the stiffness k, (3/2) kB T in the paper, kJ/mol, zero or above
      * @param target  the target A0 of the total area, nm^2, above zero
      */
-    PlaquetteAreaForce(const std::vector<int>& triangles, double stiffness, double target);
+    PlaquetteAreaForce(const std::vector<int>& triangles, double stiffness, double target)
+        : MembraneForce("PlaquetteAreaForce", triangles, {stiffness, target}) {
+    }
     /**
      * Get the stiffness k, (3/2) kB T in the paper, kJ/mol.
      */
-    double getStiffness() const;
+    double getStiffness() const {
+        return getParameterValue("stiffness");
+    }
     /**
      * Set the stiffness k, (3/2) kB T in the paper, kJ/mol, zero or above.
      */
-    void setStiffness(double stiffness);
+    void setStiffness(double stiffness) {
+        setParameterValue("stiffness", stiffness);
+    }
     /**
      * Get the target A0 of the total area, nm^2.
      */
-    double getTarget() const;
+    double getTarget() const {
+        return getParameterValue("target");
+    }
     /**
      * Set the target A0 of the total area, nm^2, above zero.
      */
-    void setTarget(double target);
+    void setTarget(double target) {
+        setParameterValue("target", target);
+    }
 };
 
 } // namespace HelfrichPlugin

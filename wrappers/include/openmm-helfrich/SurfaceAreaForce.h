@@ -20,23 +20,33 @@ public:
      * @param modulus    the area modulus kA, kJ/mol/nm^2, zero or above
      * @param target     the target area A0, nm^2, above zero
      */
-    SurfaceAreaForce(const std::vector<int>& triangles, double modulus, double target);
+    SurfaceAreaForce(const std::vector<int>& triangles, double modulus, double target)
+        : MembraneForce("SurfaceAreaForce", triangles, {modulus, target}) {
+    }
     /**
      * Get the area modulus kA, kJ/mol/nm^2.
      */
-    double getModulus() const;
+    double getModulus() const {
+        return getParameterValue("modulus");
+    }
     /**
      * Set the area modulus kA, kJ/mol/nm^2, zero or above.
      */
-    void setModulus(double modulus);
+    void setModulus(double modulus) {
+        setParameterValue("modulus", modulus);
+    }
     /**
      * Get the target area A0, nm^2.
      */
-    double getTarget() const;
+    double getTarget() const {
+        return getParameterValue("target");
+    }
     /**
      * Set the target area A0, nm^2, above zero.
      */
-    void setTarget(double target);
+    void setTarget(double target) {
+        setParameterValue("target", target);
+    }
 };
 
 } // namespace HelfrichPlugin

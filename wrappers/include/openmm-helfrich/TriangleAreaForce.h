@@ -22,33 +22,47 @@ public:
      * @param modulus  the area modulus kA, kJ/mol/nm^2, zero or above
      * @param target  the target area a0 of each triangle, nm^2, above zero
      */
-    TriangleAreaForce(const std::vector<int>& triangles, double modulus, double target);
+    TriangleAreaForce(const std::vector<int>& triangles, double modulus, double target)
+        : MembraneForce("TriangleAreaForce", triangles, {modulus, target}) {
+    }
     /**
      * Get the area modulus kA, kJ/mol/nm^2.
      */
-    double getModulus() const;
+    double getModulus() const {
+        return getParameterValue("modulus");
+    }
     /**
      * Set the area modulus kA, kJ/mol/nm^2, zero or above.
      */
-    void setModulus(double modulus);
+    void setModulus(double modulus) {
+        setParameterValue("modulus", modulus);
+    }
     /**
      * Get the target area a0 of each triangle, nm^2.
      */
-    double getTarget() const;
+    double getTarget() const {
+        return getParameterValue("target");
+    }
     /**
      * Set the target area a0 of each triangle, nm^2, above zero.
      */
-    void setTarget(double target);
+    void setTarget(double target) {
+        setParameterValue("target", target);
+    }
     /**
      * Get the target area of each triangle, nm^2; empty if all have the same.
      */
-    const std::vector<double>& getTriangleTargets() const;
+    const std::vector<double>& getTriangleTargets() const {
+        return getElementValues("target");
+    }
     /**
      * Give each triangle its own target area, which replaces the scalar.
      *
      * @param values  one for each triangle, nm^2; empty to go back to the scalar
      */
-    void setTriangleTargets(const std::vector<double>& values);
+    void setTriangleTargets(const std::vector<double>& values) {
+        setElementValues("target", values);
+    }
 };
 
 } // namespace HelfrichPlugin

@@ -21,23 +21,33 @@ public:
      * @param minArea  the area a_m below which the repulsion is strong, nm^2, zero or above
      * @param epsilon  the strength, kJ/mol, zero or above
      */
-    TriangleAreaRepulsionForce(const std::vector<int>& triangles, double minArea, double epsilon);
+    TriangleAreaRepulsionForce(const std::vector<int>& triangles, double minArea, double epsilon)
+        : MembraneForce("TriangleAreaRepulsionForce", triangles, {minArea, epsilon}) {
+    }
     /**
      * Get the area a_m below which the repulsion is strong, nm^2.
      */
-    double getMinArea() const;
+    double getMinArea() const {
+        return getParameterValue("minArea");
+    }
     /**
      * Set the area a_m below which the repulsion is strong, nm^2, zero or above.
      */
-    void setMinArea(double minArea);
+    void setMinArea(double minArea) {
+        setParameterValue("minArea", minArea);
+    }
     /**
      * Get the strength, kJ/mol.
      */
-    double getEpsilon() const;
+    double getEpsilon() const {
+        return getParameterValue("epsilon");
+    }
     /**
      * Set the strength, kJ/mol, zero or above.
      */
-    void setEpsilon(double epsilon);
+    void setEpsilon(double epsilon) {
+        setParameterValue("epsilon", epsilon);
+    }
 };
 
 } // namespace HelfrichPlugin

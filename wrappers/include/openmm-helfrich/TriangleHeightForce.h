@@ -21,23 +21,33 @@ public:
      * @param minHeight  the height d below which the repulsion is strong, nm, zero or above
      * @param epsilon    the strength, kJ/mol, zero or above
      */
-    TriangleHeightForce(const std::vector<int>& triangles, double minHeight, double epsilon);
+    TriangleHeightForce(const std::vector<int>& triangles, double minHeight, double epsilon)
+        : MembraneForce("TriangleHeightForce", triangles, {minHeight, epsilon}) {
+    }
     /**
      * Get the height d, nm.
      */
-    double getMinHeight() const;
+    double getMinHeight() const {
+        return getParameterValue("minHeight");
+    }
     /**
      * Set the height d, nm, zero or above.
      */
-    void setMinHeight(double minHeight);
+    void setMinHeight(double minHeight) {
+        setParameterValue("minHeight", minHeight);
+    }
     /**
      * Get the strength epsilon, kJ/mol.
      */
-    double getEpsilon() const;
+    double getEpsilon() const {
+        return getParameterValue("epsilon");
+    }
     /**
      * Set the strength epsilon, kJ/mol, zero or above.
      */
-    void setEpsilon(double epsilon);
+    void setEpsilon(double epsilon) {
+        setParameterValue("epsilon", epsilon);
+    }
 };
 
 } // namespace HelfrichPlugin

@@ -1,0 +1,305 @@
+//! The evaluator on whole meshes: gradients, symmetries, threads and bad input, for every potential.
+
+use openmm_helfrich::error::Error;
+use openmm_helfrich::evaluator::CpuEvaluator;
+use openmm_helfrich::mesh::Topology;
+use openmm_helfrich::potentials::{Contribution, REGISTRY, Term};
+use proptest::prelude::*;
+use std::sync::Arc;
+
+type Mesh = (Vec<f64>, Vec<[i64; 3]>);
+
+/// A grid of `rings` × `sectors` quadrilaterals round a spheroid, halved into triangles, with two poles:
+/// vertices of many degrees and triangles of many shapes. `noise` moves every coordinate.
+fn spheroid(rings: i64, sectors: i64, noise: &mut impl FnMut() -> f64) -> Mesh {
+    let mut positions = Vec::new();
+    let mut add = |x: f64, y: f64, z: f64| {
+        for (coordinate, stretch) in [x, y, z].into_iter().zip([10.0, 12.0, 7.0]) {
+            positions.push(coordinate * stretch * (1.0 + 0.04 * noise()) + 5.0);
+        }
+    };
+    add(0.0, 0.0, 1.0);
+    for ring in 1..=rings {
+        let polar = std::f64::consts::PI * ring as f64 / (rings + 1) as f64;
+        for sector in 0..sectors {
+            let azimuth = std::f64::consts::TAU * sector as f64 / sectors as f64;
+            add(polar.sin() * azimuth.cos(), polar.sin() * azimuth.sin(), polar.cos());
+        }
+    }
+    add(0.0, 0.0, -1.0);
+    let south = 1 + rings * sectors;
+    let at = |ring: i64, sector: i64| 1 + ring * sectors + sector.rem_euclid(sectors);
+    let mut triangles = Vec::new();
+    for sector in 0..sectors {
+        triangles.push([0, at(0, sector), at(0, sector + 1)]);
+        for ring in 0..rings - 1 {
+            let (a, b) = (at(ring, sector), at(ring, sector + 1));
+            let (c, d) = (at(ring + 1, sector), at(ring + 1, sector + 1));
+            triangles.extend([[a, c, b], [b, c, d]]);
+        }
+        triangles.push([south, at(rings - 1, sector + 1), at(rings - 1, sector)]);
+    }
+    (positions, triangles)
+}
+
+/// Numbers in [−1, 1) from a seed.
+fn random(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
+    move || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}
+
+/// Every potential in every variant, with values that make it act on the meshes of these tests.
+fn all_terms() -> Vec<Term<'static>> {
+    let mut terms = Vec::new();
+    let mut add = |name, form, values: &[f64]| terms.push(Term::new(name, form, values).unwrap());
+    for form in 0..5 {
+        for spontaneous in [0.0, 0.13, -0.2] {
+            add("BendingForce", form, &[2.0, spontaneous]);
+        }
+        add("DihedralForce", form, &[1.5]);
+    }
+    add("SurfaceAreaForce", 0, &[3.0, 900.0]);
+    add("EnclosedVolumeForce", 0, &[0.7, 3000.0]);
+    add("TriangleHeightForce", 0, &[3.0, 2.0]);
+    add("TriangleAreaForce", 0, &[1.0, 8.0]);
+    add("PlaquetteAreaForce", 0, &[4.0, 1000.0]);
+    add("TriangleAreaRepulsionForce", 0, &[9.0, 2.0]);
+    for index in 0..terms.len() {
+        if terms[index].potential.name() == "BendingForce" && terms[index].values[1] != 0.0 {
+            let mut unsigned = terms[index];
+            unsigned.switches = 1;
+            terms.push(unsigned);
+        }
+    }
+    for term in &mut terms {
+        term.wants_derivatives = true;
+    }
+    terms
+}
+
+fn evaluator(mesh: &Mesh) -> CpuEvaluator {
+    CpuEvaluator::new(Arc::new(Topology::new(&mesh.1, mesh.0.len() / 3).unwrap()))
+}
+
+fn evaluate(
+    evaluator: &mut CpuEvaluator,
+    terms: &[Term],
+    positions: &[f64],
+) -> (Vec<Contribution>, Vec<f64>) {
+    let mut contributions = vec![Contribution::default(); terms.len()];
+    let mut forces = vec![0.0; positions.len()];
+    evaluator.evaluate(terms.iter(), positions, &mut contributions, Some(&mut forces)).unwrap();
+    (contributions, forces)
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+#[test]
+fn every_potential_of_the_registry_is_tested_here() {
+    let terms = all_terms();
+    for potential in REGISTRY {
+        assert!(terms.iter().any(|term| term.potential.name() == potential.name()));
+    }
+}
+
+#[test]
+fn forces_are_minus_the_gradient() {
+    let mut noise = random(1);
+    let mesh = spheroid(6, 9, &mut noise);
+    let mut evaluator = evaluator(&mesh);
+    let direction: Vec<f64> = mesh.0.iter().map(|_| noise()).collect();
+    for term in all_terms() {
+        let forces = evaluate(&mut evaluator, &[term], &mesh.0).1;
+        let mut energy = |step: f64| {
+            let moved: Vec<f64> =
+                mesh.0.iter().zip(&direction).map(|(x, d)| x + step * d).collect();
+            evaluate(&mut evaluator, &[term], &moved).0[0].energy
+        };
+        // Richardson's combination is of fourth order.
+        let h = 2e-4;
+        let slope =
+            (8.0 * (energy(h) - energy(-h)) - (energy(2.0 * h) - energy(-2.0 * h))) / (12.0 * h);
+        let scale = dot(&forces, &forces).sqrt();
+        let error = (slope + dot(&forces, &direction)).abs() / scale;
+        let name = term.potential.name();
+        assert!(scale > 0.0 && error < 1e-8, "{name} {} {:?}: {error}", term.form, term.values);
+    }
+}
+
+#[test]
+fn parameter_derivatives_match_finite_differences() {
+    let mesh = spheroid(6, 9, &mut random(2));
+    let mut evaluator = evaluator(&mesh);
+    for term in all_terms() {
+        let found = evaluate(&mut evaluator, &[term], &mesh.0).0[0].by_parameter;
+        for index in 0..term.potential.parameters().len() {
+            let step = 1e-4 * term.values[index].abs().max(0.1);
+            let mut energy = |shift: f64| {
+                let mut changed = term;
+                changed.values[index] += shift;
+                evaluate(&mut evaluator, &[changed], &mesh.0).0[0].energy
+            };
+            let h = step;
+            let slope = (8.0 * (energy(h) - energy(-h)) - (energy(2.0 * h) - energy(-2.0 * h)))
+                / (12.0 * h);
+            let error = (slope - found[index]).abs() / slope.abs().max(1.0);
+            assert!(error < 1e-7, "{} {} {index}: {error}", term.potential.name(), term.form);
+        }
+    }
+}
+
+#[test]
+fn terms_add_up_however_they_are_grouped() {
+    let mesh = spheroid(7, 8, &mut random(3));
+    let mut evaluator = evaluator(&mesh);
+    let terms = all_terms();
+    let (together, forces) = evaluate(&mut evaluator, &terms, &mesh.0);
+    let mut sum = vec![0.0; forces.len()];
+    for (term, contribution) in terms.iter().zip(&together) {
+        let (alone, part) = evaluate(&mut evaluator, &[*term], &mesh.0);
+        assert_eq!(alone[0], *contribution, "{}", term.potential.name());
+        sum.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
+    }
+    let largest = forces.iter().fold(0.0, |m: f64, f| m.max(f.abs()));
+    for (a, b) in forces.iter().zip(&sum) {
+        assert!((a - b).abs() < 1e-12 * largest);
+    }
+}
+
+#[test]
+fn bits_do_not_depend_on_the_number_of_threads() {
+    // Enough triangles for the parallel path, and for several chunks of every array.
+    let mesh = spheroid(70, 90, &mut random(4));
+    assert!(mesh.1.len() > 12_000);
+    let terms = all_terms();
+    let results: Vec<_> = [1, 2, 3, 8]
+        .map(|threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| evaluate(&mut evaluator(&mesh), &terms, &mesh.0))
+        })
+        .into();
+    for other in &results[1..] {
+        assert_eq!(results[0], *other);
+    }
+}
+
+#[test]
+fn particles_outside_the_mesh_feel_nothing() {
+    let (positions, triangles) = spheroid(5, 7, &mut random(5));
+    let count = positions.len() / 3;
+    // Every other particle is foreign, and the mesh's own are numbered backwards.
+    let place = |v: i64| 2 * (count as i64 - 1 - v);
+    let moved: Vec<_> = triangles.iter().map(|t| t.map(place)).collect();
+    let mut all = vec![f64::NAN; 6 * count];
+    for v in 0..count {
+        all[3 * place(v as i64) as usize..][..3].copy_from_slice(&positions[3 * v..][..3]);
+    }
+    let term = Term::new("BendingForce", 2, &[1.0, 0.1]).unwrap();
+    let mesh = (positions, triangles);
+    let (direct, expected) = evaluate(&mut evaluator(&mesh), &[term], &mesh.0);
+    let (found, forces) = evaluate(&mut evaluator(&(all.clone(), moved)), &[term], &all);
+    assert!((direct[0].energy / found[0].energy - 1.0).abs() < 1e-13);
+    for particle in 0..2 * count {
+        let force = &forces[3 * particle..][..3];
+        if particle % 2 == 1 {
+            assert_eq!(force, [0.0; 3]);
+        } else {
+            let v = count - 1 - particle / 2;
+            for (a, b) in force.iter().zip(&expected[3 * v..][..3]) {
+                assert!((a - b).abs() < 1e-11);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_mesh_far_from_the_origin_loses_few_digits() {
+    let mesh = spheroid(6, 9, &mut random(6));
+    let mut evaluator = evaluator(&mesh);
+    let far: Vec<f64> = mesh.0.iter().map(|x| x + 1e6).collect();
+    // What the doubles at the far place say, brought back without rounding.
+    let back: Vec<f64> = far.iter().map(|x| x - 1e6).collect();
+    let terms = all_terms();
+    let (near, near_forces) = evaluate(&mut evaluator, &terms, &back);
+    let (away, away_forces) = evaluate(&mut evaluator, &terms, &far);
+    for (a, b) in near.iter().zip(&away) {
+        assert!((a.energy / b.energy - 1.0).abs() < 1e-13);
+    }
+    let largest = near_forces.iter().fold(0.0, |m: f64, f| m.max(f.abs()));
+    for (a, b) in near_forces.iter().zip(&away_forces) {
+        assert!((a - b).abs() < 1e-12 * largest);
+    }
+}
+
+#[test]
+fn degenerate_and_lost_meshes_are_named_and_change_nothing() {
+    let mesh = spheroid(5, 7, &mut random(7));
+    let mut evaluator = evaluator(&mesh);
+    let terms = all_terms();
+    let mut contributions = vec![Contribution::default(); terms.len()];
+    let mut forces = vec![1.0; mesh.0.len()];
+
+    let mut lost = mesh.0.clone();
+    lost[3 * 11 + 1] = f64::INFINITY;
+    let result = evaluator.evaluate(terms.iter(), &lost, &mut contributions, Some(&mut forces));
+    assert!(matches!(result, Err(Error::NonFinitePosition { particle: 11, .. })), "{result:?}");
+
+    let mut flat = mesh.0.clone();
+    let [a, b, c] = mesh.1[4].map(|v| v as usize);
+    for axis in 0..3 {
+        // Small integers, so that the corners lie on one line exactly.
+        flat[3 * a + axis] = 1.0;
+        flat[3 * b + axis] = 2.0;
+        flat[3 * c + axis] = 4.0;
+    }
+    let result = evaluator.evaluate(terms.iter(), &flat, &mut contributions, Some(&mut forces));
+    assert!(matches!(result, Err(Error::DegenerateTriangle { triangle: 4, .. })), "{result:?}");
+    assert!(forces.iter().all(|force| *force == 1.0));
+
+    let fine = evaluator.evaluate(terms.iter(), &mesh.0, &mut contributions, Some(&mut forces));
+    assert_eq!(fine, Ok(()));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..Default::default() })]
+
+    /// No net force, no net torque; energy and forces turn and move with the mesh.
+    #[test]
+    fn rigid_motions(seed in 1u64..1000, rings in 3i64..8, sectors in 4i64..12, angle in 0.1f64..3.0) {
+        let mesh = spheroid(rings, sectors, &mut random(seed));
+        let mut evaluator = evaluator(&mesh);
+        let rotation = nalgebra::Rotation3::from_euler_angles(angle, 2.0 * angle, -angle);
+        let turn = |x: &[f64], shift: f64| -> Vec<f64> {
+            x.chunks(3).flat_map(|p| {
+                let p = rotation * nalgebra::Vector3::new(p[0], p[1], p[2]);
+                [p.x + shift, p.y - 2.0 * shift, p.z + shift]
+            }).collect()
+        };
+        for term in all_terms() {
+            let (energy, forces) = evaluate(&mut evaluator, &[term], &mesh.0);
+            let scale: f64 = forces.iter().map(|f| f.abs()).sum();
+            let mut net = nalgebra::Vector3::zeros();
+            let mut torque = nalgebra::Vector3::zeros();
+            for (x, f) in mesh.0.chunks(3).zip(forces.chunks(3)) {
+                let (x, f) = (nalgebra::Vector3::from_column_slice(x), nalgebra::Vector3::from_column_slice(f));
+                net += f;
+                torque += x.cross(&f);
+            }
+            // A repulsion that no triangle of a coarse mesh feels has no forces at all.
+            prop_assert!(net.norm() <= 1e-12 * scale && torque.norm() <= 1e-11 * scale);
+            let (turned, turned_forces) = evaluate(&mut evaluator, &[term], &turn(&mesh.0, 30.0));
+            let (one, two) = (energy[0].energy, turned[0].energy);
+            prop_assert!((one - two).abs() <= 1e-10 * one.abs());
+            for (a, b) in turned_forces.iter().zip(turn(&forces, 0.0)) {
+                prop_assert!((a - b).abs() <= 1e-9 * scale);
+            }
+        }
+    }
+}
