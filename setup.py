@@ -61,7 +61,8 @@ class BuildPlugin(build_ext):
     def build_core(self, package: Path, openmm: Path):
         """The Rust library with the C++ shim, and the headers for C++ users."""
         environment = dict(os.environ, OPENMM_DIR=str(openmm), PYTHON=sys.executable)
-        environment["HELFRICH_PACKAGE"] = "1"
+        if not self.inplace:
+            environment["HELFRICH_PACKAGE"] = "1"
         target = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
         command = ["cargo", "build", "--release", "--locked", "--lib"]
         if subprocess.call(command, cwd=ROOT, env=environment) != 0:
@@ -71,7 +72,9 @@ class BuildPlugin(build_ext):
         # Replacing the file instead of writing into it leaves programs that have it open in peace.
         library.unlink(missing_ok=True)
         shutil.copy2(target / "release" / "libopenmm_helfrich.so", library)
-        shutil.copytree(ROOT / "wrappers" / "include", package / "include", dirs_exist_ok=True)
+        for folder in ("include", "cmake"):
+            shutil.rmtree(package / folder, ignore_errors=True)
+            shutil.copytree(ROOT / "wrappers" / folder, package / folder)
 
     def build_wrapper(self, package: Path, openmm: Path):
         """The SWIG wrapper around the force classes, and its compiler flags."""

@@ -7,7 +7,7 @@
 #![allow(non_snake_case, reason = "names follow OpenMM's C API")]
 
 use crate::error::{Error, Result};
-use crate::membrane::Membrane;
+use crate::membrane::{self, Membrane};
 use crate::mesh::orientation;
 use crate::potentials::{self, Contribution, Element, MAX_PARAMETERS, REGISTRY, Term};
 use std::cell::RefCell;
@@ -17,6 +17,11 @@ use std::slice;
 
 thread_local! {
     static LAST_ERROR: RefCell<String> = const { RefCell::new(String::new()) };
+}
+
+/// Keep a message for [`Helfrich_lastError`].
+pub(crate) fn set_last_error(message: String) {
+    LAST_ERROR.with(|last| *last.borrow_mut() = message);
 }
 
 /// Run a fallible body and turn its result, or its panic, into a status and a message.
@@ -33,7 +38,7 @@ fn guarded(subject: &str, body: impl FnOnce() -> Result<()>) -> c_int {
             format!("{subject}: internal error in openmm-helfrich, please report it: {text}")
         }
     };
-    LAST_ERROR.with(|last| *last.borrow_mut() = message);
+    set_last_error(message);
     1
 }
 
@@ -77,6 +82,11 @@ unsafe fn copy_out(message: &str, buffer: *mut c_char, size: i64) -> i64 {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn Helfrich_lastError(buffer: *mut c_char, size: i64) -> i64 {
     LAST_ERROR.with(|last| unsafe { copy_out(&last.borrow(), buffer, size) })
+}
+
+/// The message of this thread's last failure.
+pub fn last_error() -> String {
+    LAST_ERROR.with(|last| last.borrow().clone())
 }
 
 /// The version of OpenMM that this library was built against.
@@ -271,6 +281,12 @@ pub unsafe extern "C" fn Helfrich_Membrane_destroy(membrane: *mut Membrane) {
     if !membrane.is_null() {
         drop(unsafe { Box::from_raw(membrane) });
     }
+}
+
+/// The number of membranes that exist in this process.
+#[unsafe(no_mangle)]
+pub extern "C" fn Helfrich_Membrane_count() -> i64 {
+    membrane::count()
 }
 
 /// Number of edges of a membrane.

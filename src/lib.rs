@@ -5,6 +5,8 @@
 //! mesh and turns the potentials' partial derivatives into forces. [`membrane`] lets the forces of one
 //! OpenMM Context that live on the same mesh share one evaluation, and [`ffi`] hands it all to C++.
 //!
+//! Rust programs use the forces through [`force`], beside OpenMM's C API in [`openmm`].
+//!
 //! Units are OpenMM's (nm, ps, amu, kJ/mol). Orientation and signs are stated in [`mesh::geometry`].
 //!
 //! ```
@@ -27,9 +29,11 @@
 #![deny(unsafe_op_in_unsafe_fn)]
 #![warn(missing_docs)]
 
+pub mod c_api;
 pub mod error;
 pub mod evaluator;
 pub mod ffi;
+pub mod force;
 pub mod membrane;
 pub mod mesh;
 pub mod openmm;

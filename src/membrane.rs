@@ -5,6 +5,15 @@ use crate::evaluator::CpuEvaluator;
 use crate::mesh::Topology;
 use crate::potentials::{Contribution, Element, Term};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicI64, Ordering};
+
+/// How many membranes there are, which tells whether forces share them and whether any are left over.
+static ALIVE: AtomicI64 = AtomicI64::new(0);
+
+/// The number of membranes that exist in this process.
+pub fn count() -> i64 {
+    ALIVE.load(Ordering::Relaxed)
+}
 
 /// A mesh with the buffers to evaluate any terms on it.
 pub struct Membrane {
@@ -21,6 +30,7 @@ impl Membrane {
     pub fn new(triangles: &[[i64; 3]], num_particles: usize) -> Result<Self> {
         let topology = Arc::new(Topology::new(triangles, num_particles)?);
         let evaluator = CpuEvaluator::new(topology.clone());
+        ALIVE.fetch_add(1, Ordering::Relaxed);
         Ok(Self { topology, evaluator, num_particles })
     }
 
@@ -79,5 +89,11 @@ impl Membrane {
             }
         }
         Ok(())
+    }
+}
+
+impl Drop for Membrane {
+    fn drop(&mut self) {
+        ALIVE.fetch_sub(1, Ordering::Relaxed);
     }
 }

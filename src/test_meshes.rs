@@ -78,34 +78,3 @@ pub fn noise(seed: u64) -> impl FnMut() -> f64 {
         (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 }
-
-/// Split each triangle into four, `times` times, on the unit sphere; then stretch and jitter, so that
-/// no symmetry can hide an error.
-pub fn jittered_sphere(times: usize, radius: f64, jitter: f64) -> TestMesh {
-    let (mut vertices, mut triangles) = icosahedron();
-    for _ in 0..times {
-        let mut middle = std::collections::HashMap::new();
-        let mut finer = Vec::with_capacity(4 * triangles.len());
-        for &[a, b, c] in &triangles {
-            let mut between = |i: i64, j: i64| {
-                *middle.entry((i.min(j), i.max(j))).or_insert_with(|| {
-                    let (p, q) = (vertices[i as usize], vertices[j as usize]);
-                    vertices.push(std::array::from_fn(|k| 0.5 * (p[k] + q[k])));
-                    vertices.len() as i64 - 1
-                })
-            };
-            let (ab, bc, ca) = (between(a, b), between(b, c), between(c, a));
-            finer.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
-        }
-        triangles = finer;
-    }
-    let mut random = noise(42);
-    for vertex in &mut vertices {
-        let norm = vertex.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let stretch = [1.0, 1.2, 0.7];
-        for k in 0..3 {
-            vertex[k] = radius * (vertex[k] / norm * stretch[k] + jitter * random()) + 3.0;
-        }
-    }
-    (vertices, triangles)
-}

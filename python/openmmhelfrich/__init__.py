@@ -20,6 +20,7 @@ from . import _plugin
 _plugin.load()
 
 from . import analysis  # noqa: E402
+from ._paths import cmake_path, include_path, library_path  # noqa: E402
 from .errors import MeshError  # noqa: E402
 from .forces import *  # noqa: E402, F403
 from .forces import __all__ as _force_names  # noqa: E402
@@ -28,4 +29,13 @@ from .vesicle import Vesicle  # noqa: E402
 
 __version__ = _plugin.version()
 
-__all__ = ["Mesh", "MeshError", "Vesicle", "analysis", *_force_names]
+__all__ = [
+    "Mesh",
+    "MeshError",
+    "Vesicle",
+    "analysis",
+    "cmake_path",
+    "include_path",
+    "library_path",
+    *_force_names,
+]

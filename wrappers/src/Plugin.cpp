@@ -1,26 +1,15 @@
+#include "ForceFactory.h"
 #include "MembraneForceImpl.h"
 #include "MembraneForceProxy.h"
-#include "OpenMMHelfrich.h"
 
 #include <openmm/Platform.h>
 
 #include <iostream>
-#include <type_traits>
 #include <typeinfo>
 
 using namespace HelfrichPlugin;
 
 namespace {
-
-/** A force with scalars that every potential allows. */
-template <class ForceClass>
-MembraneForce* makeForce() {
-    std::vector<int> none;
-    if constexpr (std::is_constructible_v<ForceClass, std::vector<int>, double, double>)
-        return new ForceClass(none, 1.0, 1.0);
-    else
-        return new ForceClass(none, 1.0);
-}
 
 template <class ForceClass>
 void registerForce(const std::string& name) {

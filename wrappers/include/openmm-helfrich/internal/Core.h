@@ -45,6 +45,7 @@ struct HelfrichContribution {
 };
 
 int64_t Helfrich_lastError(char* buffer, int64_t size);
+void helfrich_setLastError(const char* message);
 const char* Helfrich_openmmVersion();
 int Helfrich_Potential_find(const char* potential, int* index);
 int Helfrich_Potential_parameter(const char* potential, int index, HelfrichParameterInfo* info);

@@ -1,0 +1,162 @@
+//! The C API of the force classes, in the style of OpenMM's C wrapper: `Helfrich_BendingForce_create`
+//! and so on. `wrappers/include/OpenMMHelfrichCWrapper.h` declares the same functions.
+//!
+//! A force is an `OpenMM_Force` that `OpenMM_System_addForce` takes. Functions that can fail return
+//! 0 for success and 1 for failure, or a null pointer; [`crate::ffi::Helfrich_lastError`] has the message.
+//!
+//! They are made here, because a Rust library exports only Rust's own symbols; what they do is in
+//! `wrappers/src/CApi.cpp`.
+
+//!
+//! # Safety
+//! Every function takes pointers of C: a force made by one of the `create` functions and not yet
+//! destroyed (or given to a System that still lives), texts that end with a NUL, and arrays of the
+//! length that is passed beside them.
+
+#![allow(non_snake_case, reason = "names follow OpenMM's C API")]
+#![allow(clippy::missing_safety_doc, reason = "the safety of all functions is stated above")]
+
+use crate::ffi::set_last_error;
+use std::ffi::{CStr, c_char, c_double, c_int, c_void};
+
+/// A force of this plugin: the address of an `OpenMM::Force`.
+pub type Force = c_void;
+
+unsafe extern "C" {
+    fn helfrich_shim_createForce(
+        class: *const c_char,
+        triangles: *const c_int,
+        num_triangles: c_int,
+        values: *const c_double,
+        num_values: c_int,
+        form: c_int,
+    ) -> *mut Force;
+}
+
+/// A force of any class, of variant 0; null if an argument is refused.
+///
+/// # Safety
+/// `class` must end with a NUL, and `triangles` hold three values a triangle.
+pub(crate) unsafe fn create(
+    class: *const c_char,
+    triangles: *const c_int,
+    num_triangles: c_int,
+    values: &[f64],
+) -> *mut Force {
+    let count = values.len() as c_int;
+    unsafe { helfrich_shim_createForce(class, triangles, num_triangles, values.as_ptr(), count, 0) }
+}
+
+/// Lets the shim report what it caught.
+///
+/// # Safety
+/// `message` must end with a NUL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn helfrich_setLastError(message: *const c_char) {
+    set_last_error(unsafe { CStr::from_ptr(message) }.to_string_lossy().into_owned());
+}
+
+/// Functions that only pass on to the shim.
+macro_rules! forward {
+    ($($(#[$doc:meta])* $name:ident => $shim:ident($($argument:ident: $type:ty),*) $(-> $result:ty)?;)*) => {
+        unsafe extern "C" {
+            $(fn $shim($($argument: $type),*) $(-> $result)?;)*
+        }
+        $($(#[$doc])*
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $name($($argument: $type),*) $(-> $result)? {
+            unsafe { $shim($($argument),*) }
+        })*
+    };
+}
+
+forward! {
+    /// Delete a force that no System owns.
+    Helfrich_MembraneForce_destroy => helfrich_shim_destroyForce(force: *mut Force);
+    /// Add a triangle; returns its index.
+    Helfrich_MembraneForce_addTriangle =>
+        helfrich_shim_addTriangle(force: *mut Force, particle1: c_int, particle2: c_int, particle3: c_int) -> c_int;
+    /// The number of triangles.
+    Helfrich_MembraneForce_getNumTriangles => helfrich_shim_getNumTriangles(force: *mut Force) -> c_int;
+    /// Write the three corners of a triangle.
+    Helfrich_MembraneForce_getTriangle =>
+        helfrich_shim_getTriangle(force: *mut Force, index: c_int, corners: *mut c_int) -> c_int;
+    /// Read a scalar by its name.
+    Helfrich_MembraneForce_getParameterValue =>
+        helfrich_shim_getValue(force: *mut Force, parameter: *const c_char, value: *mut c_double) -> c_int;
+    /// Set a scalar by its name.
+    Helfrich_MembraneForce_setParameterValue =>
+        helfrich_shim_setValue(force: *mut Force, parameter: *const c_char, value: c_double) -> c_int;
+    /// Give a scalar its own value for each vertex or triangle.
+    Helfrich_MembraneForce_setElementValues =>
+        helfrich_shim_setElementValues(force: *mut Force, parameter: *const c_char, values: *const c_double, count: c_int) -> c_int;
+    /// Choose the variant of the potential.
+    Helfrich_MembraneForce_setForm => helfrich_shim_setForm(force: *mut Force, form: c_int) -> c_int;
+    /// Switch something on or off.
+    Helfrich_MembraneForce_setSwitch =>
+        helfrich_shim_setSwitch(force: *mut Force, name: *const c_char, on: c_int) -> c_int;
+    /// Let a Context parameter take the place of a scalar.
+    Helfrich_MembraneForce_setContextParameter =>
+        helfrich_shim_setContextParameter(force: *mut Force, parameter: *const c_char, name: *const c_char) -> c_int;
+    /// Ask for the derivative of the energy with respect to a Context parameter.
+    Helfrich_MembraneForce_addEnergyParameterDerivative =>
+        helfrich_shim_addEnergyParameterDerivative(force: *mut Force, name: *const c_char) -> c_int;
+    /// Copy the scalars to a Context (an `OpenMM_Context`).
+    Helfrich_MembraneForce_updateParametersInContext =>
+        helfrich_shim_updateParametersInContext(force: *mut Force, context: *mut c_void) -> c_int;
+}
+
+/// `create`, and `get` and `set` of each scalar, for a force class.
+macro_rules! force_class {
+    ($class:ident($($parameter:ident),*) $($form:ident)?) => {
+        paste::paste! {
+            #[doc = concat!("Make a ", stringify!($class), "; null if an argument is refused.")]
+            #[unsafe(no_mangle)]
+            pub unsafe extern "C" fn [<Helfrich_ $class _create>](
+                triangles: *const c_int,
+                num_triangles: c_int,
+                $([<$parameter:snake>]: c_double,)*
+                $($form: c_int,)?
+            ) -> *mut Force {
+                let values = [$([<$parameter:snake>]),*];
+                #[allow(unused_mut, unused_assignments)]
+                let mut variant = 0;
+                $(variant = $form;)?
+                let class = concat!(stringify!($class), "\0").as_ptr().cast();
+                let count = values.len() as c_int;
+                unsafe {
+                    helfrich_shim_createForce(class, triangles, num_triangles, values.as_ptr(), count, variant)
+                }
+            }
+            $(
+                #[doc = concat!("The scalar ", stringify!($parameter), " of a ", stringify!($class), ".")]
+                #[unsafe(no_mangle)]
+                pub unsafe extern "C" fn [<Helfrich_ $class _get $parameter:camel>](force: *mut Force) -> c_double {
+                    let mut value = f64::NAN;
+                    let name = concat!(stringify!($parameter), "\0").as_ptr().cast();
+                    unsafe { Helfrich_MembraneForce_getParameterValue(force, name, &mut value) };
+                    value
+                }
+
+                #[doc = concat!("Set the scalar ", stringify!($parameter), " of a ", stringify!($class), ".")]
+                #[unsafe(no_mangle)]
+                pub unsafe extern "C" fn [<Helfrich_ $class _set $parameter:camel>](
+                    force: *mut Force,
+                    value: c_double,
+                ) -> c_int {
+                    let name = concat!(stringify!($parameter), "\0").as_ptr().cast();
+                    unsafe { Helfrich_MembraneForce_setParameterValue(force, name, value) }
+                }
+            )*
+        }
+    };
+}
+
+force_class!(SurfaceAreaForce(modulus, target));
+force_class!(EnclosedVolumeForce(modulus, target));
+force_class!(BendingForce(rigidity, spontaneousCurvature) scheme);
+force_class!(TriangleHeightForce(minHeight, epsilon));
+force_class!(DihedralForce(stiffness) form);
+force_class!(TriangleAreaForce(modulus, target));
+force_class!(PlaquetteAreaForce(stiffness, target));
+force_class!(TriangleAreaRepulsionForce(minArea, epsilon));

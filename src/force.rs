@@ -1,0 +1,159 @@
+//! The OpenMM force classes for Rust programs, beside OpenMM's C API in [`crate::openmm`].
+
+use crate::c_api;
+use crate::error::{Error, Result};
+use crate::ffi::last_error;
+use crate::openmm::OpenMM_Force;
+use crate::potentials;
+use std::ffi::{CString, c_int};
+use std::ptr::NonNull;
+
+/// A force on a membrane that no System owns yet.
+///
+/// ```
+/// use openmm_helfrich::force::MembraneForce;
+/// let octahedron =
+///     [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
+/// let mut bending = MembraneForce::new("BendingForce", &octahedron, &[50.0, 0.0])?;
+/// bending.set("rigidity", 40.0)?.set_variant("GompperKrollBarycentric")?;
+/// assert_eq!(bending.get("rigidity")?, 40.0);
+/// assert!(bending.set("rigidity", f64::NAN).is_err());
+/// # Ok::<(), openmm_helfrich::error::Error>(())
+/// ```
+pub struct MembraneForce {
+    force: NonNull<c_api::Force>,
+    class: &'static str,
+}
+
+/// The message of a C function that has failed.
+fn check(status: c_int) -> Result<()> {
+    if status == 0 { Ok(()) } else { Err(Error::Contract(last_error())) }
+}
+
+fn c_text(text: &str) -> Result<CString> {
+    CString::new(text).map_err(|_| Error::Contract(format!("the name {text:?} has a NUL inside")))
+}
+
+impl MembraneForce {
+    /// A force of a class ("BendingForce") on triangles of particle indices, counter-clockwise seen from
+    /// outside, with the scalars of the class in the order of its C++ constructor.
+    ///
+    /// # Errors
+    /// An unknown class, a wrong number of scalars, or a scalar outside its domain.
+    pub fn new(class: &str, triangles: &[[c_int; 3]], values: &[f64]) -> Result<Self> {
+        let known = potentials::find(class)?.name();
+        let count = |length: usize| {
+            c_int::try_from(length).map_err(|_| Error::Contract("too many triangles".to_owned()))
+        };
+        let name = c_text(class)?;
+        let corners = triangles.as_flattened();
+        // SAFETY: the arrays are as long as is said, and the shim copies them.
+        let force = unsafe {
+            c_api::create(name.as_ptr(), corners.as_ptr(), count(triangles.len())?, values)
+        };
+        let force = NonNull::new(force).ok_or_else(|| Error::Contract(last_error()))?;
+        Ok(Self { force, class: known })
+    }
+
+    /// The value of a scalar, in OpenMM's units.
+    ///
+    /// # Errors
+    /// An unknown name.
+    pub fn get(&self, parameter: &str) -> Result<f64> {
+        let (name, mut value) = (c_text(parameter)?, f64::NAN);
+        // SAFETY: the force is alive and the name ends with a NUL.
+        check(unsafe {
+            c_api::Helfrich_MembraneForce_getParameterValue(
+                self.force.as_ptr(),
+                name.as_ptr(),
+                &mut value,
+            )
+        })?;
+        Ok(value)
+    }
+
+    /// Set a scalar.
+    ///
+    /// # Errors
+    /// An unknown name, or a value outside its domain.
+    pub fn set(&mut self, parameter: &str, value: f64) -> Result<&mut Self> {
+        let name = c_text(parameter)?;
+        // SAFETY: the force is alive and the name ends with a NUL.
+        check(unsafe {
+            c_api::Helfrich_MembraneForce_setParameterValue(
+                self.force.as_ptr(),
+                name.as_ptr(),
+                value,
+            )
+        })?;
+        Ok(self)
+    }
+
+    /// Give a scalar its own value for each vertex or triangle.
+    ///
+    /// # Errors
+    /// An unknown name, a scalar that cannot have them, or a value outside its domain.
+    pub fn set_elements(&mut self, parameter: &str, values: &[f64]) -> Result<&mut Self> {
+        let name = c_text(parameter)?;
+        // SAFETY: the force is alive, the name ends with a NUL, the values are as many as is said.
+        check(unsafe {
+            c_api::Helfrich_MembraneForce_setElementValues(
+                self.force.as_ptr(),
+                name.as_ptr(),
+                values.as_ptr(),
+                values.len() as c_int,
+            )
+        })?;
+        Ok(self)
+    }
+
+    /// Choose a variant by its name, such as a bending scheme.
+    ///
+    /// # Errors
+    /// An unknown name.
+    pub fn set_variant(&mut self, name: &str) -> Result<&mut Self> {
+        let (_, names) = potentials::find(self.class)?.forms().unwrap_or((c"variant", &[]));
+        let form = names.iter().position(|known| known.to_bytes() == name.as_bytes());
+        let form = form.ok_or_else(|| Error::UnknownName {
+            what: "variant",
+            name: name.to_owned(),
+            known: names.iter().map(|name| name.to_string_lossy()).collect::<Vec<_>>().join(", "),
+        })?;
+        // SAFETY: the force is alive.
+        check(unsafe {
+            c_api::Helfrich_MembraneForce_setForm(self.force.as_ptr(), form as c_int)
+        })?;
+        Ok(self)
+    }
+
+    /// Let a Context parameter take the place of a scalar.
+    ///
+    /// # Errors
+    /// An unknown scalar.
+    pub fn set_context_parameter(&mut self, parameter: &str, name: &str) -> Result<&mut Self> {
+        let (parameter, name) = (c_text(parameter)?, c_text(name)?);
+        // SAFETY: the force is alive and the texts end with a NUL.
+        check(unsafe {
+            c_api::Helfrich_MembraneForce_setContextParameter(
+                self.force.as_ptr(),
+                parameter.as_ptr(),
+                name.as_ptr(),
+            )
+        })?;
+        Ok(self)
+    }
+
+    /// The force for `OpenMM_System_addForce`, which takes it over.
+    pub fn into_openmm(self) -> *mut OpenMM_Force {
+        let force = self.force.as_ptr().cast();
+        std::mem::forget(self);
+        force
+    }
+}
+
+impl Drop for MembraneForce {
+    fn drop(&mut self) {
+        // SAFETY: no System has taken the force over.
+        unsafe { c_api::Helfrich_MembraneForce_destroy(self.force.as_ptr()) };
+    }
+}

@@ -1,0 +1,115 @@
+#ifndef OPENMM_HELFRICH_CWRAPPER_H_
+#define OPENMM_HELFRICH_CWRAPPER_H_
+
+/**
+ * The plugin's forces for C, in the style of OpenMMCWrapper.h. Link libOpenMMHelfrich.so and libOpenMM.so.
+ *
+ * A create function makes an OpenMM_Force for OpenMM_System_addForce(), which takes it over; a force that no
+ * System owns is deleted with Helfrich_MembraneForce_destroy(). What the forces compute, and the units of
+ * their scalars, is documented in the C++ headers in openmm-helfrich/.
+ *
+ * Functions that return int return 0 for success and 1 for failure, the create functions null for failure;
+ * Helfrich_lastError() then has the message. (OpenMM's own C functions end the program instead.)
+ */
+
+#include <OpenMMCWrapper.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Copy the message of this thread's last failure into a buffer of `size` bytes; returns its length. */
+extern int64_t Helfrich_lastError(char* buffer, int64_t size);
+/** The version of OpenMM that the plugin was built for. */
+extern const char* Helfrich_openmmVersion(void);
+
+/* For every force. `parameter` is the name of a scalar, such as "rigidity". */
+extern void Helfrich_MembraneForce_destroy(OpenMM_Force* force);
+extern int Helfrich_MembraneForce_addTriangle(OpenMM_Force* force, int particle1, int particle2, int particle3);
+extern int Helfrich_MembraneForce_getNumTriangles(OpenMM_Force* force);
+extern int Helfrich_MembraneForce_getTriangle(OpenMM_Force* force, int index, int* corners);
+extern int Helfrich_MembraneForce_getParameterValue(OpenMM_Force* force, const char* parameter, double* value);
+extern int Helfrich_MembraneForce_setParameterValue(OpenMM_Force* force, const char* parameter, double value);
+/** One value for each vertex (in ascending order of particle index) or triangle; count 0 goes back. */
+extern int Helfrich_MembraneForce_setElementValues(OpenMM_Force* force, const char* parameter, const double* values,
+                                                   int count);
+/** Choose a bending scheme or a form of the dihedral potential. */
+extern int Helfrich_MembraneForce_setForm(OpenMM_Force* force, int form);
+/** Switch something on or off: "unsignedSpontaneousCurvature" of a BendingForce. */
+extern int Helfrich_MembraneForce_setSwitch(OpenMM_Force* force, const char* name, int on);
+extern int Helfrich_MembraneForce_setContextParameter(OpenMM_Force* force, const char* parameter, const char* name);
+extern int Helfrich_MembraneForce_addEnergyParameterDerivative(OpenMM_Force* force, const char* name);
+extern int Helfrich_MembraneForce_updateParametersInContext(OpenMM_Force* force, OpenMM_Context* context);
+
+/** The schemes of BendingForce. */
+typedef enum {
+    Helfrich_BendingForce_Julicher = 0,
+    Helfrich_BendingForce_GompperKroll = 1,
+    Helfrich_BendingForce_GompperKrollBarycentric = 2,
+    Helfrich_BendingForce_JulicherVoronoi = 3,
+    Helfrich_BendingForce_Espriu = 4
+} Helfrich_BendingForce_Scheme;
+
+/** The forms of DihedralForce. */
+typedef enum {
+    Helfrich_DihedralForce_Quartic = 0,
+    Helfrich_DihedralForce_Cosine = 1,
+    Helfrich_DihedralForce_Exp = 2,
+    Helfrich_DihedralForce_SmoothExp = 3,
+    Helfrich_DihedralForce_SmoothExp46 = 4
+} Helfrich_DihedralForce_Form;
+
+/* `triangles` holds three particle indices a triangle, counter-clockwise seen from outside. */
+
+extern OpenMM_Force* Helfrich_SurfaceAreaForce_create(const int* triangles, int numTriangles, double modulus, double target);
+extern double Helfrich_SurfaceAreaForce_getModulus(OpenMM_Force* force);
+extern int Helfrich_SurfaceAreaForce_setModulus(OpenMM_Force* force, double modulus);
+extern double Helfrich_SurfaceAreaForce_getTarget(OpenMM_Force* force);
+extern int Helfrich_SurfaceAreaForce_setTarget(OpenMM_Force* force, double target);
+
+extern OpenMM_Force* Helfrich_EnclosedVolumeForce_create(const int* triangles, int numTriangles, double modulus, double target);
+extern double Helfrich_EnclosedVolumeForce_getModulus(OpenMM_Force* force);
+extern int Helfrich_EnclosedVolumeForce_setModulus(OpenMM_Force* force, double modulus);
+extern double Helfrich_EnclosedVolumeForce_getTarget(OpenMM_Force* force);
+extern int Helfrich_EnclosedVolumeForce_setTarget(OpenMM_Force* force, double target);
+
+extern OpenMM_Force* Helfrich_BendingForce_create(const int* triangles, int numTriangles, double rigidity, double spontaneousCurvature, int scheme);
+extern double Helfrich_BendingForce_getRigidity(OpenMM_Force* force);
+extern int Helfrich_BendingForce_setRigidity(OpenMM_Force* force, double rigidity);
+extern double Helfrich_BendingForce_getSpontaneousCurvature(OpenMM_Force* force);
+extern int Helfrich_BendingForce_setSpontaneousCurvature(OpenMM_Force* force, double spontaneousCurvature);
+
+extern OpenMM_Force* Helfrich_TriangleHeightForce_create(const int* triangles, int numTriangles, double minHeight, double epsilon);
+extern double Helfrich_TriangleHeightForce_getMinHeight(OpenMM_Force* force);
+extern int Helfrich_TriangleHeightForce_setMinHeight(OpenMM_Force* force, double minHeight);
+extern double Helfrich_TriangleHeightForce_getEpsilon(OpenMM_Force* force);
+extern int Helfrich_TriangleHeightForce_setEpsilon(OpenMM_Force* force, double epsilon);
+
+extern OpenMM_Force* Helfrich_DihedralForce_create(const int* triangles, int numTriangles, double stiffness, int form);
+extern double Helfrich_DihedralForce_getStiffness(OpenMM_Force* force);
+extern int Helfrich_DihedralForce_setStiffness(OpenMM_Force* force, double stiffness);
+
+extern OpenMM_Force* Helfrich_TriangleAreaForce_create(const int* triangles, int numTriangles, double modulus, double target);
+extern double Helfrich_TriangleAreaForce_getModulus(OpenMM_Force* force);
+extern int Helfrich_TriangleAreaForce_setModulus(OpenMM_Force* force, double modulus);
+extern double Helfrich_TriangleAreaForce_getTarget(OpenMM_Force* force);
+extern int Helfrich_TriangleAreaForce_setTarget(OpenMM_Force* force, double target);
+
+extern OpenMM_Force* Helfrich_PlaquetteAreaForce_create(const int* triangles, int numTriangles, double stiffness, double target);
+extern double Helfrich_PlaquetteAreaForce_getStiffness(OpenMM_Force* force);
+extern int Helfrich_PlaquetteAreaForce_setStiffness(OpenMM_Force* force, double stiffness);
+extern double Helfrich_PlaquetteAreaForce_getTarget(OpenMM_Force* force);
+extern int Helfrich_PlaquetteAreaForce_setTarget(OpenMM_Force* force, double target);
+
+extern OpenMM_Force* Helfrich_TriangleAreaRepulsionForce_create(const int* triangles, int numTriangles, double minArea, double epsilon);
+extern double Helfrich_TriangleAreaRepulsionForce_getMinArea(OpenMM_Force* force);
+extern int Helfrich_TriangleAreaRepulsionForce_setMinArea(OpenMM_Force* force, double minArea);
+extern double Helfrich_TriangleAreaRepulsionForce_getEpsilon(OpenMM_Force* force);
+extern int Helfrich_TriangleAreaRepulsionForce_setEpsilon(OpenMM_Force* force, double epsilon);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /*OPENMM_HELFRICH_CWRAPPER_H_*/
