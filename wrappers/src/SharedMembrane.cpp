@@ -30,7 +30,7 @@ shared_ptr<SharedMembrane> SharedMembrane::acquire(const string& subject, Contex
             entry = registry.erase(entry);
             continue;
         }
-        if (entry->first == &context && membrane->triangles == triangles)
+        if (entry->first == &context && membrane->triangles == triangles && membrane->belongsTo(context))
             return membrane;
         ++entry;
     }
@@ -47,6 +47,13 @@ SharedMembrane::SharedMembrane(const string& subject, const ContextImpl& context
 
 SharedMembrane::~SharedMembrane() {
     Helfrich_Membrane_destroy(core);
+}
+
+bool SharedMembrane::belongsTo(ContextImpl& context) const {
+    const vector<ForceImpl*>& impls = context.getForceImpls();
+    return std::all_of(members.begin(), members.end(), [&](const MembraneForceImpl* member) {
+        return std::find(impls.begin(), impls.end(), static_cast<const ForceImpl*>(member)) != impls.end();
+    });
 }
 
 void SharedMembrane::join(MembraneForceImpl* member) {

@@ -64,6 +64,12 @@ private:
     SharedMembrane(const std::string& subject, const OpenMM::ContextImpl& context,
                    const std::vector<int>& triangles);
 
+    /**
+     * Whether the members are forces of this very Context. When a Context cannot be made, OpenMM leaves
+     * its forces behind and frees its memory, and the next Context may get the same address.
+     */
+    bool belongsTo(OpenMM::ContextImpl& context) const;
+
     std::vector<int> triangles;
     HelfrichMembrane* core;
     std::vector<MembraneForceImpl*> members;
