@@ -39,8 +39,6 @@ using namespace HelfrichPlugin;
 /* Arrays come as one buffer, through _arguments.py; numbers go by the setters, which know units. */
 %ignore HelfrichPlugin::MembraneForce::addTriangles;
 %ignore HelfrichPlugin::MembraneForce::getTriangles;
-%ignore HelfrichPlugin::MembraneForce::getForm;
-%ignore HelfrichPlugin::MembraneForce::setForm;
 %ignore HelfrichPlugin::MembraneForce::setParameterValue;
 %nodefaultctor HelfrichPlugin::MembraneForce;
 
