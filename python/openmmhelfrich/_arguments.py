@@ -224,16 +224,21 @@ def accept_units(force: type) -> None:
         values, elements = [], {}
         for s in known:
             given = arguments[s.name]
-            if s.element_setter is not None and np.ndim(_plain(name, s, given)) > 0:
-                elements[s.name] = element_values(name, s, given)
-                # The scalar is not used then, but must be a possible value.
-                given = float(np.mean(elements[s.name])) if elements[s.name] else np.nan
+            where = f"{name}: {s.name}"
+            if s.element_setter is not None and np.ndim(_plain(where, s, given)) > 0:
+                elements[s] = element_values(name, s, given)
+                # Any scalar is allowed to be 1, until the values themselves are accepted.
+                given = 1.0
             values.append(scalar(name, s, given))
         if form is not None:
             values.append(arguments[form])
         swig_init(self, [], *values)
-        for key, list_ in elements.items():
-            self.setElementValues(key, list_)
+        for s, list_ in elements.items():
+            if not list_:
+                raise ValueError(f"{name}: {s.name} is an empty list; give one value or many")
+            self.setElementValues(s.name, list_)
+            # The scalar is not used beside them; their mean is what a reader would expect.
+            getattr(self, "set" + _capitalised(s.name))(float(np.mean(list_)))
         self._addTriangleBuffer(corners.data)
 
     init.__signature__ = signature.replace(

@@ -5,13 +5,25 @@ Farnudi, Ejtehadi and Everaers, *Dynamics of fluid bilayer vesicles*, Phys. Rev.
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
+import numpy as np
 import openmm
 from openmm import app, unit
 
-from . import BendingForce, EnclosedVolumeForce, SurfaceAreaForce, TriangleHeightForce
 from .analysis import theory
+from .forces import (
+    BendingForce,
+    DihedralForce,
+    EnclosedVolumeForce,
+    MembraneForce,
+    PlaquetteAreaForce,
+    SurfaceAreaForce,
+    TriangleAreaForce,
+    TriangleAreaRepulsionForce,
+    TriangleHeightForce,
+)
 
 # kBT at the paper's 300 K, in kJ/mol: its energies are given in multiples of this.
 KBT = theory.BOLTZMANN * 300
@@ -36,8 +48,9 @@ class Vesicle:
     ----------
     mesh : Mesh
         The vertices become particles in their order, at their places.
-    rigidity : float or Quantity
-        Bending rigidity κ, kJ/mol. Default 20 kBT at 300 K.
+    rigidity : float, array_like or Quantity
+        Bending rigidity κ, kJ/mol, of the membrane or, with shape (num_vertices,), of each vertex.
+        Default 20 kBT at 300 K.
     area_modulus, volume_modulus : float or Quantity
         kA, kJ/mol/nm², default 1.3, and kV, kJ/mol/nm³, default 0.04. Zero switches the term off:
         with kV = 0 the membrane is permeable, as in the paper's fluctuation spectra.
@@ -50,12 +63,27 @@ class Vesicle:
         Mass of every vertex, amu. Default 50.
     scheme : int
         Discretization of the bending energy, a constant of `BendingForce`. Default Jülicher.
-    spontaneous_curvature : float or Quantity
-        C0, 1/nm, positive for bulging outward; 2/r for a preferred sphere of radius r.
+    spontaneous_curvature : float, array_like or Quantity
+        C0, 1/nm, positive for bulging outward; 2/r for a preferred sphere of radius r. One value,
+        or one for each vertex, shape (num_vertices,).
     area, volume : float or Quantity, optional
         Targets A0, nm², and V0, nm³. Default: the mesh's own.
     reduced_volume : float, optional
         V0 as a multiple of the volume of the sphere of area A0, instead of `volume`.
+    unsigned_spontaneous_curvature : bool
+        Take the magnitude of the curvature in the linear term of C0, as VCM does.
+    dihedral_stiffness : float or Quantity
+        Stiffness K of a `DihedralForce`, kJ/mol. Default 0: without that force.
+    dihedral_form : int
+        Form of the dihedral potential, a constant of `DihedralForce`. Default quartic.
+    triangle_area_modulus : float or Quantity
+        Modulus of a `TriangleAreaForce` that keeps each triangle near the area that it has in the
+        mesh, kJ/mol/nm². Default 0: without.
+    plaquette_stiffness : float or Quantity
+        Stiffness of a `PlaquetteAreaForce` with target A0, kJ/mol. Default 0: without.
+    min_triangle_area : float or Quantity
+        Area below which a `TriangleAreaRepulsionForce` of strength ε repels, nm². Default 0:
+        without.
 
     Raises
     ------
@@ -92,19 +120,33 @@ class Vesicle:
         area=None,
         volume=None,
         reduced_volume=None,
+        unsigned_spontaneous_curvature=False,
+        dihedral_stiffness=0.0,
+        dihedral_form=DihedralForce.Quartic,
+        triangle_area_modulus=0.0,
+        plaquette_stiffness=0.0,
+        min_triangle_area=0.0,
     ):
         nm = unit.nanometer
         self._mesh = mesh
-        self._rigidity = _number("rigidity", rigidity, _ENERGY)
+        self._rigidity = _field("rigidity", rigidity, _ENERGY, mesh)
         self._area_modulus = _number("area_modulus", area_modulus, _ENERGY / nm**2)
         self._volume_modulus = _number("volume_modulus", volume_modulus, _ENERGY / nm**3)
         self._softness = _number("softness", softness, unit.dimensionless)
         self._epsilon = _number("epsilon", epsilon, _ENERGY)
         self._mass = _number("mass", mass, unit.dalton, zero=False)
         self._scheme = scheme
-        self._spontaneous_curvature = _number(
-            "spontaneous_curvature", spontaneous_curvature, nm**-1, negative=True
+        self._spontaneous_curvature = _field(
+            "spontaneous_curvature", spontaneous_curvature, nm**-1, mesh, negative=True
         )
+        self._unsigned = bool(unsigned_spontaneous_curvature)
+        self._dihedral_stiffness = _number("dihedral_stiffness", dihedral_stiffness, _ENERGY)
+        self._dihedral_form = dihedral_form
+        self._triangle_area_modulus = _number(
+            "triangle_area_modulus", triangle_area_modulus, _ENERGY / nm**2
+        )
+        self._plaquette_stiffness = _number("plaquette_stiffness", plaquette_stiffness, _ENERGY)
+        self._min_triangle_area = _number("min_triangle_area", min_triangle_area, nm**2)
         self._min_height = _plain(mesh.min_height(self._softness), nm)
         self._area = _number("area", mesh.area if area is None else area, nm**2, zero=False)
         if reduced_volume is None:
@@ -119,14 +161,17 @@ class Vesicle:
 
     def __repr__(self):
         return (
-            f"Vesicle({self._mesh.num_vertices} vertices, rigidity={self._rigidity:.6g}, "
+            f"Vesicle({self._mesh.num_vertices} vertices, rigidity={np.mean(self._rigidity):.6g}, "
             f"area_modulus={self._area_modulus:.6g}, volume_modulus={self._volume_modulus:.6g}, "
             f"softness={self._softness:.6g}, epsilon={self._epsilon:.6g}, mass={self._mass:.6g}, "
             f"area={self._area:.6g}, volume={self._volume:.6g})"
         )
 
     mesh = property(lambda self: self._mesh, doc="The Mesh with which the vesicle starts.")
-    rigidity = property(lambda self: self._rigidity, doc="Bending rigidity κ, kJ/mol.")
+    rigidity = property(
+        lambda self: self._rigidity,
+        doc="Bending rigidity κ, kJ/mol, a number or one for each vertex.",
+    )
     area_modulus = property(lambda self: self._area_modulus, doc="kA, kJ/mol/nm².")
     volume_modulus = property(lambda self: self._volume_modulus, doc="kV, kJ/mol/nm³.")
     softness = property(lambda self: self._softness, doc="Softness Ξ of the mesh.")
@@ -134,7 +179,9 @@ class Vesicle:
     epsilon = property(lambda self: self._epsilon, doc="ε of the triangle heights, kJ/mol.")
     mass = property(lambda self: self._mass, doc="Mass of one vertex, amu.")
     scheme = property(lambda self: self._scheme, doc="Bending scheme of `BendingForce`.")
-    spontaneous_curvature = property(lambda self: self._spontaneous_curvature, doc="C0, 1/nm.")
+    spontaneous_curvature = property(
+        lambda self: self._spontaneous_curvature, doc="C0, 1/nm, a number or one for each vertex."
+    )
     area = property(lambda self: self._area, doc="Target area A0, nm².")
     volume = property(lambda self: self._volume, doc="Target volume V0, nm³.")
 
@@ -152,7 +199,7 @@ class Vesicle:
     def tau_2(self):
         """Period of the slowest mode, l = 2, without friction, ps: τ_2 = 2π/ω_2 (A30)."""
         return theory.mode_period(
-            2, self._rigidity, self._mass, self._mesh.num_vertices, self.radius
+            2, float(np.mean(self._rigidity)), self._mass, self._mesh.num_vertices, self.radius
         )
 
     @property
@@ -177,17 +224,18 @@ class Vesicle:
         return 0.1 * math.sqrt(self._softness) * self.tau_fastest
 
     def add_to(self, system, force_groups=None):
-        """Add the particles and the four forces to a System.
+        """Add the particles and the forces to a System.
 
         The particles follow those which the System has, so several vesicles can share one. Each
-        force gets a force group of its own and a name: "area", "volume", "bending", "heights".
+        force gets a force group of its own and a name: "area", "volume", "bending", "heights", and
+        "dihedrals", "triangle_areas", "plaquettes", "triangle_repulsion" if they are switched on.
 
         Parameters
         ----------
         system : openmm.System
-        force_groups : sequence of four int, optional
-            Groups of area, volume, bending and heights. Default: the four lowest groups that no
-            force of the System uses.
+        force_groups : sequence of int, optional
+            One group for each force, in the order above. Default: the lowest groups that no force
+            of the System uses.
 
         Returns
         -------
@@ -197,20 +245,21 @@ class Vesicle:
         Raises
         ------
         ValueError
-            Fewer than four force groups are free, or `force_groups` is not four of 0 … 31.
+            Too few force groups are free, or `force_groups` is not one of 0 … 31 for each force.
         """
+        count = len(self._forces(0))
         if force_groups is None:
             used = {force.getForceGroup() for force in system.getForces()}
-            force_groups = [group for group in range(_NUM_GROUPS) if group not in used][:4]
-            if len(force_groups) < 4:
+            force_groups = [group for group in range(_NUM_GROUPS) if group not in used][:count]
+            if len(force_groups) < count:
                 raise ValueError(
                     f"Vesicle: the System's forces use {len(used)} of the {_NUM_GROUPS} force "
-                    "groups, and four are needed; pass force_groups to share some"
+                    f"groups, and {count} are needed; pass force_groups to share some"
                 )
         groups = [int(group) for group in force_groups]
-        if len(groups) != 4 or not all(0 <= group < _NUM_GROUPS for group in groups):
+        if len(groups) != count or not all(0 <= group < _NUM_GROUPS for group in groups):
             raise ValueError(
-                f"Vesicle: force_groups needs four groups of 0 to {_NUM_GROUPS - 1}, "
+                f"Vesicle: force_groups needs {count} groups of 0 to {_NUM_GROUPS - 1}, "
                 f"got {list(force_groups)}"
             )
         offset = system.getNumParticles()
@@ -222,7 +271,7 @@ class Vesicle:
             system.addParticle(self._mass)
         for force in forces.values():
             system.addForce(force)
-        placement = Placement(system, offset, self._mesh.num_vertices, **forces)
+        placement = Placement(system, offset, self._mesh.num_vertices, forces)
         self._placement = placement
         return placement
 
@@ -280,7 +329,7 @@ class Vesicle:
         Returns
         -------
         dict of str to float
-            "area", "volume", "bending" and "heights", kJ/mol.
+            Energy of each of the forces, kJ/mol.
 
         Raises
         ------
@@ -290,21 +339,35 @@ class Vesicle:
         return self.placement.energies(context)
 
     def _forces(self, offset):
-        """The four forces by name, for particles that start at `offset`."""
-        mesh = self._mesh
+        """The forces by name, for particles that start at `offset`."""
+        mesh, at = self._mesh, {"offset": offset}
         bending = BendingForce(
-            mesh,
-            self._rigidity,
-            self._spontaneous_curvature,
-            self._scheme,
-            offset=offset,
+            mesh, self._rigidity, self._spontaneous_curvature, self._scheme, **at
         )
-        return {
-            "area": SurfaceAreaForce(mesh, self._area_modulus, self._area, offset=offset),
-            "volume": EnclosedVolumeForce(mesh, self._volume_modulus, self._volume, offset=offset),
+        bending.setUnsignedSpontaneousCurvature(self._unsigned)
+        forces = {
+            "area": SurfaceAreaForce(mesh, self._area_modulus, self._area, **at),
+            "volume": EnclosedVolumeForce(mesh, self._volume_modulus, self._volume, **at),
             "bending": bending,
-            "heights": TriangleHeightForce(mesh, self._min_height, self._epsilon, offset=offset),
+            "heights": TriangleHeightForce(mesh, self._min_height, self._epsilon, **at),
         }
+        if self._dihedral_stiffness > 0:
+            forces["dihedrals"] = DihedralForce(
+                mesh, self._dihedral_stiffness, self._dihedral_form, **at
+            )
+        if self._triangle_area_modulus > 0:
+            forces["triangle_areas"] = TriangleAreaForce(
+                mesh, self._triangle_area_modulus, _triangle_areas(mesh), **at
+            )
+        if self._plaquette_stiffness > 0:
+            forces["plaquettes"] = PlaquetteAreaForce(
+                mesh, self._plaquette_stiffness, self._area, **at
+            )
+        if self._min_triangle_area > 0:
+            forces["triangle_repulsion"] = TriangleAreaRepulsionForce(
+                mesh, self._min_triangle_area, self._epsilon, **at
+            )
+        return forces
 
 
 @dataclass(frozen=True)
@@ -317,15 +380,13 @@ class Placement:
     """Index of the particle that is vertex 0."""
     num_vertices: int
     """Number of particles."""
-    area: SurfaceAreaForce
-    volume: EnclosedVolumeForce
-    bending: BendingForce
-    heights: TriangleHeightForce
+    forces: Mapping[str, MembraneForce]
+    """The forces by name: "area", "volume", "bending", "heights", and those switched on."""
 
-    @property
-    def forces(self):
-        """The forces by name, a dict."""
-        return {name: getattr(self, name) for name in ("area", "volume", "bending", "heights")}
+    area = property(lambda self: self.forces["area"], doc="The `SurfaceAreaForce`.")
+    volume = property(lambda self: self.forces["volume"], doc="The `EnclosedVolumeForce`.")
+    bending = property(lambda self: self.forces["bending"], doc="The `BendingForce`.")
+    heights = property(lambda self: self.forces["heights"], doc="The `TriangleHeightForce`.")
 
     @property
     def particles(self):
@@ -343,6 +404,33 @@ class Placement:
             .value_in_unit(_ENERGY)
             for name, force in self.forces.items()
         }
+
+
+def _triangle_areas(mesh):
+    """Area of each triangle, shape (num_triangles,), nm²."""
+    a, b, c = (mesh.vertices[mesh.triangles[:, corner]] for corner in range(3))
+    return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+
+
+def _field(name, value, dimension, mesh, negative=False):
+    """One number, or an array of one for each vertex of the mesh."""
+    if np.ndim(value.value_in_unit(value.unit) if unit.is_quantity(value) else value) == 0:
+        return _number(name, value, dimension, negative=negative)
+    if unit.is_quantity(value):
+        # The message of a wrong dimension is that of a single number.
+        _number(name, 1.0 * value.unit, dimension, negative=True)
+        value = value.value_in_unit(dimension)
+    values = np.array(value)
+    if values.shape != (mesh.num_vertices,):
+        raise ValueError(
+            f"Vesicle: {name} must be one number or one for each of the {mesh.num_vertices} "
+            f"vertices, got the shape {values.shape}"
+        )
+    for number in values.tolist():
+        _number(name, number, dimension, negative=negative)
+    values = values.astype(np.float64)
+    values.setflags(write=False)
+    return values
 
 
 def _plain(value, dimension):

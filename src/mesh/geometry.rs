@@ -272,7 +272,7 @@ mod tests {
 
     #[test]
     fn dihedral_angles_have_the_right_sign_and_size() {
-        for angle in [1e-9, 1e-4, 0.3, 0.78, 0.79, 1.5, 2.5, 3.14] {
+        for angle in [1e-9, 1e-4, 0.3, 0.78, 0.79, 1.5, 2.5, 3.1] {
             for angle in [angle, -angle] {
                 let (edge, length) = hinge(angle);
                 let error = (edge.bend * length / angle - 1.0).abs();

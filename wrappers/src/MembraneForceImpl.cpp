@@ -78,10 +78,9 @@ double MembraneForceImpl::calcForcesAndEnergy(ContextImpl& context, bool include
     if (!membrane->isLeader(*this, groups))
         return 0;
     auto* data = static_cast<ReferencePlatform::PlatformData*>(context.getPlatformData());
-    double energy =
-        membrane->evaluate(owner.getTypeName(), context, groups, *data->positions,
-                           includeForces ? data->forces : nullptr,
-                           includeEnergy ? data->energyParameterDerivatives : nullptr);
+    // OpenMM clears the derivatives before each evaluation, and may want them without the energy.
+    double energy = membrane->evaluate(owner.getTypeName(), context, groups, *data->positions,
+                                       includeForces ? data->forces : nullptr, data->energyParameterDerivatives);
     return includeEnergy ? energy : 0;
 }
 
