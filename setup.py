@@ -1,4 +1,4 @@
-"""Builds the Rust library, the SWIG wrapper and the Python extension; pyproject.toml has the rest."""
+"""Build the Rust library, the SWIG wrapper and the extension; pyproject.toml has the rest."""
 
 import os
 import re
@@ -16,7 +16,7 @@ LIBRARY = "libOpenMMHelfrich.so"
 
 
 def find_openmm() -> Path:
-    """The folder with OpenMM's headers and libraries: ``$OPENMM_DIR``, else the installed wheel's."""
+    """The folder with OpenMM's headers and libraries: ``$OPENMM_DIR``, else the wheel's."""
     candidates = []
     if os.environ.get("OPENMM_DIR"):
         candidates.append(Path(os.environ["OPENMM_DIR"]))

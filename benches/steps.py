@@ -15,12 +15,11 @@ from pathlib import Path
 
 import numpy as np
 import openmm
-
 from openmmhelfrich.mesh import Mesh
 from openmmhelfrich.vesicle import Vesicle
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "python"))
-import string_forces  # noqa: E402 - it is found through the line above
+import string_forces
 
 RADIUS = 1000.0  # nm at N = 1002; larger meshes keep the size of their triangles
 SIZES = (5, 10, 20, 40)  # subdivisions of the icosahedron: N = 252, 1002, 4002, 16 002
@@ -28,6 +27,7 @@ SECONDS = 0.25  # length of one run
 
 
 def main():
+    """Print both tables."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--platform", default="Reference", help="default: %(default)s")
     parser.add_argument("--repeats", type=int, default=10, help="default: %(default)d")
@@ -44,6 +44,7 @@ def main():
 
 
 def compare(platform, repeats, seconds):
+    """One mesh: string forces against the plugin, both against an empty System."""
     vesicle = Vesicle(sphere(10))
     contexts = {
         "OpenMM's empty step": start(empty_system(vesicle), vesicle, platform),
@@ -57,12 +58,12 @@ def compare(platform, repeats, seconds):
     for name, cost in best.items():
         print(f"  {name:22s} {cost:9.1f} {cost - empty:12.1f}")
     strings, ours = best["x, y, z string forces"], best["openmm-helfrich"]
-    print(
-        f"  ratio strings / ours   {strings / ours:7.1f} {(strings - empty) / (ours - empty):12.1f}\n"
-    )
+    without = (strings - empty) / (ours - empty)
+    print(f"  ratio strings / ours   {strings / ours:7.1f} {without:12.1f}\n")
 
 
 def scaling(platform, repeats, seconds, sizes):
+    """The plugin alone on meshes of growing size."""
     contexts = {}
     for n in sizes:
         vesicle = Vesicle(sphere(n))
@@ -81,10 +82,12 @@ def scaling(platform, repeats, seconds, sizes):
 
 
 def sphere(n):
+    """An icosphere with triangles of always the same size."""
     return Mesh.icosphere(n, RADIUS * n / 10)
 
 
 def empty_system(vesicle):
+    """The particles without any force."""
     system = openmm.System()
     for _ in range(vesicle.mesh.num_vertices):
         system.addParticle(vesicle.mass)
@@ -92,6 +95,7 @@ def empty_system(vesicle):
 
 
 def string_system(vesicle):
+    """The same vesicle from OpenMM's Custom forces."""
     system = empty_system(vesicle)
     for force in string_forces.fastest(
         vesicle.mesh.triangles,

@@ -3,13 +3,13 @@
 A sphere of radius R has E = 8 pi kappa (1 - C0 R / 2)^2, whatever R. The script prints the relative
 error on icospheres of N = 162 to 10 242 vertices and the order of convergence p in the edge length,
 error ~ N^(-p/2). All schemes but Espriu's are of second order; Espriu's vector is the curvature
-vector of equilateral triangles only, and on the icosphere, whose triangles differ, it does not converge.
+vector of equilateral triangles only, and on the icosphere, whose triangles differ, it does not
+converge.
 """
 
 from __future__ import annotations
 
 import numpy as np
-
 import openmmhelfrich as helfrich
 
 #: Subdivisions n of the icosphere, N = 10 n^2 + 2.

@@ -15,10 +15,9 @@ from pathlib import Path
 
 import numpy as np
 import openmm
+import openmmhelfrich as helfrich
 from openmm import unit
 from tqdm import tqdm
-
-import openmmhelfrich as helfrich
 
 TEMPERATURE = 300 * unit.kelvin
 KBT = (unit.MOLAR_GAS_CONSTANT_R * TEMPERATURE).value_in_unit(unit.kilojoule_per_mole)

@@ -74,8 +74,7 @@ int main(int argc, char** argv) {
 
     OpenMM_VerletIntegrator* integrator = OpenMM_VerletIntegrator_create(0.2);
     OpenMM_Platform* platform = OpenMM_Platform_getPlatformByName("Reference");
-    OpenMM_Context* context =
-        OpenMM_Context_create_2(system, (OpenMM_Integrator*) integrator, platform);
+    OpenMM_Context* context = OpenMM_Context_create_2(system, (OpenMM_Integrator*) integrator, platform);
     OpenMM_Context_setPositions(context, positions);
     for (i = 0; i <= 1000; i += 500) {
         OpenMM_State* state = OpenMM_Context_getState(context, OpenMM_State_Energy, 0);

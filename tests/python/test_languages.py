@@ -9,9 +9,8 @@ import sys
 from pathlib import Path
 
 import openmm
-import pytest
-
 import openmmhelfrich as helfrich
+import pytest
 
 PROJECT = Path(__file__).resolve().parents[2]
 OPENMM = Path(openmm.__file__).resolve().parent.parent / "OpenMM.libs"
@@ -126,11 +125,11 @@ def test_c_reports_what_is_wrong(tmp_path):
         "    Helfrich_lastError(text, sizeof text);\n"
         "    puts(text);\n"
         "    OpenMM_Force* force = Helfrich_BendingForce_create(triangles, 1, 5.0, 0.0, 2);\n"
-        "    if (Helfrich_MembraneForce_setParameterValue(force, \"stiffness\", 1.0) != 1) return 3;\n"
+        '    if (Helfrich_MembraneForce_setParameterValue(force, "stiffness", 1) != 1) return 3;\n'
         "    Helfrich_lastError(text, sizeof text);\n"
         "    puts(text);\n"
         "    Helfrich_BendingForce_setRigidity(force, 7.0);\n"
-        "    printf(\"%g\\n\", Helfrich_BendingForce_getRigidity(force));\n"
+        '    printf("%g\\n", Helfrich_BendingForce_getRigidity(force));\n'
         "    Helfrich_MembraneForce_destroy(force);\n"
         "    return 0;\n}\n"
     )

@@ -7,9 +7,8 @@ import gc
 
 import numpy as np
 import openmm
-import pytest
-
 import openmmhelfrich as helfrich
+import pytest
 from openmmhelfrich import _core
 
 

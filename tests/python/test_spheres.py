@@ -6,10 +6,9 @@ import importlib.util
 from pathlib import Path
 
 import numpy as np
+import openmmhelfrich as helfrich
 import pytest
 from scipy.integrate import quad
-
-import openmmhelfrich as helfrich
 
 PROJECT = Path(__file__).resolve().parents[2]
 

@@ -13,6 +13,7 @@
 #include "openmm-helfrich/TriangleHeightForce.h"
 
 /** Apply a macro to the name of each force class: the list that the plugin and Python are made from. */
+// clang-format off: one a line
 #define HELFRICH_FORCES(apply) \
     apply(SurfaceAreaForce) \
     apply(EnclosedVolumeForce) \
@@ -22,5 +23,6 @@
     apply(TriangleAreaForce) \
     apply(PlaquetteAreaForce) \
     apply(TriangleAreaRepulsionForce)
+// clang-format on
 
 #endif /*OPENMM_HELFRICH_H_*/

@@ -62,25 +62,29 @@ typedef enum {
 
 /* `triangles` holds three particle indices a triangle, counter-clockwise seen from outside. */
 
-extern OpenMM_Force* Helfrich_SurfaceAreaForce_create(const int* triangles, int numTriangles, double modulus, double target);
+extern OpenMM_Force* Helfrich_SurfaceAreaForce_create(const int* triangles, int numTriangles, double modulus,
+                                                      double target);
 extern double Helfrich_SurfaceAreaForce_getModulus(OpenMM_Force* force);
 extern int Helfrich_SurfaceAreaForce_setModulus(OpenMM_Force* force, double modulus);
 extern double Helfrich_SurfaceAreaForce_getTarget(OpenMM_Force* force);
 extern int Helfrich_SurfaceAreaForce_setTarget(OpenMM_Force* force, double target);
 
-extern OpenMM_Force* Helfrich_EnclosedVolumeForce_create(const int* triangles, int numTriangles, double modulus, double target);
+extern OpenMM_Force* Helfrich_EnclosedVolumeForce_create(const int* triangles, int numTriangles, double modulus,
+                                                         double target);
 extern double Helfrich_EnclosedVolumeForce_getModulus(OpenMM_Force* force);
 extern int Helfrich_EnclosedVolumeForce_setModulus(OpenMM_Force* force, double modulus);
 extern double Helfrich_EnclosedVolumeForce_getTarget(OpenMM_Force* force);
 extern int Helfrich_EnclosedVolumeForce_setTarget(OpenMM_Force* force, double target);
 
-extern OpenMM_Force* Helfrich_BendingForce_create(const int* triangles, int numTriangles, double rigidity, double spontaneousCurvature, int scheme);
+extern OpenMM_Force* Helfrich_BendingForce_create(const int* triangles, int numTriangles, double rigidity,
+                                                  double spontaneousCurvature, int scheme);
 extern double Helfrich_BendingForce_getRigidity(OpenMM_Force* force);
 extern int Helfrich_BendingForce_setRigidity(OpenMM_Force* force, double rigidity);
 extern double Helfrich_BendingForce_getSpontaneousCurvature(OpenMM_Force* force);
 extern int Helfrich_BendingForce_setSpontaneousCurvature(OpenMM_Force* force, double spontaneousCurvature);
 
-extern OpenMM_Force* Helfrich_TriangleHeightForce_create(const int* triangles, int numTriangles, double minHeight, double epsilon);
+extern OpenMM_Force* Helfrich_TriangleHeightForce_create(const int* triangles, int numTriangles, double minHeight,
+                                                         double epsilon);
 extern double Helfrich_TriangleHeightForce_getMinHeight(OpenMM_Force* force);
 extern int Helfrich_TriangleHeightForce_setMinHeight(OpenMM_Force* force, double minHeight);
 extern double Helfrich_TriangleHeightForce_getEpsilon(OpenMM_Force* force);
@@ -90,19 +94,22 @@ extern OpenMM_Force* Helfrich_DihedralForce_create(const int* triangles, int num
 extern double Helfrich_DihedralForce_getStiffness(OpenMM_Force* force);
 extern int Helfrich_DihedralForce_setStiffness(OpenMM_Force* force, double stiffness);
 
-extern OpenMM_Force* Helfrich_TriangleAreaForce_create(const int* triangles, int numTriangles, double modulus, double target);
+extern OpenMM_Force* Helfrich_TriangleAreaForce_create(const int* triangles, int numTriangles, double modulus,
+                                                       double target);
 extern double Helfrich_TriangleAreaForce_getModulus(OpenMM_Force* force);
 extern int Helfrich_TriangleAreaForce_setModulus(OpenMM_Force* force, double modulus);
 extern double Helfrich_TriangleAreaForce_getTarget(OpenMM_Force* force);
 extern int Helfrich_TriangleAreaForce_setTarget(OpenMM_Force* force, double target);
 
-extern OpenMM_Force* Helfrich_PlaquetteAreaForce_create(const int* triangles, int numTriangles, double stiffness, double target);
+extern OpenMM_Force* Helfrich_PlaquetteAreaForce_create(const int* triangles, int numTriangles, double stiffness,
+                                                        double target);
 extern double Helfrich_PlaquetteAreaForce_getStiffness(OpenMM_Force* force);
 extern int Helfrich_PlaquetteAreaForce_setStiffness(OpenMM_Force* force, double stiffness);
 extern double Helfrich_PlaquetteAreaForce_getTarget(OpenMM_Force* force);
 extern int Helfrich_PlaquetteAreaForce_setTarget(OpenMM_Force* force, double target);
 
-extern OpenMM_Force* Helfrich_TriangleAreaRepulsionForce_create(const int* triangles, int numTriangles, double minArea, double epsilon);
+extern OpenMM_Force* Helfrich_TriangleAreaRepulsionForce_create(const int* triangles, int numTriangles, double minArea,
+                                                                double epsilon);
 extern double Helfrich_TriangleAreaRepulsionForce_getMinArea(OpenMM_Force* force);
 extern int Helfrich_TriangleAreaRepulsionForce_setMinArea(OpenMM_Force* force, double minArea);
 extern double Helfrich_TriangleAreaRepulsionForce_getEpsilon(OpenMM_Force* force);

@@ -28,8 +28,9 @@ MembraneForceImpl::~MembraneForceImpl() {
 void MembraneForceImpl::initialize(ContextImpl& context) {
     inPlace = dynamic_cast<const ReferencePlatform*>(&context.getPlatform()) != nullptr;
     if (!inPlace && !derivatives.empty())
-        throw OpenMMException(owner.getTypeName() + ": energy parameter derivatives need the Reference or CPU "
-                                                    "platform, not " +
+        throw OpenMMException(owner.getTypeName() +
+                              ": energy parameter derivatives need the Reference or CPU "
+                              "platform, not " +
                               context.getPlatform().getName());
     check(Helfrich_Potential_find(owner.getTypeName().c_str(), &term.potential));
     term.form = owner.getForm();
@@ -101,8 +102,9 @@ map<string, double> MembraneForceImpl::getDefaultParameters() {
         double value = owner.getParameterValue(owner.getParameterName(i));
         auto [entry, isNew] = defaults.emplace(contextParameters[i], value);
         if (!isNew && entry->second != value)
-            throw OpenMMException(owner.getTypeName() + ": two scalars with different values share the Context "
-                                                        "parameter \"" +
+            throw OpenMMException(owner.getTypeName() +
+                                  ": two scalars with different values share the Context "
+                                  "parameter \"" +
                                   contextParameters[i] + "\"; give them one value");
     }
     return defaults;
@@ -125,8 +127,7 @@ HelfrichTerm MembraneForceImpl::getTerm(ContextImpl& context) const {
     return current;
 }
 
-void MembraneForceImpl::addDerivatives(const HelfrichContribution& contribution,
-                                       map<string, double>& sums) const {
+void MembraneForceImpl::addDerivatives(const HelfrichContribution& contribution, map<string, double>& sums) const {
     for (const string& name : derivatives)
         for (size_t i = 0; i < contextParameters.size(); i++)
             if (contextParameters[i] == name)

@@ -2,8 +2,8 @@
 #define HELFRICH_MEMBRANE_FORCE_IMPL_H_
 
 #include "SharedMembrane.h"
-#include "openmm-helfrich/internal/UpdatableImpl.h"
 #include "openmm-helfrich/MembraneForce.h"
+#include "openmm-helfrich/internal/UpdatableImpl.h"
 
 #include <openmm/internal/CustomCPPForceImpl.h>
 

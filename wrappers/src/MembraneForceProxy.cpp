@@ -98,7 +98,10 @@ void MembraneForceProxy::serialize(const void* object, SerializationNode& node) 
     for (int i = 0; i < force.getNumTriangles(); i++) {
         int p1, p2, p3;
         force.getTriangle(i, p1, p2, p3);
-        triangles.createChildNode("Triangle").setIntProperty("p1", p1).setIntProperty("p2", p2).setIntProperty("p3", p3);
+        triangles.createChildNode("Triangle")
+            .setIntProperty("p1", p1)
+            .setIntProperty("p2", p2)
+            .setIntProperty("p3", p3);
     }
 }
 
@@ -106,8 +109,8 @@ void* MembraneForceProxy::deserialize(const SerializationNode& node) const {
     require(forceName, node, "version");
     int version = node.getIntProperty("version");
     if (version != VERSION)
-        throw OpenMMException(forceName + ": element <" + node.getName() + "> has version " +
-                              std::to_string(version) + ", but only " + std::to_string(VERSION) +
+        throw OpenMMException(forceName + ": element <" + node.getName() + "> has version " + std::to_string(version) +
+                              ", but only " + std::to_string(VERSION) +
                               " is known; it was written by another release of openmm-helfrich");
     std::unique_ptr<MembraneForce> force(create());
     string what, name;

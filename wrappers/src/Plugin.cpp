@@ -13,8 +13,7 @@ namespace {
 
 template <class ForceClass>
 void registerForce(const std::string& name) {
-    OpenMM::SerializationProxy::registerProxy(typeid(ForceClass),
-                                              new MembraneForceProxy(name, makeForce<ForceClass>));
+    OpenMM::SerializationProxy::registerProxy(typeid(ForceClass), new MembraneForceProxy(name, makeForce<ForceClass>));
 }
 
 } // namespace

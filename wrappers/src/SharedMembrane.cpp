@@ -71,9 +71,8 @@ bool SharedMembrane::isLeader(const MembraneForceImpl& member, int groups) const
     return false;
 }
 
-double SharedMembrane::evaluate(const string& subject, ContextImpl& context, int groups,
-                                const vector<Vec3>& positions, vector<Vec3>* forces,
-                                std::map<string, double>* derivatives) {
+double SharedMembrane::evaluate(const string& subject, ContextImpl& context, int groups, const vector<Vec3>& positions,
+                                vector<Vec3>* forces, std::map<string, double>* derivatives) {
     active.clear();
     terms.clear();
     for (MembraneForceImpl* member : members)
@@ -85,8 +84,8 @@ double SharedMembrane::evaluate(const string& subject, ContextImpl& context, int
     // Vec3 is three doubles and nothing else, but its operator[] returns copies.
     static_assert(sizeof(Vec3) == 3 * sizeof(double), "an array of Vec3 is an array of coordinates");
     check(Helfrich_Membrane_evaluate(subject.c_str(), core, terms.data(), (int64_t) terms.size(),
-                                     (int64_t) positions.size(),
-                                     reinterpret_cast<const double*>(positions.data()), contributions.data(),
+                                     (int64_t) positions.size(), reinterpret_cast<const double*>(positions.data()),
+                                     contributions.data(),
                                      forces == nullptr ? nullptr : reinterpret_cast<double*>(forces->data())));
     double energy = 0;
     for (size_t i = 0; i < active.size(); i++) {

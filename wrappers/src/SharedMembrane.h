@@ -61,8 +61,7 @@ public:
     std::vector<std::pair<int, int>> getEdges() const;
 
 private:
-    SharedMembrane(const std::string& subject, const OpenMM::ContextImpl& context,
-                   const std::vector<int>& triangles);
+    SharedMembrane(const std::string& subject, const OpenMM::ContextImpl& context, const std::vector<int>& triangles);
 
     /**
      * Whether the members are forces of this very Context. When a Context cannot be made, OpenMM leaves

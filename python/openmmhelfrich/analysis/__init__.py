@@ -8,14 +8,8 @@ paper, doi:10.1103/PhysRevE.108.015301.
 
 from . import theory
 from .curvature import mean_curvature
-from .harmonics import (
-    Spectrum,
-    autocorrelation_time,
-    mode_amplitudes,
-    real_harmonics,
-    solid_angles,
-    spectrum,
-)
+from .harmonics import mode_amplitudes, real_harmonics, solid_angles
+from .statistics import Spectrum, autocorrelation_time, spectrum
 
 __all__ = [
     "Spectrum",

@@ -6,8 +6,6 @@ times in ps, masses in amu, energies in kJ/mol; a ratio to kBT has no unit. All 
 element by element on arrays of l.
 """
 
-# ruff: noqa: E741 - l is the mode number, as in every source.
-
 import numpy as np
 
 # Boltzmann's constant, kJ/mol/K (exact since the SI of 2019).

@@ -196,8 +196,8 @@ protected:
      * @param values     the scalars, in the core's order
      * @param form       the number of the variant
      */
-    MembraneForce(const std::string& type, const std::vector<int>& triangles,
-                  const std::vector<double>& values, int form = 0);
+    MembraneForce(const std::string& type, const std::vector<int>& triangles, const std::vector<double>& values,
+                  int form = 0);
     OpenMM::ForceImpl* createImpl() const;
 
 private:
@@ -228,8 +228,8 @@ private:
  */
 #ifndef SWIG
 
-inline MembraneForce::MembraneForce(const std::string& type, const std::vector<int>& triangles, const std::vector<double>& values,
-                             int form)
+inline MembraneForce::MembraneForce(const std::string& type, const std::vector<int>& triangles,
+                                    const std::vector<double>& values, int form)
     : type(type), form(0), switches(0) {
     setName(type);
     for (double value : values) {

@@ -52,8 +52,8 @@ int Helfrich_Potential_parameter(const char* potential, int index, HelfrichParam
 int Helfrich_Potential_form(const char* potential, int index, const char** what, const char** name);
 int Helfrich_Potential_switch(const char* potential, int index, const char** name);
 int Helfrich_Potential_check(const char* potential, int index, double value);
-int Helfrich_Membrane_create(const char* subject, const int* triangles, int64_t numTriangles,
-                             int64_t numParticles, HelfrichMembrane** membrane);
+int Helfrich_Membrane_create(const char* subject, const int* triangles, int64_t numTriangles, int64_t numParticles,
+                             HelfrichMembrane** membrane);
 void Helfrich_Membrane_destroy(HelfrichMembrane* membrane);
 int64_t Helfrich_Membrane_numEdges(const HelfrichMembrane* membrane);
 void Helfrich_Membrane_edges(const HelfrichMembrane* membrane, int* particles);

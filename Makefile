@@ -1,0 +1,91 @@
+# `make help` lists what there is. PYTHON names the Python that .venv is made of, CXX the compiler.
+
+PYTHON ?= python3
+VENV := $(CURDIR)/.venv
+SITE_PACKAGES = $(wildcard $(VENV)/lib/python3.*/site-packages)
+OPENMM = $(SITE_PACKAGES)/OpenMM.libs
+TARGET := $(abspath $(or $(CARGO_TARGET_DIR),target))
+
+# The same environment as in setup.py, so that nothing is compiled twice.
+CARGO = PYTHON=$(VENV)/bin/python OPENMM_DIR=$(OPENMM) cargo
+PIP = $(VENV)/bin/python -m pip --disable-pip-version-check -q
+
+# What pip builds; the Python files of the package are used in place.
+SOURCES := Cargo.toml Cargo.lock build.rs setup.py python/forces.i \
+           $(wildcard src/*.rs src/*/*.rs shaders/* $(foreach any,wrappers/* wrappers/*/* wrappers/*/*/*,$(any)/*))
+CPP := $(wildcard $(foreach any,wrappers/* wrappers/*/* wrappers/*/*/* tests/cpp examples,\
+           $(any)/*.h $(any)/*.c $(any)/*.cpp))
+PY := $(wildcard setup.py python tests examples benches)
+
+.DEFAULT_GOAL := build
+.PHONY: build test lint format demo bench clean help check-tools test-rust test-package test-python FORCE
+
+build: $(VENV)/.installed ## build everything and install it in .venv (the default)
+	@echo "openmm-helfrich is installed in .venv; try: make demo"
+
+test: lint test-rust test-package test-python ## run all checks: lint, Rust, a clean installation, Python
+
+lint: $(VENV)/.requirements ## check formatting, and lint Rust, C++ and Python
+	@echo "== Formatting and lint"
+	@cargo fmt --check
+	@$(CARGO) clippy -q --all-targets --release --locked -- -D warnings
+	@$(VENV)/bin/clang-format --dry-run -Werror $(CPP)
+	@$(VENV)/bin/ruff check -q $(PY)
+	@$(VENV)/bin/ruff format -q --check $(PY)
+
+format: $(VENV)/.requirements ## format Rust, C++ and Python in place
+	@cargo fmt
+	@$(VENV)/bin/clang-format -i $(CPP)
+	@$(VENV)/bin/ruff check -q --fix-only $(PY)
+	@$(VENV)/bin/ruff format -q $(PY)
+
+test-rust: $(VENV)/.requirements # Rust's tests, and its documentation
+	@echo "== Rust"
+	@$(CARGO) test -q --release --locked
+	@RUSTDOCFLAGS="-D warnings" $(CARGO) doc -q --no-deps --release --locked
+
+test-package: $(VENV)/.requirements # `pip install .` where nothing else is
+	@echo "== A clean installation"
+	@CARGO_TARGET_DIR=$(TARGET)/package $(SHELL) .ci/check-package.sh $(VENV)/bin/python
+
+test-python: build # what a user sees
+	@echo "== Python"
+	@$(VENV)/bin/python -m pytest -q -n 2
+
+demo: build ## simulate a vesicle and draw it with its fluctuation spectrum (about two minutes)
+	@$(VENV)/bin/python examples/vesicle.py
+
+bench: build ## measure the cost of an evaluation and of a time step
+	@$(CARGO) bench -q --locked -- --warm-up-time 0.5 --measurement-time 2
+	@$(VENV)/bin/python benches/steps.py
+
+clean: ## remove everything that was built, .venv too
+	rm -rf $(VENV) build dist target out python/*.egg-info
+	rm -rf $(addprefix python/openmmhelfrich/,lib include cmake)
+	rm -f python/openmmhelfrich/forces.py python/openmmhelfrich/*.so
+
+help: ## list these targets
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1~\2/p' $(firstword $(MAKEFILE_LIST)) | sed 's/~/\t/' | expand -t 16
+
+# Says what is missing before anything starts.
+check-tools:
+	@PYTHON="$(PYTHON)" $(SHELL) .ci/check-tools.sh
+
+# Made of the Python that was asked for; one that is asked for by name replaces another.
+$(VENV)/.python: check-tools FORCE
+	@if [ ! -x $(VENV)/bin/python ] || \
+	    { [ "$(origin PYTHON)" != file ] && [ "$(PYTHON)" != "$$(cat $@ 2>/dev/null)" ]; }; then \
+	    echo "== Making .venv of $(PYTHON)"; \
+	    rm -rf $(VENV) && $(PYTHON) -m venv $(VENV) && echo "$(PYTHON)" > $@; \
+	elif [ ! -e $@ ]; then echo "$(PYTHON)" > $@; fi
+
+$(VENV)/.requirements: constraints.txt $(VENV)/.python
+	@echo "== Downloading what is needed (constraints.txt)"
+	@$(PIP) install -r constraints.txt
+	@touch $@
+
+# pip downloads nothing any more here, but notices what constraints.txt has forgotten.
+$(VENV)/.installed: $(VENV)/.requirements pyproject.toml $(SOURCES)
+	@echo "== Building the library and the Python module (from nothing, about two minutes)"
+	@$(PIP) install --no-index --no-build-isolation --check-build-dependencies -e '.[test,lint]'
+	@touch $@

@@ -1,0 +1,393 @@
+"""The one table of potentials that drives the force tests.
+
+A row is one way to make a force: its class and variant, its arguments as functions of the
+membrane, arguments that must be refused, and the two independent opinions of what it should
+compute. A new potential is one new row; `test_forces.py` runs it over all membranes and platforms.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import meshes
+import numpy as np
+import numpy_energies
+import openmm as mm
+import openmmhelfrich as helfrich
+import oracle
+import string_forces
+from meshes import Membrane
+from oracle import Result
+
+Arguments = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Invalid:
+    """An argument that must be refused by a message with the class, its name and the fragment."""
+
+    argument: str
+    value: float
+    fragment: str
+
+
+@dataclass(frozen=True)
+class Case:
+    """One row.
+
+    name: what the test's id says
+    force: the class in openmmhelfrich
+    arguments: the constructor's scalars, for a membrane
+    energy: the same energy by numpy, in kJ/mol
+    strings: energy and forces by string forces in a style
+    compiles: whether OpenMM compiles these string forces in reasonable time
+    step: for finite differences, in mean edge lengths
+    variant: keyword and name of the class's constant, e.g. ("scheme", "Julicher")
+    settings: setters to call after construction, with their values
+    invalid: listed once for each class
+    """
+
+    name: str
+    force: str
+    arguments: Callable[[Membrane], dict[str, Any]]
+    energy: Callable[[Membrane, Arguments], float]
+    strings: Callable[[Membrane, Arguments, str], Result]
+    compiles: Callable[[Membrane, str], bool] = field(default=lambda membrane, style: True)
+    step: float = 3e-4
+    variant: tuple[str, str] | None = None
+    settings: Callable[[Membrane], dict[str, Any]] = field(default=lambda membrane: {})
+    invalid: tuple[Invalid, ...] = ()
+
+    @property
+    def exists(self) -> bool:
+        """Whether the package has the class, its variant and its setters."""
+        cls = getattr(helfrich, self.force, None)
+        names = list(self.settings(meshes.membrane("octahedron")))
+        if self.variant is not None:
+            names.append(self.variant[1])
+        return cls is not None and all(hasattr(cls, name) for name in names)
+
+    def make(self, membrane: Membrane, **replaced: Any) -> mm.Force:
+        """The plugin's force on a membrane."""
+        cls = getattr(helfrich, self.force)
+        arguments = {**self.arguments(membrane), **replaced}
+        if self.variant is not None:
+            keyword, constant = self.variant
+            arguments[keyword] = getattr(cls, constant)
+        force = cls(membrane.triangles, **arguments)
+        for setter, value in self.settings(membrane).items():
+            getattr(force, setter)(value)
+        return force
+
+    def expected_energy(self, membrane: Membrane) -> float:
+        return self.energy(membrane, self.arguments(membrane))
+
+    def expected(self, membrane: Membrane, style: str) -> Result:
+        return self.strings(membrane, self.arguments(membrane), style)
+
+    def __str__(self) -> str:
+        return self.name
+
+
+def _never_below(argument: str, *, zero: bool) -> tuple[Invalid, ...]:
+    refused = [Invalid(argument, -1.5, "-1.5"), Invalid(argument, float("nan"), "nan")]
+    refused.append(Invalid(argument, float("inf"), "inf"))
+    if not zero:
+        refused.append(Invalid(argument, 0.0, "0"))
+    return tuple(refused)
+
+
+def _never_infinite(argument: str) -> tuple[Invalid, ...]:
+    return tuple(Invalid(argument, value, str(value)) for value in (np.nan, np.inf, -np.inf))
+
+
+# --- area, volume, triangles -------------------------------------------------------------------
+
+
+def _geometry(membrane: Membrane) -> numpy_energies.Geometry:
+    return numpy_energies.Geometry(membrane.positions, membrane.triangles)
+
+
+def _surface_area() -> list[Case]:
+    return [
+        Case(
+            name=f"surface area, {word}",
+            force="SurfaceAreaForce",
+            arguments=lambda m, ratio=ratio: {"modulus": 1.3, "target": ratio * _geometry(m).area},
+            energy=lambda m, a: numpy_energies.global_area(
+                m.positions, m.triangles, a["modulus"], a["target"]
+            ),
+            strings=lambda m, a, style: oracle.evaluate(
+                string_forces.global_area(m.triangles, a["modulus"], a["target"], style),
+                m.positions,
+            ),
+            invalid=invalid,
+        )
+        for word, ratio, invalid in (
+            (
+                "too large",
+                0.93,
+                _never_below("modulus", zero=True) + _never_below("target", zero=False),
+            ),
+            ("too small", 1.08, ()),
+        )
+    ]
+
+
+def _enclosed_volume() -> list[Case]:
+    return [
+        Case(
+            name=f"enclosed volume, {word}",
+            force="EnclosedVolumeForce",
+            arguments=lambda m, ratio=ratio: {
+                "modulus": 0.04,
+                "target": ratio * _geometry(m).volume,
+            },
+            energy=lambda m, a: numpy_energies.global_volume(
+                m.positions, m.triangles, a["modulus"], a["target"]
+            ),
+            strings=lambda m, a, style: oracle.evaluate(
+                string_forces.global_volume(m.triangles, a["modulus"], a["target"], style),
+                m.positions,
+            ),
+            invalid=invalid,
+        )
+        for word, ratio, invalid in (
+            (
+                "too large",
+                0.9,
+                _never_below("modulus", zero=True) + _never_below("target", zero=False),
+            ),
+            ("too small", 1.07, ()),
+        )
+    ]
+
+
+def _triangle_heights() -> list[Case]:
+    return [
+        Case(
+            name=f"triangle heights, {word}",
+            force="TriangleHeightForce",
+            # At a share of the heights, so that some of them repel and some do not.
+            arguments=lambda m, share=share: {
+                "minHeight": float(np.quantile(_geometry(m).heights, share)),
+                "epsilon": 10.0,
+            },
+            energy=lambda m, a: numpy_energies.triangle_heights(
+                m.positions, m.triangles, a["minHeight"], a["epsilon"]
+            ),
+            strings=lambda m, a, style: oracle.evaluate(
+                string_forces.triangle_heights(m.triangles, a["minHeight"], a["epsilon"], style),
+                m.positions,
+            ),
+            # The second derivative jumps at the cutoff: no large steps across it.
+            step=2e-5,
+            invalid=invalid,
+        )
+        for word, share, invalid in (
+            (
+                "few",
+                0.05,
+                _never_below("minHeight", zero=True) + _never_below("epsilon", zero=True),
+            ),
+            ("many", 0.35, ()),
+        )
+    ]
+
+
+def _triangle_area() -> list[Case]:
+    def one(m: Membrane) -> dict[str, Any]:
+        return {"modulus": 1.3, "target": 0.9 * _geometry(m).area / len(m.triangles)}
+
+    def each(m: Membrane) -> dict[str, Any]:
+        rng = np.random.default_rng(11)
+        return {"modulus": 1.3, "target": _geometry(m).areas * rng.uniform(0.8, 1.2)}
+
+    return [
+        Case(
+            name=f"triangle areas, {word}",
+            force="TriangleAreaForce",
+            arguments=arguments,
+            energy=lambda m, a: numpy_energies.triangle_area(
+                m.positions, m.triangles, a["modulus"], a["target"]
+            ),
+            strings=lambda m, a, style: oracle.evaluate(
+                string_forces.triangle_area(m.triangles, a["modulus"], a["target"], style),
+                m.positions,
+            ),
+            invalid=invalid,
+        )
+        for word, arguments, invalid in (
+            (
+                "one target",
+                one,
+                _never_below("modulus", zero=True) + _never_below("target", zero=False),
+            ),
+            ("a target each", each, ()),
+        )
+    ]
+
+
+def _triangle_area_repulsion() -> list[Case]:
+    return [
+        Case(
+            name="triangle area repulsion",
+            force="TriangleAreaRepulsionForce",
+            arguments=lambda m: {
+                "minArea": float(np.quantile(_geometry(m).areas, 0.4)),
+                "epsilon": 10.0,
+            },
+            energy=lambda m, a: numpy_energies.triangle_area_repulsion(
+                m.positions, m.triangles, a["minArea"], a["epsilon"]
+            ),
+            strings=lambda m, a, style: oracle.evaluate(
+                string_forces.triangle_area_repulsion(
+                    m.triangles, a["minArea"], a["epsilon"], style
+                ),
+                m.positions,
+            ),
+            # The second derivative jumps at the cutoff: no large steps across it.
+            step=2e-5,
+            invalid=_never_below("minArea", zero=True) + _never_below("epsilon", zero=True),
+        )
+    ]
+
+
+def _plaquette_area() -> list[Case]:
+    return [
+        Case(
+            name="plaquette areas",
+            force="PlaquetteAreaForce",
+            arguments=lambda m: {"stiffness": 400.0, "target": 0.9 * _geometry(m).area},
+            energy=lambda m, a: numpy_energies.plaquette_area(
+                m.positions, m.triangles, a["stiffness"], a["target"]
+            ),
+            strings=lambda m, a, style: oracle.evaluate(
+                string_forces.plaquette_area(m.triangles, a["stiffness"], a["target"], style),
+                m.positions,
+            ),
+            invalid=_never_below("stiffness", zero=True) + _never_below("target", zero=False),
+        )
+    ]
+
+
+def _dihedrals() -> list[Case]:
+    return [
+        Case(
+            name=f"dihedrals, {form}",
+            force="DihedralForce",
+            variant=("form", form),
+            arguments=lambda m: {"stiffness": 40.0},
+            energy=lambda m, a, form=form: numpy_energies.dihedral(
+                m.positions, m.triangles, a["stiffness"], form
+            ),
+            strings=lambda m, a, style, form=form: oracle.evaluate(
+                string_forces.dihedral(m.triangles, a["stiffness"], form, style), m.positions
+            ),
+            invalid=_never_below("stiffness", zero=True) if form == "Quartic" else (),
+        )
+        for form in string_forces.DIHEDRAL_FORMS
+    ]
+
+
+# --- bending -----------------------------------------------------------------------------------
+
+
+def _bending(
+    name: str,
+    scheme: str,
+    curvature: float = 0.0,
+    unsigned: bool = False,
+    invalid: tuple[Invalid, ...] = (),
+) -> Case:
+    def arguments(m: Membrane) -> dict[str, Any]:
+        scalars = {"rigidity": 50.0}
+        # Where it is zero it stays away, so that the default is tested too.
+        return {**scalars, "spontaneousCurvature": curvature} if curvature else scalars
+
+    def energy(m: Membrane, a: Arguments) -> float:
+        return numpy_energies.bending(
+            m.positions, m.triangles, a["rigidity"], curvature, scheme, unsigned
+        )
+
+    def strings(m: Membrane, a: Arguments, style: str) -> Result:
+        return oracle.bending(m, scheme, style, a["rigidity"], curvature, unsigned)
+
+    return Case(
+        name=f"bending, {name}",
+        force="BendingForce",
+        variant=("scheme", scheme),
+        arguments=arguments,
+        energy=energy,
+        strings=strings,
+        compiles=lambda m, style: oracle.bending_within_limits(
+            m, scheme, style, curvature != 0, unsigned
+        ),
+        # |S| comes to a point at S = 0, and some vertices are near it.
+        step=2e-5 if unsigned else 3e-4,
+        settings=lambda m: {"setUnsignedSpontaneousCurvature": True} if unsigned else {},
+        invalid=invalid,
+    )
+
+
+def _domains(scheme: str) -> Case:
+    """Rigidity and spontaneous curvature by vertex."""
+
+    def values(m: Membrane) -> tuple[np.ndarray, np.ndarray]:
+        rng = np.random.default_rng(13)
+        n = len(m.members)
+        return rng.uniform(20, 80, n), rng.uniform(-0.02, 0.02, n)
+
+    def settings(m: Membrane) -> dict[str, Any]:
+        rigidity, curvature = values(m)
+        return {
+            "setVertexRigidity": rigidity.tolist(),
+            "setVertexSpontaneousCurvature": curvature.tolist(),
+        }
+
+    def strings(m: Membrane, a: Arguments, style: str) -> Result:
+        return oracle.bending(m, scheme, style, *values(m))
+
+    return Case(
+        name=f"bending, {scheme} domains",
+        force="BendingForce",
+        variant=("scheme", scheme),
+        arguments=lambda m: {"rigidity": 50.0},
+        energy=lambda m, a: numpy_energies.bending(m.positions, m.triangles, *values(m), scheme),
+        strings=strings,
+        compiles=lambda m, style: oracle.bending_within_limits(m, scheme, style, True),
+        settings=settings,
+    )
+
+
+def _bendings() -> list[Case]:
+    julicher = _bending(
+        "Julicher",
+        "Julicher",
+        invalid=_never_below("rigidity", zero=True) + _never_infinite("spontaneousCurvature"),
+    )
+    rows = [julicher]
+    for scheme in string_forces.BENDING_SCHEMES:
+        if scheme != "Julicher":
+            rows.append(_bending(scheme, scheme))
+        rows.append(_bending(f"{scheme} bulging out", scheme, 0.02))
+        rows.append(_bending(f"{scheme} bulging in", scheme, -0.015))
+        rows.append(_domains(scheme))
+        if not scheme.startswith("Julicher"):
+            rows.append(_bending(f"{scheme} unsigned", scheme, 0.02, unsigned=True))
+    return rows
+
+
+CASES = [
+    *_surface_area(),
+    *_enclosed_volume(),
+    *_triangle_heights(),
+    *_bendings(),
+    *_dihedrals(),
+    *_triangle_area(),
+    *_triangle_area_repulsion(),
+    *_plaquette_area(),
+]
+PRESENT = [case for case in CASES if case.exists]

@@ -1,0 +1,73 @@
+"""The platforms that the force tests run on."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+from functools import cache
+
+import openmm as mm
+import pytest
+
+
+@dataclass(frozen=True)
+class Target:
+    """A platform in one precision, and how far its forces may be off, relative to the largest."""
+
+    name: str
+    platform: str
+    tolerance: float
+    properties: dict[str, str] = field(default_factory=dict, hash=False)
+
+    def __str__(self) -> str:
+        return self.name
+
+    def context(self, system: mm.System, integrator: mm.Integrator | None = None) -> mm.Context:
+        """A Context on this platform; skips the test, or fails it, if there is none."""
+        _require(self)
+        if integrator is None:
+            integrator = mm.VerletIntegrator(0.001)
+        platform = mm.Platform.getPlatformByName(self.platform)
+        return mm.Context(system, integrator, platform, self.properties)
+
+
+REFERENCE = Target("Reference", "Reference", 1e-9)
+CPU = Target("CPU", "CPU", 1e-9, {"Threads": "2"})
+ON_PROCESSOR = [REFERENCE, CPU]
+ON_OPENCL = [
+    Target("OpenCL-single", "OpenCL", 1e-4, {"Precision": "single"}),
+    # Positions are doubles here; forces pass through single precision on their way.
+    Target("OpenCL-mixed", "OpenCL", 1e-6, {"Precision": "mixed"}),
+    Target("OpenCL-double", "OpenCL", 1e-9, {"Precision": "double"}),
+]
+
+
+@cache
+def _why_not(name: str, precision: str) -> str | None:
+    """What keeps a platform from running a plain force of OpenMM's own; None if it runs."""
+    present = [mm.Platform.getPlatform(i).getName() for i in range(mm.Platform.getNumPlatforms())]
+    if name not in present:
+        return f"this OpenMM has no {name} platform, only {', '.join(present)}"
+    system = mm.System()
+    bond = mm.HarmonicBondForce()
+    for _ in range(4):
+        system.addParticle(1)
+    bond.addBond(0, 1, 1, 1)
+    system.addForce(bond)
+    try:
+        platform = mm.Platform.getPlatformByName(name)
+        mm.Context(system, mm.VerletIntegrator(0.001), platform, {"Precision": precision})
+    except mm.OpenMMException as error:
+        return f"{name} in {precision} precision does not start: {error}"
+    return None
+
+
+def _require(target: Target) -> None:
+    if target.platform != "OpenCL":
+        return
+    reason = _why_not(target.platform, target.properties["Precision"])
+    if reason is None:
+        return
+    if os.environ.get("HELFRICH_REQUIRE_OPENCL") == "1":
+        pytest.fail(reason)
+    pytest.skip(reason)

@@ -1,0 +1,648 @@
+"""The membrane potentials once more, as OpenMM Custom forces: an oracle that shares no code with
+the plugin.
+
+Every potential comes in two styles of expression, which OpenMM differentiates along different
+paths, so that a slip in one of them shows as a disagreement between the two:
+
+* ``"geometric"``: OpenMM's ``distance()``, ``angle()`` and ``dihedral()`` functions;
+* ``"cartesian"``: plain algebra of ``x1, y1, z1, …``.
+
+Each function takes the triangles as particle indices, shape (num_triangles, 3), counter-clockwise
+seen from outside, and returns a list of forces whose energies add up to the potential. Their cost
+is O(N): one bond for each vertex, edge or triangle, whatever the potential.
+
+Two choices keep the expressions well-conditioned. An edge's angle never comes from the arc cosine
+of the normals' product, which loses half of the digits where the membrane is flat: it is an
+``atan2``, or pi minus OpenMM's dihedral, which is accurate near 0 and near pi. And differences of
+positions are taken before anything is squared, so that a mesh far from the origin loses nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from itertools import combinations
+
+import numpy as np
+import openmm as mm
+
+STYLES = ("geometric", "cartesian")
+PI = repr(np.pi)
+
+Values = float | Sequence[float] | np.ndarray
+
+
+# --- topology ----------------------------------------------------------------------------------
+
+
+def rings(triangles) -> dict[int, list[int]]:
+    """The neighbours of each vertex, counter-clockwise seen from outside, by ascending vertex."""
+    following: dict[int, dict[int, int]] = {}
+    for a, b, c in np.asarray(triangles, dtype=int).tolist():
+        following.setdefault(a, {})[b] = c
+        following.setdefault(b, {})[c] = a
+        following.setdefault(c, {})[a] = b
+    result = {}
+    for vertex in sorted(following):
+        successor = following[vertex]
+        ring = [min(successor)]
+        while successor[ring[-1]] != ring[0]:
+            ring.append(successor[ring[-1]])
+            if len(ring) > len(successor):
+                raise ValueError(f"the triangles around vertex {vertex} make no closed ring")
+        if len(ring) != len(successor):
+            raise ValueError(f"vertex {vertex} joins two fans of triangles")
+        result[vertex] = ring
+    return result
+
+
+def edges_with_wings(triangles) -> list[tuple[int, int, int, int]]:
+    """(c, a, b, d) for each edge ab: triangle abc on its left, triangle bad on its right."""
+    opposite = {}
+    for a, b, c in np.asarray(triangles, dtype=int).tolist():
+        opposite[a, b] = c
+        opposite[b, c] = a
+        opposite[c, a] = b
+    return [(c, a, b, opposite[b, a]) for (a, b), c in sorted(opposite.items()) if a < b]
+
+
+# --- writing expressions -----------------------------------------------------------------------
+
+
+def _sum(terms: Sequence[str]) -> str:
+    """The terms in a balanced tree of brackets.
+
+    OpenMM copies an expression's tree at every level as it parses and differentiates it. A chain
+    of n sums is n levels deep, and the long expressions then take minutes instead of seconds.
+    """
+    if len(terms) == 1:
+        return terms[0]
+    half = len(terms) // 2
+    return f"({_sum(terms[:half])}+{_sum(terms[half:])})"
+
+
+def _number(value: float) -> str:
+    """A literal that reads back as the same double, in brackets for the sake of its sign."""
+    return f"({float(value)!r})"
+
+
+class _Stencil:
+    """Writes one bond's expression: quantities are named once, however often they are used.
+
+    Points are the bond's particles, numbered from 1 as in OpenMM's ``p1``. The two subclasses say
+    how a quantity is written; the formulas below know only the quantities.
+    """
+
+    def __init__(self) -> None:
+        self._definitions: dict[str, str] = {}
+
+    def define(self, name: str, expression: str) -> str:
+        self._definitions.setdefault(name, expression)
+        return name
+
+    def expression(self, energy: str) -> str:
+        """The energy, followed by what it uses; OpenMM wants users before what they use."""
+        definitions = reversed(self._definitions.items())
+        return "; ".join([energy, *(f"{name}={text}" for name, text in definitions)])
+
+    def turning(self, c: int, a: int, b: int, d: int) -> str:
+        """φ of edge ab between triangles abc and bad: 0 if flat, positive if convex."""
+        raise NotImplementedError
+
+    def length(self, a: int, b: int) -> str:
+        raise NotImplementedError
+
+    def length2(self, a: int, b: int) -> str:
+        return self.define(f"q{min(a, b)}_{max(a, b)}", f"{self.length(a, b)}^2")
+
+    def double_area(self, a: int, b: int, c: int) -> str:
+        raise NotImplementedError
+
+    def corner(self, b: int, a: int, c: int) -> str:
+        """The angle at a, between the directions to b and to c."""
+        raise NotImplementedError
+
+    def cotangent(self, b: int, a: int, c: int) -> str:
+        """The cotangent of that angle."""
+        raise NotImplementedError
+
+    def dot(self, a: int, b: int, c: int) -> str:
+        """(b − a) · (c − a)."""
+        raise NotImplementedError
+
+    def double_heights_squared(self, a: int, b: int, c: int) -> list[str]:
+        raise NotImplementedError
+
+
+class _Geometric(_Stencil):
+    def length(self, a: int, b: int) -> str:
+        a, b = sorted((a, b))
+        return self.define(f"l{a}_{b}", f"distance(p{a},p{b})")
+
+    def corner(self, b: int, a: int, c: int) -> str:
+        b, c = sorted((b, c))
+        return self.define(f"t{b}_{a}_{c}", f"angle(p{b},p{a},p{c})")
+
+    def turning(self, c: int, a: int, b: int, d: int) -> str:
+        # The dihedral is ±pi where the surface is flat. Half of a turn off either branch leaves
+        # one smooth function, exact to the last bits because OpenMM's angle is.
+        name = self.define(f"o{a}_{b}", f"dihedral(p{c},p{a},p{b},p{d})")
+        return self.define(f"f{a}_{b}", f"{name}-{PI}*(2*step({name})-1)")
+
+    def double_area(self, a: int, b: int, c: int) -> str:
+        sides = f"{self.length(a, b)}*{self.length(a, c)}"
+        return self.define(f"n{a}_{b}_{c}", f"{sides}*sin({self.corner(b, a, c)})")
+
+    def cotangent(self, b: int, a: int, c: int) -> str:
+        angle = self.corner(b, a, c)
+        return self.define(f"c{a}_{min(b, c)}_{max(b, c)}", f"cos({angle})/sin({angle})")
+
+    def dot(self, a: int, b: int, c: int) -> str:
+        # By lengths rather than by the angle: opposite neighbours of a vertex are nearly in line
+        # with it, and there the angle's own derivative diverges.
+        if b == c:
+            return self.length2(a, b)
+        b, c = sorted((b, c))
+        sides = f"{self.length2(a, b)}+{self.length2(a, c)}-{self.length2(b, c)}"
+        return self.define(f"d{a}_{b}_{c}", f"0.5*({sides})")
+
+    def height_above(self, a: int, b: int, c: int, d: int) -> str:
+        """Height of d above the plane of triangle abc, positive on the side of its normal."""
+        # Around edge bc, because d, b, c are never in line where a and d are neighbours of b.
+        tilt = self.define(f"g{a}_{b}_{c}_{d}", f"dihedral(p{a},p{b},p{c},p{d})")
+        arm = f"{self.length(b, d)}*sin({self.corner(d, b, c)})"
+        return self.define(f"h{a}_{b}_{c}_{d}", f"{arm}*sin({tilt})")
+
+
+class _Cartesian(_Stencil):
+    def difference(self, axis: str, a: int, b: int) -> str:
+        """The component of b − a."""
+        return f"({axis}{b}-{axis}{a})"
+
+    def dot(self, a: int, b: int, c: int) -> str:
+        if b == c:
+            return self.length2(a, b)
+        b, c = sorted((b, c))
+        terms = [self.difference(x, a, b) + "*" + self.difference(x, a, c) for x in "xyz"]
+        return self.define(f"d{a}_{b}_{c}", _sum(terms))
+
+    def length2(self, a: int, b: int) -> str:
+        a, b = sorted((a, b))
+        terms = [self.difference(x, a, b) + "^2" for x in "xyz"]
+        return self.define(f"q{a}_{b}", _sum(terms))
+
+    def length(self, a: int, b: int) -> str:
+        return self.define(f"l{min(a, b)}_{max(a, b)}", f"sqrt({self.length2(a, b)})")
+
+    def normal(self, a: int, b: int, c: int) -> list[str]:
+        """(b − a) × (c − a), by component."""
+        components = []
+        for x, y, z in ("xyz", "yzx", "zxy"):
+            first = f"{self.difference(y, a, b)}*{self.difference(z, a, c)}"
+            second = f"{self.difference(z, a, b)}*{self.difference(y, a, c)}"
+            components.append(self.define(f"n{x}{a}_{b}_{c}", f"{first}-{second}"))
+        return components
+
+    def double_area2(self, a: int, b: int, c: int) -> str:
+        product = f"{self.length2(a, b)}*{self.length2(a, c)}-{self.dot(a, b, c)}^2"
+        return self.define(f"m{a}_{b}_{c}", product)
+
+    def double_area(self, a: int, b: int, c: int) -> str:
+        return self.define(f"n{a}_{b}_{c}", f"sqrt({self.double_area2(a, b, c)})")
+
+    def corner(self, b: int, a: int, c: int) -> str:
+        angle = f"atan2({self.double_area(a, b, c)},{self.dot(a, b, c)})"
+        return self.define(f"t{b}_{a}_{c}", angle)
+
+    def determinant(self, a: int, b: int, c: int, d: int) -> str:
+        """(b − a) · [(c − a) × (d − a)]."""
+        terms = []
+        for x, y, z in ("xyz", "yzx", "zxy"):
+            first = f"{self.difference(y, a, c)}*{self.difference(z, a, d)}"
+            second = f"{self.difference(z, a, c)}*{self.difference(y, a, d)}"
+            terms.append(f"{self.difference(x, a, b)}*({first}-{second})")
+        return self.define(f"v{a}_{b}_{c}_{d}", _sum(terms))
+
+    def turning(self, c: int, a: int, b: int, d: int) -> str:
+        # With u, v, w the directions from a to d, b, c, the normals are u × v and v × w. Their
+        # cross product is v det(u, v, w), their dot product (u·v)(v·w) − (u·w)(v·v).
+        sine = f"{self.length(a, b)}*{self.determinant(a, d, b, c)}"
+        cosine = f"{self.dot(a, d, b)}*{self.dot(a, b, c)}-{self.dot(a, d, c)}*{self.length2(a, b)}"
+        return self.define(f"f{a}_{b}", f"-atan2({sine},{cosine})")
+
+
+def _stencil(style: str) -> _Stencil:
+    if style == "geometric":
+        return _Geometric()
+    if style == "cartesian":
+        return _Cartesian()
+    raise ValueError(f"style {style!r} is neither of {STYLES}")
+
+
+def _compound(expression: str, bonds, parameters=(), values=None) -> mm.CustomCompoundBondForce:
+    """One CustomCompoundBondForce; row i of `values` holds the parameters of bond i."""
+    force = mm.CustomCompoundBondForce(len(bonds[0]), expression)
+    for name in parameters:
+        force.addPerBondParameter(name)
+    for number, particles in enumerate(bonds):
+        row = [] if values is None else [float(value) for value in values[number]]
+        force.addBond([int(particle) for particle in particles], row)
+    return force
+
+
+def _tuples(triangles) -> list[tuple[int, int, int]]:
+    return [tuple(row) for row in np.asarray(triangles, dtype=int).tolist()]
+
+
+# --- global area and volume --------------------------------------------------------------------
+
+
+def _area_sum(triangles, style: str) -> mm.CustomCompoundBondForce:
+    stencil = _stencil(style)
+    return _compound(stencil.expression(f"0.5*{stencil.double_area(1, 2, 3)}"), _tuples(triangles))
+
+
+def _volume_sum(triangles, style: str) -> mm.CustomCompoundBondForce:
+    """Each triangle's cone to a vertex of the surface: any apex gives the same sum."""
+    rows = _tuples(triangles)
+    stencil = _stencil(style)
+    # An apex for each connected part, and none outside: far away, the cones would cancel badly.
+    root = {vertex: vertex for row in rows for vertex in row}
+
+    def find(vertex: int) -> int:
+        while root[vertex] != vertex:
+            root[vertex] = root[root[vertex]]
+            vertex = root[vertex]
+        return vertex
+
+    for a, b, c in rows:
+        first, *others = sorted({find(a), find(b), find(c)})
+        for other in others:
+            root[other] = first
+    cones = [(a, b, c, find(a)) for a, b, c in rows if find(a) not in (a, b, c)]
+    if isinstance(stencil, _Geometric):
+        height = f"{stencil.double_area(1, 2, 3)}*{stencil.height_above(1, 2, 3, 4)}"
+        # An outward normal has the apex below it.
+        return _compound(stencil.expression(f"-{height}/6"), cones)
+    return _compound(stencil.expression(f"{stencil.determinant(4, 1, 2, 3)}/6"), cones)
+
+
+def _volume_sum_about_origin(triangles) -> mm.CustomCompoundBondForce:
+    """The shortest expression, as most people would write it; it needs no fourth particle."""
+    expression = "(x1*(y2*z3-z2*y3)+y1*(z2*x3-x2*z3)+z1*(x2*y3-y2*x3))/6"
+    return _compound(expression, _tuples(triangles))
+
+
+def global_area(triangles, modulus: float, target: float, style: str) -> list[mm.Force]:
+    """½ k (A − A0)² / A0 (paper, eq. 1)."""
+    force = mm.CustomCVForce(f"{_number(0.5 * modulus / target)}*(total-{_number(target)})^2")
+    force.addCollectiveVariable("total", _area_sum(triangles, style))
+    return [force]
+
+
+def global_volume(triangles, modulus: float, target: float, style: str) -> list[mm.Force]:
+    """½ k (V − V0)² / V0 (paper, eq. 2)."""
+    force = mm.CustomCVForce(f"{_number(0.5 * modulus / target)}*(total-{_number(target)})^2")
+    force.addCollectiveVariable("total", _volume_sum(triangles, style))
+    return [force]
+
+
+# --- triangles ---------------------------------------------------------------------------------
+
+
+def triangle_heights(triangles, min_height: float, epsilon: float, style: str) -> list[mm.Force]:
+    """Σ ε [(d/h)⁸ − (d/h)⁴ + ¼] over heights h < 2^¼ d, which is ε max((d/h)⁴ − ½, 0)²."""
+    stencil = _stencil(style)
+    terms = []
+    if isinstance(stencil, _Geometric):
+        for number, (a, b, c) in enumerate(((1, 2, 3), (2, 3, 1), (3, 1, 2))):
+            height = stencil.define(
+                f"h{number}", f"{stencil.length(a, b)}*sin({stencil.corner(a, b, c)})"
+            )
+            terms.append(f"max(({_number(min_height)}/{height})^4-0.5,0)^2")
+    else:
+        double_area2 = stencil.double_area2(1, 2, 3)
+        inverse = stencil.define("i", f"{_number(min_height**2)}/({double_area2})")
+        for a, b in ((1, 2), (2, 3), (3, 1)):
+            terms.append(f"max(({inverse}*{stencil.length2(a, b)})^2-0.5,0)^2")
+    energy = f"{_number(epsilon)}*({'+'.join(terms)})"
+    return [_compound(stencil.expression(energy), _tuples(triangles))]
+
+
+def triangle_area(triangles, modulus: float, target: Values, style: str) -> list[mm.Force]:
+    """Σ_t ½ k (a_t − a0)² / a0, one target for all triangles or one for each."""
+    stencil = _stencil(style)
+    targets = np.broadcast_to(np.asarray(target, dtype=float), (len(triangles),))
+    area = stencil.double_area(1, 2, 3)
+    energy = f"{_number(0.5 * modulus)}*(0.5*{area}-target)^2/target"
+    return [_compound(stencil.expression(energy), _tuples(triangles), ["target"], targets[:, None])]
+
+
+def triangle_area_repulsion(
+    triangles, min_area: float, epsilon: float, style: str
+) -> list[mm.Force]:
+    """Σ_t ε [(m/a)⁸ − (m/a)⁴ + ¼] over areas a < 2^¼ m, which is ε max((m/a)⁴ − ½, 0)²."""
+    stencil = _stencil(style)
+    ratio = f"({_number(2 * min_area)}/{stencil.double_area(1, 2, 3)})"
+    energy = f"{_number(epsilon)}*max({ratio}^4-0.5,0)^2"
+    return [_compound(stencil.expression(energy), _tuples(triangles))]
+
+
+# --- dihedrals ---------------------------------------------------------------------------------
+
+# u stands for 1 − cos φ, f for φ, K for the stiffness.
+DIHEDRAL_FORMS = {
+    "Quartic": "K*u^2",
+    "Cosine": "K*u",
+    "Exp": "0.5*K*(exp(2*u)-1)",
+    "SmoothExp": "0.04*K*(exp(10*u)-1)",
+    "SmoothExp46": "0.5*K*(exp(2*u)-1-f^2)",
+}
+
+
+def dihedral(triangles, stiffness: float, form: str, style: str) -> list[mm.Force]:
+    """A function of each edge's φ; the forms are in DIHEDRAL_FORMS."""
+    stencil = _stencil(style)
+    angle = stencil.define("f", stencil.turning(1, 2, 3, 4))
+    # Half-angle, because 1 − cos φ itself cancels where the surface is nearly flat.
+    stencil.define("u", f"2*sin(0.5*{angle})^2")
+    stencil.define("K", _number(stiffness))
+    return [_compound(stencil.expression(DIHEDRAL_FORMS[form]), edges_with_wings(triangles))]
+
+
+# --- bending -----------------------------------------------------------------------------------
+
+
+class _VertexTerms:
+    """The sums over the ring of vertex 1; its neighbours are points 2 … degree + 1."""
+
+    def __init__(self, degree: int, style: str) -> None:
+        self.stencil = _stencil(style)
+        self.ring = list(range(2, degree + 2))
+        # (left wing, neighbour, right wing) and (neighbour, next neighbour)
+        self.spokes = list(
+            zip(
+                self.ring[1:] + self.ring[:1],
+                self.ring,
+                self.ring[-1:] + self.ring[:-1],
+                strict=True,
+            )
+        )
+        self.fan = list(zip(self.ring, self.ring[1:] + self.ring[:1], strict=True))
+
+    def barycentric_area(self) -> str:
+        areas = [self.stencil.double_area(1, b, c) for b, c in self.fan]
+        return self.stencil.define("aB", f"{_sum(areas)}/6")
+
+    def _weight(self, left: int, spoke: int, right: int) -> str:
+        """cot θ1 + cot θ2 of the angles opposite the edge to `spoke`, for the geometric style."""
+        s = self.stencil
+        cotangents = [s.cotangent(1, left, spoke), s.cotangent(1, right, spoke)]
+        return s.define(f"w{spoke}", _sum(cotangents))
+
+    def voronoi_area(self) -> str:
+        s = self.stencil
+        if isinstance(s, _Geometric):
+            terms = [f"{s.length2(1, k[1])}*{self._weight(*k)}" for k in self.spokes]
+            return s.define("aV", f"{_sum(terms)}/8")
+        # Triangle by triangle, with u and v its two sides at the vertex: the cotangents are
+        # (v·v − u·v) / |u × v| opposite u and (u·u − u·v) / |u × v| opposite v.
+        terms = []
+        for b, c in self.fan:
+            uu, vv, uv = s.length2(1, b), s.length2(1, c), s.dot(1, b, c)
+            terms.append(f"({uu}*{vv}-0.5*{uv}*({uu}+{vv}))/{s.double_area(1, b, c)}")
+        return s.define("aV", f"{_sum(terms)}/4")
+
+    def integrated_curvature(self) -> str:
+        s = self.stencil
+        terms = [
+            f"{s.length(1, spoke)}*{s.turning(left, 1, spoke, right)}"
+            for left, spoke, right in self.spokes
+        ]
+        return s.define("J", f"0.5*{_sum(terms)}")
+
+    def _curvature_vector(self) -> list[str]:
+        """S by component, for the cartesian style.
+
+        S is the gradient of the area with respect to the vertex, and what a triangle adds to it is
+        half of its unit normal turned against its outer edge: a shorter sum than by cotangents.
+        """
+        s = self.stencil
+        components = []
+        for x, y, z in ("xyz", "yzx", "zxy"):
+            terms = []
+            for b, c in self.fan:
+                normal = dict(zip("xyz", s.normal(1, b, c), strict=True))
+                first = f"{normal[y]}*{s.difference(z, b, c)}"
+                second = f"{normal[z]}*{s.difference(y, b, c)}"
+                terms.append(f"({first}-{second})/{s.double_area(1, b, c)}")
+            components.append(s.define(f"S{x}", f"0.5*{_sum(terms)}"))
+        return components
+
+    def curvature_vector_squared(self) -> str:
+        s = self.stencil
+        if isinstance(s, _Cartesian):
+            return s.define("SS", _sum([f"{x}^2" for x in self._curvature_vector()]))
+        terms = [f"{self._weight(*k)}^2*{s.length2(1, k[1])}" for k in self.spokes]
+        for j, k in combinations(self.spokes, 2):
+            terms.append(f"2*{self._weight(*j)}*{self._weight(*k)}*{s.dot(1, j[1], k[1])}")
+        return s.define("SS", f"0.25*{_sum(terms)}")
+
+    def _along_normal(self, name: str, vector: list[str], weights: list[str]) -> str:
+        """n·v, n the mean of the triangles' normals weighted by their angles at the vertex.
+
+        v comes by component for the cartesian style, as half the weighted sum of r_i − r_j over
+        the neighbours for the geometric style.
+        """
+        s = self.stencil
+        if isinstance(s, _Cartesian):
+            components = [[], [], []]
+            for b, c in self.fan:
+                weight = s.define(f"r{b}", f"{s.corner(b, 1, c)}/{s.double_area(1, b, c)}")
+                for terms, normal in zip(components, s.normal(1, b, c), strict=True):
+                    terms.append(f"{weight}*{normal}")
+            sums = [
+                s.define(f"N{x}", _sum(terms)) for x, terms in zip("xyz", components, strict=True)
+            ]
+            projection = _sum([f"{n}*{c}" for n, c in zip(sums, vector, strict=True)])
+            return s.define(name, f"{projection}/sqrt({_sum([f'{n}^2' for n in sums])})")
+        # Without components: v·n_t needs each neighbour's height above triangle t, and |Σ θ n|
+        # the products of normals, (u × v)·(w × z) = (u·w)(v·z) − (u·z)(v·w).
+        projections, products = [], []
+        for b, c in self.fan:
+            heights = [
+                f"{weight}*{s.height_above(1, b, c, k)}"
+                for k, weight in zip(self.ring, weights, strict=True)
+                if k not in (b, c)
+            ]
+            projections.append(f"-0.5*{s.corner(b, 1, c)}*{_sum(heights)}")
+            products.append(f"{s.corner(b, 1, c)}^2")
+        for (b, c), (d, e) in combinations(self.fan, 2):
+            gram = f"({s.dot(1, b, d)})*({s.dot(1, c, e)})-({s.dot(1, b, e)})*({s.dot(1, c, d)})"
+            angles = f"{s.corner(b, 1, c)}*{s.corner(d, 1, e)}"
+            areas = f"({s.double_area(1, b, c)}*{s.double_area(1, d, e)})"
+            products.append(f"2*{angles}*({gram})/{areas}")
+        return s.define(name, f"{_sum(projections)}/sqrt({_sum(products)})")
+
+    def curvature_along_normal(self) -> str:
+        """n·S."""
+        if isinstance(self.stencil, _Cartesian):
+            return self._along_normal("nS", self._curvature_vector(), [])
+        return self._along_normal("nS", [], [self._weight(*k) for k in self.spokes])
+
+    def neighbour_sum_along_normal(self) -> str:
+        """n·Σ_j (r_i − r_j)."""
+        s = self.stencil
+        vector = []
+        if isinstance(s, _Cartesian):
+            vector = [_sum([s.difference(x, j, 1) for j in self.ring]) for x in "xyz"]
+        return self._along_normal("nE", vector, ["2"] * len(self.ring))
+
+    def neighbour_sum_squared(self) -> str:
+        """|Σ_j (r_j − r_i)|²."""
+        s = self.stencil
+        if isinstance(s, _Cartesian):
+            sums = [_sum([s.difference(x, 1, j) for j in self.ring]) for x in "xyz"]
+            return s.define("E2", _sum([f"({x})^2" for x in sums]))
+        terms = [s.length2(1, j) for j in self.ring]
+        terms += [f"2*{s.dot(1, j, k)}" for j, k in combinations(self.ring, 2)]
+        return s.define("E2", _sum(terms))
+
+
+# What each scheme adds up over the vertices: K is the rigidity, C the spontaneous curvature. The
+# Jülicher schemes complete the square. The others do not, and their three parts are forces apart,
+# because each is then short enough for OpenMM to differentiate in reasonable time.
+_Write = Callable[[_VertexTerms], str]
+
+
+def _square(area: _Write) -> dict[str, _Write]:
+    return {
+        "quadratic": lambda v: f"0.5*K*({v.integrated_curvature()}-C*{area(v)})^2/{area(v)}",
+    }
+
+
+def _itzykson(area: _Write) -> dict[str, _Write]:
+    return {
+        "quadratic": lambda v: f"0.5*K*{v.curvature_vector_squared()}/{area(v)}",
+        "linear": lambda v: f"-K*C*{v.curvature_along_normal()}",
+        "linear unsigned": lambda v: f"-K*C*sqrt({v.curvature_vector_squared()})",
+        "constant": lambda v: f"0.5*K*C^2*{area(v)}",
+    }
+
+
+BENDING_SCHEMES: dict[str, dict[str, _Write]] = {
+    "Julicher": _square(_VertexTerms.barycentric_area),
+    "JulicherVoronoi": _square(_VertexTerms.voronoi_area),
+    "GompperKroll": _itzykson(_VertexTerms.voronoi_area),
+    "GompperKrollBarycentric": _itzykson(_VertexTerms.barycentric_area),
+    # As Gompper–Kroll's with Σ_j (r_i − r_j) / √3, which is S if all triangles are equilateral.
+    "Espriu": {
+        "quadratic": lambda v: f"K*{v.neighbour_sum_squared()}/(6*{v.barycentric_area()})",
+        "linear": lambda v: f"-K*C*{v.neighbour_sum_along_normal()}/sqrt(3)",
+        "linear unsigned": lambda v: f"-K*C*sqrt({v.neighbour_sum_squared()}/3)",
+        "constant": lambda v: f"0.5*K*C^2*{v.barycentric_area()}",
+    },
+}
+
+
+def bending_parts(scheme: str, curved: bool, unsigned: bool = False) -> list[str]:
+    """The parts of a scheme's energy, of which only one is there without spontaneous curvature."""
+    if not curved or "linear" not in BENDING_SCHEMES[scheme]:
+        return ["quadratic"]
+    return ["quadratic", "linear unsigned" if unsigned else "linear", "constant"]
+
+
+def bending(
+    triangles,
+    rigidity: Values,
+    spontaneous_curvature: Values = 0.0,
+    scheme: str = "Julicher",
+    style: str = "cartesian",
+    unsigned: bool = False,
+    parts: Sequence[str] | None = None,
+) -> list[mm.Force]:
+    """One of the five bending energies, a force for each part and number of neighbours.
+
+    Rigidity and spontaneous curvature may be given for each vertex, in ascending order of particle
+    index; they are then the parameters K and C of each bond. `unsigned` is VCM's |S| in place of
+    n·S.
+    """
+    ring_of = rings(triangles)
+    vertices = list(ring_of)
+    if parts is None:
+        curved = bool(np.any(np.asarray(spontaneous_curvature) != 0))
+        parts = bending_parts(scheme, curved, unsigned)
+
+    literals, columns = {}, {}
+    for name, given in (("K", rigidity), ("C", spontaneous_curvature)):
+        if np.ndim(given) == 0:
+            literals[name] = _number(given)
+        elif len(given) == len(vertices):
+            columns[name] = np.asarray(given, dtype=float)
+        else:
+            raise ValueError(f"{len(given)} values for {len(vertices)} vertices")
+
+    forces: list[mm.Force] = []
+    for degree in sorted({len(ring) for ring in ring_of.values()}):
+        rows = [row for row, vertex in enumerate(vertices) if len(ring_of[vertex]) == degree]
+        bonds = [[vertices[row], *ring_of[vertices[row]]] for row in rows]
+        values = np.stack([v[rows] for v in columns.values()], axis=1) if columns else None
+        for part in parts:
+            terms = _VertexTerms(degree, style)
+            energy = BENDING_SCHEMES[scheme][part](terms)
+            for name, literal in literals.items():
+                terms.stencil.define(name, literal)
+            forces.append(_compound(terms.stencil.expression(energy), bonds, list(columns), values))
+    return forces
+
+
+def plaquette_area(triangles, stiffness: float, target: float, style: str) -> list[mm.Force]:
+    """½ k Σ_i (N a_i / A0 − 1)² with the barycentric areas of all N vertices (paper, eq. 20)."""
+    ring_of = rings(triangles)
+    forces: list[mm.Force] = []
+    for degree in sorted({len(ring) for ring in ring_of.values()}):
+        terms = _VertexTerms(degree, style)
+        share = f"{_number(len(ring_of) / target)}*{terms.barycentric_area()}"
+        energy = terms.stencil.expression(f"{_number(0.5 * stiffness)}*({share}-1)^2")
+        bonds = [[vertex, *ring] for vertex, ring in ring_of.items() if len(ring) == degree]
+        forces.append(_compound(energy, bonds))
+    return forces
+
+
+# --- the whole vesicle, for races --------------------------------------------------------------
+
+
+def fastest(
+    triangles,
+    *,
+    rigidity: float,
+    area_modulus: float,
+    area_target: float,
+    volume_modulus: float,
+    volume_target: float,
+    min_height: float,
+    epsilon: float,
+    style: str,
+) -> list[mm.Force]:
+    """Jülicher (C0 = 0), area, volume and heights by the cheapest expressions that we know.
+
+    What a patient user would write: one CustomCVForce for both constraints, so that there is one
+    inner Context, nothing multiplied by a curvature that is zero, and the volume about the origin.
+    """
+    constraint = mm.CustomCVForce(
+        f"{_number(0.5 * area_modulus / area_target)}*(A-{_number(area_target)})^2"
+        f"+{_number(0.5 * volume_modulus / volume_target)}*(V-{_number(volume_target)})^2"
+    )
+    constraint.addCollectiveVariable("A", _area_sum(triangles, style))
+    cartesian = style == "cartesian"
+    volume = _volume_sum_about_origin(triangles) if cartesian else _volume_sum(triangles, style)
+    constraint.addCollectiveVariable("V", volume)
+
+    curvature = []
+    ring_of = rings(triangles)
+    for degree in sorted({len(ring) for ring in ring_of.values()}):
+        terms = _VertexTerms(degree, style)
+        square = f"{terms.integrated_curvature()}^2/{terms.barycentric_area()}"
+        bonds = [[vertex, *ring] for vertex, ring in ring_of.items() if len(ring) == degree]
+        energy = terms.stencil.expression(f"{_number(0.5 * rigidity)}*{square}")
+        curvature.append(_compound(energy, bonds))
+    return [constraint, *curvature, *triangle_heights(triangles, min_height, epsilon, style)]
