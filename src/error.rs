@@ -69,6 +69,10 @@ pub enum Error {
     #[error("triangle {triangle} ({}, {}, {}) has no area, so its normal and the energy's gradient are undefined; keep its corners from falling on one line (TriangleHeightForce, or a smaller time step)", .corners[0], .corners[1], .corners[2])]
     DegenerateTriangle { triangle: usize, corners: [u32; 3] },
 
+    /// A triangle is so large that its area is not a number.
+    #[error("triangle {triangle} ({}, {}, {}) has grown beyond all numbers: the simulation has blown up; use a smaller time step or a better relaxed start", .corners[0], .corners[1], .corners[2])]
+    OverflownTriangle { triangle: usize, corners: [u32; 3] },
+
     /// The surface folds back onto itself exactly.
     #[error(
         "the energy is not finite ({energy} kJ/mol) although every position is: the mesh is folded or collapsed; use a smaller time step or a better relaxed start"

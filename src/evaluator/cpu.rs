@@ -165,9 +165,17 @@ impl CpuEvaluator {
                 return Error::NonFinitePosition { particle, position };
             }
         }
-        let bad = |t: &TriangleGeometry| !(t.twice_area > 0.0 && t.twice_area.is_finite());
-        let triangle = self.triangles.iter().position(bad).unwrap_or(0);
-        Error::DegenerateTriangle { triangle, corners: topology.particles_of(triangle) }
+        for (triangle, geometry) in self.triangles.iter().enumerate() {
+            let corners = topology.particles_of(triangle);
+            if !geometry.twice_area.is_finite() {
+                return Error::OverflownTriangle { triangle, corners };
+            }
+            if geometry.twice_area == 0.0 {
+                return Error::DegenerateTriangle { triangle, corners };
+            }
+        }
+        // Each triangle is fine, so it is their sum that overflows.
+        Error::NonFiniteEnergy { energy: f64::INFINITY }
     }
 
     fn forward_edges(&mut self) {

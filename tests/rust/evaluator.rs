@@ -251,6 +251,10 @@ fn degenerate_and_lost_meshes_are_named_and_change_nothing() {
     let result = evaluator.evaluate(terms.iter(), &lost, &mut contributions, Some(&mut forces));
     assert!(matches!(result, Err(Error::NonFinitePosition { particle: 11, .. })), "{result:?}");
 
+    let huge: Vec<f64> = mesh.0.iter().map(|x| x * 1e200).collect();
+    let result = evaluator.evaluate(terms.iter(), &huge, &mut contributions, Some(&mut forces));
+    assert!(matches!(result, Err(Error::OverflownTriangle { .. })), "{result:?}");
+
     let mut flat = mesh.0.clone();
     let [a, b, c] = mesh.1[4].map(|v| v as usize);
     for axis in 0..3 {
