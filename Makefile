@@ -50,13 +50,13 @@ test-package: $(VENV)/.requirements # `pip install .` where nothing else is
 
 test-python: build # what a user sees
 	@echo "== Python"
-	@$(VENV)/bin/python -m pytest -q -n 2
+	@$(VENV)/bin/python -m pytest -q -n 2 --dist loadfile
 
 demo: build ## simulate a vesicle and draw it with its fluctuation spectrum (about two minutes)
 	@$(VENV)/bin/python examples/vesicle.py
 
 bench: build ## measure the cost of an evaluation and of a time step
-	@$(CARGO) bench -q --locked -- --warm-up-time 0.5 --measurement-time 2
+	@$(CARGO) bench -q --locked --bench evaluate -- --output-format bencher --warm-up-time 0.5 --measurement-time 2
 	@$(VENV)/bin/python benches/steps.py
 
 clean: ## remove everything that was built, .venv too

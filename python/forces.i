@@ -40,6 +40,7 @@ using namespace HelfrichPlugin;
 %ignore HelfrichPlugin::MembraneForce::addTriangles;
 %ignore HelfrichPlugin::MembraneForce::getTriangles;
 %ignore HelfrichPlugin::MembraneForce::setParameterValue;
+%rename(_setElementValues) HelfrichPlugin::MembraneForce::setElementValues;
 %nodefaultctor HelfrichPlugin::MembraneForce;
 
 %extend HelfrichPlugin::MembraneForce {

@@ -33,7 +33,7 @@ unsafe extern "C" {
     ) -> *mut Force;
 }
 
-/// A force of any class, of variant 0; null if an argument is refused.
+/// A force of any class; null if an argument is refused.
 ///
 /// # Safety
 /// `class` must end with a NUL, and `triangles` hold three values a triangle.
@@ -42,9 +42,12 @@ pub(crate) unsafe fn create(
     triangles: *const c_int,
     num_triangles: c_int,
     values: &[f64],
+    form: c_int,
 ) -> *mut Force {
     let count = values.len() as c_int;
-    unsafe { helfrich_shim_createForce(class, triangles, num_triangles, values.as_ptr(), count, 0) }
+    unsafe {
+        helfrich_shim_createForce(class, triangles, num_triangles, values.as_ptr(), count, form)
+    }
 }
 
 /// Lets the shim report what it caught.
@@ -123,10 +126,7 @@ macro_rules! force_class {
                 let mut variant = 0;
                 $(variant = $form;)?
                 let class = concat!(stringify!($class), "\0").as_ptr().cast();
-                let count = values.len() as c_int;
-                unsafe {
-                    helfrich_shim_createForce(class, triangles, num_triangles, values.as_ptr(), count, variant)
-                }
+                unsafe { create(class, triangles, num_triangles, &values, variant) }
             }
             $(
                 #[doc = concat!("The scalar ", stringify!($parameter), " of a ", stringify!($class), ".")]

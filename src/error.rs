@@ -73,11 +73,11 @@ pub enum Error {
     #[error("triangle {triangle} ({}, {}, {}) has grown beyond all numbers: the simulation has blown up; use a smaller time step or a better relaxed start", .corners[0], .corners[1], .corners[2])]
     OverflownTriangle { triangle: usize, corners: [u32; 3] },
 
-    /// The surface folds back onto itself exactly.
+    /// A term has no finite energy on a mesh whose geometry is finite.
     #[error(
-        "the energy is not finite ({energy} kJ/mol) although every position is: the mesh is folded or collapsed; use a smaller time step or a better relaxed start"
+        "the energy of {force} is not finite ({energy} kJ/mol) although every position is: the mesh is folded or collapsed, or a Voronoi area is zero; use a smaller time step or a better relaxed start"
     )]
-    NonFiniteEnergy { energy: f64 },
+    NonFiniteEnergy { force: &'static str, energy: f64 },
 
     /// A scalar outside its domain.
     #[error("{parameter} must be {domain}, got {value}")]

@@ -1,8 +1,8 @@
 //! The C interface: what the C++ shim, the Python package and OpenMM's plugin loader call.
 //!
 //! Every function that can fail returns 0 for success and 1 for failure; [`Helfrich_lastError`] then has
-//! the message of the calling thread. No panic leaves a function. `wrappers/src/Core.h` declares the
-//! same functions for C++; the two change together.
+//! the message of the calling thread. No panic leaves a function. `openmm-helfrich/internal/Core.h`
+//! in `wrappers/include` declares them for C++, as far as C++ needs them; the two change together.
 
 #![allow(non_snake_case, reason = "names follow OpenMM's C API")]
 
@@ -397,7 +397,8 @@ pub extern "C" fn registerPlatforms() {}
 /// OpenMM's plugin entry point for kernels. The forces need none; their XML readers are registered here.
 #[unsafe(no_mangle)]
 pub extern "C" fn registerKernelFactories() {
-    // SAFETY: the shim's function takes nothing and catches what it throws.
+    // SAFETY: the shim's function takes nothing and throws nothing. If OpenMM is of another version it says
+    // so on the standard error and registers nothing: a plugin in a folder must not stop the others.
     unsafe { helfrich_shim_registerSerialization() };
 }
 

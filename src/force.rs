@@ -49,7 +49,7 @@ impl MembraneForce {
         let corners = triangles.as_flattened();
         // SAFETY: the arrays are as long as is said, and the shim copies them.
         let force = unsafe {
-            c_api::create(name.as_ptr(), corners.as_ptr(), count(triangles.len())?, values)
+            c_api::create(name.as_ptr(), corners.as_ptr(), count(triangles.len())?, values, 0)
         };
         let force = NonNull::new(force).ok_or_else(|| Error::Contract(last_error()))?;
         Ok(Self { force, class: known })
@@ -141,6 +141,41 @@ impl MembraneForce {
             )
         })?;
         Ok(self)
+    }
+
+    /// Ask for the derivative of the energy with respect to a Context parameter.
+    ///
+    /// # Errors
+    /// No scalar has this Context parameter.
+    pub fn add_energy_parameter_derivative(&mut self, name: &str) -> Result<&mut Self> {
+        let name = c_text(name)?;
+        // SAFETY: the force is alive and the name ends with a NUL.
+        check(unsafe {
+            c_api::Helfrich_MembraneForce_addEnergyParameterDerivative(
+                self.force.as_ptr(),
+                name.as_ptr(),
+            )
+        })?;
+        Ok(self)
+    }
+
+    /// Switch something on or off, such as "unsignedSpontaneousCurvature".
+    ///
+    /// # Errors
+    /// An unknown name.
+    pub fn set_switch(&mut self, name: &str, on: bool) -> Result<&mut Self> {
+        let name = c_text(name)?;
+        // SAFETY: the force is alive and the name ends with a NUL.
+        check(unsafe {
+            c_api::Helfrich_MembraneForce_setSwitch(self.force.as_ptr(), name.as_ptr(), on.into())
+        })?;
+        Ok(self)
+    }
+
+    /// The force as OpenMM's C API knows it. Keep it to steer a force that a System has taken over, with the
+    /// functions of [`crate::c_api`]; it lives as long as the System.
+    pub fn as_openmm(&self) -> *mut OpenMM_Force {
+        self.force.as_ptr().cast()
     }
 
     /// The force for `OpenMM_System_addForce`, which takes it over.

@@ -19,7 +19,7 @@ from . import _plugin
 
 _plugin.load()
 
-from . import analysis  # noqa: E402
+from . import analysis, vcm  # noqa: E402
 from ._paths import cmake_path, include_path, library_path  # noqa: E402
 from .errors import MeshError  # noqa: E402
 from .forces import *  # noqa: E402, F403
@@ -37,5 +37,6 @@ __all__ = [
     "cmake_path",
     "include_path",
     "library_path",
+    "vcm",
     *_force_names,
 ]

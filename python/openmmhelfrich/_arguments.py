@@ -12,10 +12,11 @@ import ctypes
 import functools
 import inspect
 import math
+import operator
 from typing import NamedTuple
 
 import numpy as np
-from openmm import unit
+from openmm import XmlSerializer, unit
 
 from . import _core
 
@@ -112,13 +113,59 @@ def element_values(force: str, parameter: Scalar, values) -> list[float]:
         If they are not one list.
     """
     where = f"{force}: {parameter.name}"
+    plain = _plain(where, parameter, values)
+    if isinstance(plain, (list, tuple)):
+        plain = [_plain(where, parameter, value) for value in plain]
     try:
-        array = np.asarray(_plain(where, parameter, values), dtype=np.float64)
-    except (TypeError, ValueError):
-        raise TypeError(f"{where} must be a list of numbers, got {values!r}") from None
+        array = np.asarray(plain)
+    except ValueError:
+        raise TypeError(f"{where} must be a list of numbers, got lists of unequal length") from None
     if array.ndim != 1:
         raise ValueError(f"{where} must be one list of numbers, got the shape {array.shape}")
+    if array.size and array.dtype.kind not in "iuf":
+        raise TypeError(f"{where} must be a list of numbers, got dtype {array.dtype}")
+    array = array.astype(np.float64)
     return array.tolist()
+
+
+def form_number(force: str, what: str, value) -> int:
+    """The number of a variant: a constant of the class, or its name.
+
+    Parameters
+    ----------
+    force : str
+        The name of the class.
+    what : str
+        What its variants are called, for messages.
+    value : int or str
+        A constant such as ``BendingForce.GompperKroll``, or ``"GompperKroll"``.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If the value is neither, or an unknown name.
+    """
+    if isinstance(value, str):
+        names = _form_names(force)
+        if value not in names:
+            known = ", ".join(names)
+            raise ValueError(f"{force}: there is no {what} {value!r}; known are: {known}")
+        return names.index(value)
+    if isinstance(value, (bool, np.bool_)):
+        raise TypeError(f"{force}: {what} must be a constant of the class, got {value!r}")
+    try:
+        return operator.index(value)
+    except TypeError:
+        raise TypeError(f"{force}: {what} must be a constant of the class, got {value!r}") from None
+
+
+def _form_names(force: str) -> list[str]:
+    names = []
+    what, name = ctypes.c_char_p(), ctypes.c_char_p()
+    find = _core.library().Helfrich_Potential_form
+    while find(force.encode(), len(names), ctypes.byref(what), ctypes.byref(name)) == 0:
+        names.append(name.value.decode())
+    return names
 
 
 def scalar(force: str, parameter: Scalar, value) -> float:
@@ -140,7 +187,7 @@ def scalar(force: str, parameter: Scalar, value) -> float:
     """
     where = f"{force}: {parameter.name}"
     value = _plain(where, parameter, value)
-    if isinstance(value, (bool, str, bytes)):
+    if isinstance(value, (bool, np.bool_, str, bytes)):
         raise TypeError(f"{where} must be a number, got {value!r}")
     try:
         return float(value)
@@ -186,15 +233,17 @@ def triangles(force: str, given, offset: int = 0) -> np.ndarray:
         )
     if isinstance(offset, bool) or not isinstance(offset, (int, np.integer)):
         raise TypeError(f"{force}: offset must be an integer, got {offset!r}")
-    shifted = array.astype(np.int64) + int(offset)
     limits = np.iinfo(np.intc)
-    outside = np.flatnonzero(((shifted < limits.min) | (shifted > limits.max)).any(axis=1))
-    if outside.size:
-        index = int(outside[0])
-        raise ValueError(
-            f"{force}: triangle {index} has the indices {tuple(shifted[index].tolist())}, "
-            "which are beyond what OpenMM can number"
-        )
+    # Python's integers do not wrap, as those of an array would.
+    for extreme in (array.min(axis=1), array.max(axis=1)) if len(array) else ():
+        for triangle in (int(np.argmin(extreme)), int(np.argmax(extreme))):
+            if not limits.min <= int(extreme[triangle]) + int(offset) <= limits.max:
+                indices = tuple(int(index) + int(offset) for index in array[triangle].tolist())
+                raise ValueError(
+                    f"{force}: triangle {triangle} has the indices {indices}, "
+                    "which are beyond what OpenMM can number"
+                )
+    shifted = array.astype(np.int64) + int(offset)
     return np.ascontiguousarray(shifted, dtype=np.intc)
 
 
@@ -231,12 +280,12 @@ def accept_units(force: type) -> None:
                 given = 1.0
             values.append(scalar(name, s, given))
         if form is not None:
-            values.append(arguments[form])
+            values.append(form_number(name, form, arguments[form]))
         swig_init(self, [], *values)
         for s, list_ in elements.items():
             if not list_:
                 raise ValueError(f"{name}: {s.name} is an empty list; give one value or many")
-            self.setElementValues(s.name, list_)
+            self._setElementValues(s.name, list_)
             # The scalar is not used beside them; their mean is what a reader would expect.
             getattr(self, "set" + _capitalised(s.name))(float(np.mean(list_)))
         self._addTriangleBuffer(corners.data)
@@ -247,6 +296,9 @@ def accept_units(force: type) -> None:
     force.__init__ = init
     for parameter in known:
         _accept_unit_in_setter(force, parameter)
+    if form is not None:
+        _accept_name_in_setter(force, form)
+    _own_what_is_cast(force)
 
 
 def _accept_unit_in_setter(force: type, parameter: Scalar) -> None:
@@ -271,8 +323,41 @@ def _accept_unit_in_setter(force: type, parameter: Scalar) -> None:
     setattr(force, parameter.element_setter, element_setter)
 
 
+def _accept_name_in_setter(force: type, form: str) -> None:
+    """Let the setter of the variant take its name."""
+    method = "set" + _capitalised(form)
+    swig_setter = getattr(force, method)
+
+    @functools.wraps(swig_setter)
+    def setter(self, value):
+        swig_setter(self, form_number(force.__name__, form, value))
+
+    setattr(force, method, setter)
+
+
+def _own_what_is_cast(force: type) -> None:
+    """Let `cast` hand over the ownership of a force that no System has.
+
+    A force read from XML belongs to the Python object that was read; without this it would die with
+    that object, while the result of the cast still points to it.
+    """
+    swig_cast = force.cast
+
+    @functools.wraps(swig_cast)
+    def cast(force):
+        result = swig_cast(force)
+        if force.thisown:
+            force.thisown = False
+            result.thisown = True
+            # The given object stays usable, so what it points to must live as long.
+            force._cast = result
+        return result
+
+    force.cast = staticmethod(cast)
+
+
 def accept_arrays(force: type) -> None:
-    """Give the base class its method for many triangles."""
+    """Give the base class its methods for triangles, and for copies that know their class."""
 
     def add_triangles(self, given, *, offset=0):
         """Add many triangles.
@@ -294,3 +379,31 @@ def accept_arrays(force: type) -> None:
     add_triangles.__name__ = "addTriangles"
     add_triangles.__qualname__ = f"{force.__name__}.addTriangles"
     force.addTriangles = add_triangles
+
+    swig_add_triangle = force.addTriangle
+
+    @functools.wraps(swig_add_triangle)
+    def add_triangle(self, particle1, particle2, particle3):
+        name = type(self).__name__
+        ((one, two, three),) = triangles(name, [[particle1, particle2, particle3]]).tolist()
+        return swig_add_triangle(self, one, two, three)
+
+    force.addTriangle = add_triangle
+
+    # OpenMM's own methods make an openmm.Force, on which the methods of the class do not work.
+    def adopt(self, plain):
+        self.this = type(self).cast(plain).this
+        self.thisown = True
+        plain._cast = None
+
+    def set_state(self, xml):
+        adopt(self, XmlSerializer.deserialize(xml))
+
+    def copy(self):
+        duplicate = type(self).__new__(type(self))
+        adopt(duplicate, XmlSerializer.clone(self))
+        return duplicate
+
+    force.__setstate__ = set_state
+    force.__copy__ = copy
+    force.__deepcopy__ = lambda self, memo: copy(self)

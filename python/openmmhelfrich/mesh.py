@@ -61,7 +61,8 @@ class Mesh:
         _core.orient(points, corners)
         points.flags.writeable = False
         corners.flags.writeable = False
-        self.__dict__.update(_vertices=points, _triangles=corners)
+        # A view of an array that cannot be written to can never be made writeable.
+        self.__dict__.update(_vertices=points.view(), _triangles=corners.view())
 
     def __setattr__(self, name, value):
         raise AttributeError(f"Mesh: cannot set {name}, a mesh is immutable; make a new one")

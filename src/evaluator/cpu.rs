@@ -110,10 +110,12 @@ impl CpuEvaluator {
         if needs.contains(Needs::VECTORS) {
             self.forward_vectors(needs);
         }
-        let total_partials = self.potentials(terms, needs, &totals, contributions);
-        let energy = contributions.iter().map(|part| part.energy).sum::<f64>();
-        if !energy.is_finite() {
-            return Err(Error::NonFiniteEnergy { energy });
+        let total_partials = self.potentials(terms.clone(), needs, &totals, contributions);
+        for (term, contribution) in terms.zip(contributions.iter()) {
+            if !contribution.energy.is_finite() {
+                let (force, energy) = (term.potential.name(), contribution.energy);
+                return Err(Error::NonFiniteEnergy { force, energy });
+            }
         }
         if let Some(forces) = forces {
             if needs.intersects(Needs::EDGES | Needs::CURVATURES) {
@@ -175,7 +177,8 @@ impl CpuEvaluator {
             }
         }
         // Each triangle is fine, so it is their sum that overflows.
-        Error::NonFiniteEnergy { energy: f64::INFINITY }
+        let triangle = topology.triangles.len() - 1;
+        Error::OverflownTriangle { triangle, corners: topology.particles_of(triangle) }
     }
 
     fn forward_edges(&mut self) {

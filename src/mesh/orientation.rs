@@ -42,6 +42,9 @@ pub fn oriented(vertices: &[[f64; 3]], triangles: &[[i64; 3]]) -> Result<Vec<[i6
         for &triangle in &component {
             let [a, b, c] = corners[triangle].map(|v| Vector3::from(vertices[v as usize]) - origin);
             let normal = (b - a).cross(&(c - a));
+            if !normal.norm_squared().is_finite() {
+                return Err(Error::OverflownTriangle { triangle, corners: corners[triangle] });
+            }
             if normal.norm_squared() == 0.0 {
                 return Err(Error::DegenerateTriangle { triangle, corners: corners[triangle] });
             }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 import shutil
 import subprocess
@@ -11,6 +12,7 @@ from pathlib import Path
 import openmm
 import openmmhelfrich as helfrich
 import pytest
+from openmmhelfrich import _arguments
 
 PROJECT = Path(__file__).resolve().parents[2]
 OPENMM = Path(openmm.__file__).resolve().parent.parent / "OpenMM.libs"
@@ -138,3 +140,17 @@ def test_c_reports_what_is_wrong(tmp_path):
     assert lines[0] == "BendingForce: rigidity must be a finite number, zero or above, got -5"
     assert lines[1].startswith('BendingForce: there is no parameter called "stiffness"')
     assert lines[2] == "7"
+
+
+def test_every_force_class_has_its_c_functions():
+    """A force that is added to the C++ list must come to C programs, too."""
+    header = (Path(helfrich.include_path()) / "OpenMMHelfrichCWrapper.h").read_text()
+    library = ctypes.CDLL(helfrich.library_path())
+    for force in helfrich.MembraneForce.__subclasses__():
+        names = [f"Helfrich_{force.__name__}_create"]
+        for scalar in _arguments.scalars_of(force.__name__):
+            capitalised = scalar.name[0].upper() + scalar.name[1:]
+            names += [f"Helfrich_{force.__name__}_{verb}{capitalised}" for verb in ("get", "set")]
+        for name in names:
+            assert f"{name}(" in header
+            assert hasattr(library, name)

@@ -502,3 +502,16 @@ def test_energy_of_a_force(lumpy):
     system.addForce(force)
     assert lumpy.energy(system.getForce(0)) == pytest.approx(expected, rel=1e-12)
     assert system.getNumForces() == 1
+
+
+def test_arrays_cannot_be_made_writeable():
+    mesh = Mesh.icosphere(2, 10.0)
+    for array in (mesh.vertices, mesh.triangles):
+        with pytest.raises(ValueError, match="WRITEABLE"):
+            array.setflags(write=True)
+
+
+def test_coordinates_beyond_all_areas_are_refused():
+    mesh = Mesh.icosphere(2, 10.0)
+    with pytest.raises(MeshError, match="beyond all numbers"):
+        Mesh(mesh.vertices * 1e200, mesh.triangles)

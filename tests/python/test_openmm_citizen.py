@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import gc
 import itertools
 import os
 import pickle
@@ -488,6 +489,16 @@ class TestCopies:
         assert twin.getForceGroup() == 11
         assert twin.getName() == "outer"
         assert twin.this != force.this
+        # The methods of the class must work on the copy, too, and leave the original alone.
+        twin = own = twin if how in ("copy", "deepcopy", "pickle") else cls.cast(twin)
+        scalars = {n: v for n, v in case.arguments(m).items() if np.ndim(v) == 0}
+        for name, value in scalars.items():
+            getter, setter = (word + name[0].upper() + name[1:] for word in ("get", "set"))
+            assert getattr(own, getter)() == value
+            getattr(own, setter)(1.5 * value)
+            assert getattr(own, getter)() == 1.5 * value
+            assert getattr(force, getter)() == value
+            getattr(own, setter)(value)
         assert_same_bits(measure(context_of([twin], m)), expected)
 
     @pytest.mark.parametrize("how", COPIES)
@@ -818,3 +829,101 @@ def test_any_number_of_threads_gives_the_same_bits(tmp_path: Path):
         for name, value in result.items():
             assert np.abs(value).max() > 0, name
             np.testing.assert_array_equal(value, results[1][name], err_msg=f"{threads}: {name}")
+
+
+class TestOwnership:
+    """Casting hands over what no System owns, so that nothing dangles."""
+
+    def test_a_cast_force_outlives_what_was_read(self):
+        m = membrane("octahedron")
+        xml = mm.XmlSerializer.serialize(helfrich.BendingForce(m.triangles, 3))
+        read = [helfrich.BendingForce.cast(mm.XmlSerializer.deserialize(xml)) for _ in range(50)]
+        gc.collect()
+        others = [helfrich.SurfaceAreaForce(m.triangles, 1, 1) for _ in range(100)]
+        assert {force.getRigidity() for force in read} == {3}
+        assert len(others) == 100
+        system = mm.System()
+        system.addForce(read[0])
+        assert helfrich.BendingForce.cast(system.getForce(0)).getRigidity() == 3
+
+    def test_what_a_system_owns_stays_its_own(self):
+        m = membrane("octahedron")
+        system = mm.System()
+        system.addForce(helfrich.BendingForce(m.triangles, 3))
+        assert not helfrich.BendingForce.cast(system.getForce(0)).thisown
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "fragment"),
+    [
+        ('p1="', 'p1="x', "<Triangle> has p1="),
+        ('p1="', 'p1="1.', "<Triangle> has p1="),
+        ('value="3"', 'value="3x"', "<Parameter> has value="),
+        ('value="3"', 'value=""', "<Parameter> has value="),
+        ('value="3"', 'value="-3"', "in element <Parameter>"),
+        ("<Triangles>", "<Triangles/><Triangles>", "has the child <Triangles> twice"),
+        ('Curvature="0"', 'Curvature="x"', "unsignedSpontaneousCurvature="),
+        ('forceGroup="0"', 'forceGroup="x"', "<Force> has forceGroup="),
+        ('scheme="Julicher"', 'scheme="Nobody"', 'scheme="Nobody"'),
+    ],
+)
+def test_xml_values_are_read_to_the_last_character(old: str, new: str, fragment: str):
+    m = membrane("octahedron")
+    xml = mm.XmlSerializer.serialize(helfrich.BendingForce(m.triangles, 3))
+    assert old in xml
+    with pytest.raises(mm.OpenMMException, match=re.escape(fragment)):
+        mm.XmlSerializer.deserialize(xml.replace(old, new, 1))
+
+
+def test_a_bad_context_parameter_is_blamed_on_its_force():
+    m = membrane("octahedron")
+    area = helfrich.SurfaceAreaForce(m.triangles, 1, 1000)
+    bending = helfrich.BendingForce(m.triangles, 3)
+    bending.setContextParameter("rigidity", "k")
+    context = context_of([area, bending], m)
+    context.setParameter("k", -1)
+    with pytest.raises(mm.OpenMMException, match=r"^BendingForce: rigidity"):
+        context.getState(getEnergy=True)
+
+
+def test_derivatives_are_asked_for_once_and_follow_their_parameter():
+    m = membrane("octahedron")
+    force = helfrich.BendingForce(m.triangles, 3)
+    force.setContextParameter("rigidity", "k")
+    force.addEnergyParameterDerivative("k")
+    force.addEnergyParameterDerivative("k")
+    assert force.getNumEnergyParameterDerivatives() == 1
+    force.setContextParameter("rigidity", "q")
+    assert force.getNumEnergyParameterDerivatives() == 0
+    assert copy.deepcopy(force).getContextParameter("rigidity") == "q"
+
+
+def test_changed_triangles_are_refused_and_schemes_updated_in_a_context():
+    m = membrane("jittered")
+    force = helfrich.BendingForce(m.triangles, 3)
+    context = context_of([force], m)
+    before = context.getState(getEnergy=True).getPotentialEnergy()
+    force.setScheme("GompperKroll")
+    force.updateParametersInContext(context)
+    assert context.getState(getEnergy=True).getPotentialEnergy() != before
+    force.addTriangle(0, 1, 2)
+    with pytest.raises(mm.OpenMMException, match="triangles have changed"):
+        force.updateParametersInContext(context)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "fragment"),
+    [
+        ({"triangles": np.array([[2**64 - 1, 0, 1]], dtype=np.uint64)}, ValueError, "triangle 0"),
+        ({"offset": 2**63}, ValueError, "triangle"),
+        ({"rigidity": [True] * 6}, TypeError, "rigidity"),
+        ({"rigidity": np.True_}, TypeError, "rigidity"),
+        ({"scheme": "Nobody"}, ValueError, "known are: Julicher"),
+        ({"scheme": True}, TypeError, "scheme"),
+        ({"scheme": 1.0}, TypeError, "scheme"),
+    ],
+)
+def test_arguments_that_look_like_others(arguments: dict, error, fragment: str):
+    given = {"triangles": membrane("octahedron").triangles, "rigidity": 1, **arguments}
+    with pytest.raises(error, match=f"^BendingForce: .*{fragment}"):
+        helfrich.BendingForce(**given)

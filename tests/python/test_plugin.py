@@ -94,7 +94,7 @@ class TestMissingTools:
         )
 
     def test_nothing_is_missing(self, tmp_path):
-        result = self.make(tmp_path, "tools")
+        result = self.make(tmp_path, "check-tools")
         assert result.returncode == 0, result.stderr
 
     @pytest.mark.parametrize(

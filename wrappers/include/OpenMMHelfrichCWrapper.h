@@ -26,7 +26,9 @@ extern const char* Helfrich_openmmVersion(void);
 
 /* For every force. `parameter` is the name of a scalar, such as "rigidity". */
 extern void Helfrich_MembraneForce_destroy(OpenMM_Force* force);
+/** Returns the index of the new triangle, or -1 for failure. */
 extern int Helfrich_MembraneForce_addTriangle(OpenMM_Force* force, int particle1, int particle2, int particle3);
+/** Returns -1 for failure. */
 extern int Helfrich_MembraneForce_getNumTriangles(OpenMM_Force* force);
 extern int Helfrich_MembraneForce_getTriangle(OpenMM_Force* force, int index, int* corners);
 extern int Helfrich_MembraneForce_getParameterValue(OpenMM_Force* force, const char* parameter, double* value);

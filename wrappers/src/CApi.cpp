@@ -14,7 +14,11 @@ namespace {
 
 MembraneForce& asForce(void* force) {
     // C hands over the address of an OpenMM::Force.
-    return dynamic_cast<MembraneForce&>(*static_cast<OpenMM::Force*>(force));
+    OpenMM::Force* any = static_cast<OpenMM::Force*>(force);
+    auto* found = dynamic_cast<MembraneForce*>(any);
+    if (found == nullptr)
+        throw OpenMMException("MembraneForce: the force \"" + any->getName() + "\" is of another class");
+    return *found;
 }
 
 /** Run something that may throw; C gets a status and a message. */
@@ -60,11 +64,15 @@ void helfrich_shim_destroyForce(void* force) {
 }
 
 int helfrich_shim_addTriangle(void* force, int particle1, int particle2, int particle3) {
-    return asForce(force).addTriangle(particle1, particle2, particle3);
+    int index = -1;
+    guarded([&] { index = asForce(force).addTriangle(particle1, particle2, particle3); });
+    return index;
 }
 
 int helfrich_shim_getNumTriangles(void* force) {
-    return asForce(force).getNumTriangles();
+    int count = -1;
+    guarded([&] { count = asForce(force).getNumTriangles(); });
+    return count;
 }
 
 int helfrich_shim_getTriangle(void* force, int index, int* corners) {

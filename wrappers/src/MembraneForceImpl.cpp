@@ -33,11 +33,15 @@ void MembraneForceImpl::initialize(ContextImpl& context) {
                               "platform, not " +
                               context.getPlatform().getName());
     check(Helfrich_Potential_find(owner.getTypeName().c_str(), &term.potential));
-    term.form = owner.getForm();
-    term.switches = owner.getSwitches();
     term.wantsDerivatives = !derivatives.empty();
     membrane = SharedMembrane::acquire(owner.getTypeName(), context, owner.getTriangles());
-    copyValues();
+    try {
+        copyValues();
+    } catch (...) {
+        // OpenMM will not delete this object any more; the membrane shall not stay for ever.
+        membrane.reset();
+        throw;
+    }
     membrane->join(this);
     if (!inPlace)
         CustomCPPForceImpl::initialize(context);
@@ -45,6 +49,8 @@ void MembraneForceImpl::initialize(ContextImpl& context) {
 
 void MembraneForceImpl::copyValues() {
     HelfrichTerm updated = term;
+    updated.form = owner.getForm();
+    updated.switches = owner.getSwitches();
     vector<vector<double>> copies;
     for (int i = 0; i < owner.getNumParameters(); i++) {
         const string& name = owner.getParameterName(i);
@@ -115,8 +121,16 @@ vector<std::pair<int, int>> MembraneForceImpl::getBondedParticles() const {
 }
 
 void MembraneForceImpl::updateParametersInContext(ContextImpl& context) {
+    if (owner.getTriangles() != membrane->getTriangles())
+        throw OpenMMException(owner.getTypeName() + ": the triangles have changed since the Context was made; call " +
+                              "Context::reinitialize()");
     copyValues();
     context.systemChanged();
+}
+
+bool MembraneForceImpl::usesContextParameters() const {
+    return std::any_of(contextParameters.begin(), contextParameters.end(),
+                       [](const string& name) { return !name.empty(); });
 }
 
 HelfrichTerm MembraneForceImpl::getTerm(ContextImpl& context) const {

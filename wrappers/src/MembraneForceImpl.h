@@ -33,6 +33,8 @@ public:
     void updateParametersInContext(OpenMM::ContextImpl& context);
     /** Whether the force belongs to one of some groups, given as bits. */
     bool isInGroups(int groups) const;
+    /** Whether a scalar is a Context parameter. */
+    bool usesContextParameters() const;
     /** What to compute, with the present values of Context parameters. */
     HelfrichTerm getTerm(OpenMM::ContextImpl& context) const;
     /** Add the derivatives that the user asked for. */

@@ -4,6 +4,9 @@
 
 #include <openmm/serialization/SerializationNode.h>
 
+#include <cerrno>
+#include <climits>
+#include <cstdlib>
 #include <memory>
 #include <set>
 #include <vector>
@@ -37,10 +40,16 @@ vector<string> findSwitches(const string& force) {
     return names;
 }
 
+/** The beginning of a message about an element. */
+string about(const string& force, const SerializationNode& node) {
+    // The element of the force itself has no name when it is the root.
+    return force + ": element <" + (node.getName().empty() ? "Force" : node.getName()) + "> ";
+}
+
 /** Refuse what a node should not have, so that nothing is lost unnoticed. */
 void allow(const string& force, const SerializationNode& node, const set<string>& properties,
            const set<string>& children) {
-    string where = force + ": element <" + node.getName() + "> ";
+    string where = about(force, node);
     for (const auto& property : node.getProperties())
         if (properties.count(property.first) == 0)
             throw OpenMMException(where + "has an unknown attribute \"" + property.first + "\"");
@@ -50,18 +59,71 @@ void allow(const string& force, const SerializationNode& node, const set<string>
     }
 }
 
-/** Require an attribute. */
-void require(const string& force, const SerializationNode& node, const string& property) {
+/** The text of an attribute that must be there. */
+string text(const string& force, const SerializationNode& node, const string& property) {
     if (!node.hasProperty(property))
-        throw OpenMMException(force + ": element <" + node.getName() + "> lacks the attribute \"" + property + "\"");
+        throw OpenMMException(about(force, node) + "lacks the attribute \"" + property + "\"");
+    return node.getStringProperty(property);
 }
 
-/** Require a child. */
+[[noreturn]] void refuse(const string& force, const SerializationNode& node, const string& property,
+                         const string& expected) {
+    throw OpenMMException(about(force, node) + "has " + property + "=\"" + node.getStringProperty(property) +
+                          "\", which is not " + expected);
+}
+
+/** A number to the last character: what is broken shall not become a zero. */
+double number(const string& force, const SerializationNode& node, const string& property) {
+    string value = text(force, node, property);
+    char* end = nullptr;
+    double result = std::strtod(value.c_str(), &end);
+    if (value.empty() || *end != '\0')
+        refuse(force, node, property, "a number");
+    return result;
+}
+
+int integer(const string& force, const SerializationNode& node, const string& property) {
+    string value = text(force, node, property);
+    char* end = nullptr;
+    errno = 0;
+    long result = std::strtol(value.c_str(), &end, 10);
+    if (value.empty() || *end != '\0' || errno != 0 || result < INT_MIN || result > INT_MAX)
+        refuse(force, node, property, "an integer");
+    return (int) result;
+}
+
+bool boolean(const string& force, const SerializationNode& node, const string& property) {
+    string value = text(force, node, property);
+    if (value != "0" && value != "1" && value != "true" && value != "false")
+        refuse(force, node, property, "true or false");
+    return value == "1" || value == "true";
+}
+
+/** The one child of a name. */
 const SerializationNode& child(const string& force, const SerializationNode& node, const string& name) {
+    const SerializationNode* found = nullptr;
     for (const SerializationNode& candidate : node.getChildren())
-        if (candidate.getName() == name)
-            return candidate;
-    throw OpenMMException(force + ": element <" + node.getName() + "> lacks the child <" + name + ">");
+        if (candidate.getName() == name) {
+            if (found != nullptr)
+                throw OpenMMException(about(force, node) + "has the child <" + name + "> twice");
+            found = &candidate;
+        }
+    if (found == nullptr)
+        throw OpenMMException(about(force, node) + "lacks the child <" + name + ">");
+    return *found;
+}
+
+/** Do something with an element's content; what it throws shall name the element. */
+template <class Body>
+void within(const string& force, const SerializationNode& node, Body body) {
+    try {
+        body();
+    } catch (const OpenMMException& error) {
+        string message = error.what();
+        if (message.find("element <") != string::npos)
+            throw;
+        throw OpenMMException(message + " (in element <" + (node.getName().empty() ? "Force" : node.getName()) + ">)");
+    }
 }
 
 } // namespace
@@ -106,77 +168,79 @@ void MembraneForceProxy::serialize(const void* object, SerializationNode& node) 
 }
 
 void* MembraneForceProxy::deserialize(const SerializationNode& node) const {
-    require(forceName, node, "version");
-    int version = node.getIntProperty("version");
-    if (version != VERSION)
-        throw OpenMMException(forceName + ": element <" + node.getName() + "> has version " + std::to_string(version) +
-                              ", but only " + std::to_string(VERSION) +
-                              " is known; it was written by another release of openmm-helfrich");
     std::unique_ptr<MembraneForce> force(create());
+    within(forceName, node, [&] { readForce(node, *force); });
+    return static_cast<Force*>(force.release());
+}
+
+void MembraneForceProxy::readForce(const SerializationNode& node, MembraneForce& force) const {
+    int version = integer(forceName, node, "version");
+    if (version != VERSION)
+        throw OpenMMException(about(forceName, node) + "has version " + std::to_string(version) + ", but only " +
+                              std::to_string(VERSION) +
+                              " is known; it was written by another release of openmm-helfrich");
     string what, name;
     bool hasForms = findForm(forceName, 0, what, name);
+    vector<string> switches = findSwitches(forceName);
     set<string> attributes = {"type", "version", "forceGroup", "name"};
+    attributes.insert(switches.begin(), switches.end());
     if (hasForms)
         attributes.insert(what);
-    vector<string> switches = findSwitches(forceName);
-    attributes.insert(switches.begin(), switches.end());
     allow(forceName, node, attributes, {"Parameters", "EnergyParameterDerivatives", "Triangles"});
-    force->setForceGroup(node.getIntProperty("forceGroup", 0));
-    force->setName(node.getStringProperty("name", force->getName()));
+    force.setForceGroup(integer(forceName, node, "forceGroup"));
+    force.setName(text(forceName, node, "name"));
     if (hasForms) {
-        require(forceName, node, what);
-        string wanted = node.getStringProperty(what);
+        string wanted = text(forceName, node, what);
         int form = 0;
         while (findForm(forceName, form, what, name) && name != wanted)
             form++;
         if (name != wanted)
-            throw OpenMMException(forceName + ": element <" + node.getName() + "> has the unknown " + what + " \"" +
-                                  wanted + "\"");
-        force->setForm(form);
+            refuse(forceName, node, what, "known");
+        force.setForm(form);
     }
-    for (const string& name : switches)
-        force->setSwitch(name, node.getBoolProperty(name, false));
-
-    const SerializationNode& parameters = child(forceName, node, "Parameters");
-    allow(forceName, parameters, {}, {"Parameter"});
-    set<string> missing;
-    for (int i = 0; i < force->getNumParameters(); i++)
-        missing.insert(force->getParameterName(i));
-    for (const SerializationNode& element : parameters.getChildren()) {
-        allow(forceName, element, {"name", "value", "contextParameter"}, {"Element"});
-        require(forceName, element, "name");
-        require(forceName, element, "value");
-        string parameter = element.getStringProperty("name");
-        force->setParameterValue(parameter, element.getDoubleProperty("value"));
-        force->setContextParameter(parameter, element.getStringProperty("contextParameter", ""));
-        vector<double> values;
-        for (const SerializationNode& child : element.getChildren()) {
-            allow(forceName, child, {"value"}, {});
-            require(forceName, child, "value");
-            values.push_back(child.getDoubleProperty("value"));
-        }
-        force->setElementValues(parameter, values);
-        if (missing.erase(parameter) == 0)
-            throw OpenMMException(forceName + ": element <Parameters> has \"" + parameter + "\" twice");
-    }
-    if (!missing.empty())
-        throw OpenMMException(forceName + ": element <Parameters> lacks \"" + *missing.begin() + "\"");
+    for (const string& property : switches)
+        force.setSwitch(property, boolean(forceName, node, property));
+    readParameters(child(forceName, node, "Parameters"), force);
 
     const SerializationNode& derivatives = child(forceName, node, "EnergyParameterDerivatives");
     allow(forceName, derivatives, {}, {"Derivative"});
     for (const SerializationNode& element : derivatives.getChildren()) {
         allow(forceName, element, {"contextParameter"}, {});
-        require(forceName, element, "contextParameter");
-        force->addEnergyParameterDerivative(element.getStringProperty("contextParameter"));
+        string parameter = text(forceName, element, "contextParameter");
+        within(forceName, element, [&] { force.addEnergyParameterDerivative(parameter); });
     }
 
     const SerializationNode& triangles = child(forceName, node, "Triangles");
     allow(forceName, triangles, {}, {"Triangle"});
     for (const SerializationNode& element : triangles.getChildren()) {
         allow(forceName, element, {"p1", "p2", "p3"}, {});
-        for (const char* corner : {"p1", "p2", "p3"})
-            require(forceName, element, corner);
-        force->addTriangle(element.getIntProperty("p1"), element.getIntProperty("p2"), element.getIntProperty("p3"));
+        force.addTriangle(integer(forceName, element, "p1"), integer(forceName, element, "p2"),
+                          integer(forceName, element, "p3"));
     }
-    return static_cast<Force*>(force.release());
+}
+
+void MembraneForceProxy::readParameters(const SerializationNode& parameters, MembraneForce& force) const {
+    allow(forceName, parameters, {}, {"Parameter"});
+    set<string> missing;
+    for (int i = 0; i < force.getNumParameters(); i++)
+        missing.insert(force.getParameterName(i));
+    for (const SerializationNode& element : parameters.getChildren()) {
+        allow(forceName, element, {"name", "value", "contextParameter"}, {"Element"});
+        string parameter = text(forceName, element, "name");
+        double value = number(forceName, element, "value");
+        vector<double> values;
+        for (const SerializationNode& child : element.getChildren()) {
+            allow(forceName, child, {"value"}, {});
+            values.push_back(number(forceName, child, "value"));
+        }
+        within(forceName, element, [&] {
+            force.setParameterValue(parameter, value);
+            force.setContextParameter(parameter, element.getStringProperty("contextParameter", ""));
+            force.setElementValues(parameter, values);
+        });
+        if (missing.erase(parameter) == 0)
+            throw OpenMMException(about(forceName, parameters) + "has \"" + parameter + "\" twice");
+    }
+    if (!missing.empty())
+        throw OpenMMException(about(forceName, parameters) + "lacks \"" + *missing.begin() + "\"");
 }

@@ -20,6 +20,8 @@ public:
     void* deserialize(const OpenMM::SerializationNode& node) const;
 
 private:
+    void readForce(const OpenMM::SerializationNode& node, MembraneForce& force) const;
+    void readParameters(const OpenMM::SerializationNode& parameters, MembraneForce& force) const;
     std::string forceName;
     Factory create;
 };

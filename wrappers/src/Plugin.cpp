@@ -35,7 +35,12 @@ int helfrich_shim_registerSerialization() {
 }
 
 void* helfrich_shim_createImpl(const void* force) {
-    OpenMM::ForceImpl* impl = new MembraneForceImpl(*static_cast<const MembraneForce*>(force));
-    return impl;
+    try {
+        OpenMM::ForceImpl* impl = new MembraneForceImpl(*static_cast<const MembraneForce*>(force));
+        return impl;
+    } catch (const std::exception& error) {
+        helfrich_setLastError(error.what());
+        return nullptr;
+    }
 }
 }

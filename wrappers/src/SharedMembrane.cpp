@@ -51,7 +51,7 @@ SharedMembrane::~SharedMembrane() {
 
 bool SharedMembrane::belongsTo(ContextImpl& context) const {
     const vector<ForceImpl*>& impls = context.getForceImpls();
-    return std::all_of(members.begin(), members.end(), [&](const MembraneForceImpl* member) {
+    return !members.empty() && std::all_of(members.begin(), members.end(), [&](const MembraneForceImpl* member) {
         return std::find(impls.begin(), impls.end(), static_cast<const ForceImpl*>(member)) != impls.end();
     });
 }
@@ -79,6 +79,9 @@ double SharedMembrane::evaluate(const string& subject, ContextImpl& context, int
         if (member->isInGroups(groups)) {
             active.push_back(member);
             terms.push_back(member->getTerm(context));
+            // Context parameters can be anything by now; the message shall name the force whose they are.
+            if (member->usesContextParameters())
+                checkTerm(member->getOwner().getTypeName(), terms.back());
         }
     contributions.resize(terms.size());
     // Vec3 is three doubles and nothing else, but its operator[] returns copies.

@@ -57,6 +57,9 @@ public:
     void checkTerm(const std::string& subject, const HelfrichTerm& term) const {
         check(Helfrich_Membrane_checkTerm(subject.c_str(), core, &term));
     }
+    const std::vector<int>& getTriangles() const {
+        return triangles;
+    }
     /** The pairs of particles that edges connect. */
     std::vector<std::pair<int, int>> getEdges() const;
 

@@ -95,7 +95,7 @@ public:
         return (Scheme) getForm();
     }
     /**
-     * Set the discretisation. Existing Contexts keep theirs until they are reinitialised.
+     * Set the discretisation. updateParametersInContext() tells existing Contexts.
      */
     void setScheme(Scheme scheme) {
         setForm(scheme);

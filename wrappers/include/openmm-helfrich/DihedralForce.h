@@ -70,7 +70,7 @@ public:
         return (Form) MembraneForce::getForm();
     }
     /**
-     * Set the function of the angle. Existing Contexts keep theirs until they are reinitialised.
+     * Set the function of the angle. updateParametersInContext() tells existing Contexts.
      */
     void setForm(Form form) {
         MembraneForce::setForm(form);

@@ -119,7 +119,8 @@ public:
     const std::string& getContextParameter(const std::string& parameter) const;
     /**
      * Ask for the derivative of the energy with respect to a Context parameter, which
-     * Context::getState() then returns. Available on the Reference and CPU platforms.
+     * Context::getState() then returns. Available on the Reference and CPU platforms. Asking twice
+     * changes nothing.
      *
      * @param name  the name of the Context parameter, given to setContextParameter() before
      */
@@ -137,8 +138,9 @@ public:
      */
     const std::string& getEnergyParameterDerivativeName(int index) const;
     /**
-     * Copy the scalars of this object to a Context. The triangles cannot be changed this way, nor what
-     * is a Context parameter: use Context::reinitialize() and Context::setParameter().
+     * Copy scalars, values of elements, variant and switches of this object to a Context. What is a
+     * Context parameter stays as it is there (use Context::setParameter()); changed triangles are
+     * refused (use Context::reinitialize()).
      *
      * @param context  the Context to update
      */
@@ -176,7 +178,7 @@ public:
      */
     bool getSwitch(const std::string& name) const;
     /**
-     * Switch something on or off. Existing Contexts keep their state until they are reinitialised.
+     * Switch something on or off. updateParametersInContext() tells existing Contexts.
      *
      * @param name  the name of the switch
      * @param on    whether it shall be on
@@ -212,6 +214,7 @@ private:
     };
     int findParameter(const std::string& name) const;
     unsigned int findSwitch(const std::string& name) const;
+    bool hasContextParameter(const std::string& name) const;
     [[noreturn]] void fail(const std::string& message) const;
 
     std::string type;
@@ -309,19 +312,32 @@ inline const std::vector<double>& MembraneForce::getElementValues(const std::str
 
 inline void MembraneForce::setContextParameter(const std::string& parameter, const std::string& name) {
     parameters[findParameter(parameter)].contextParameter = name;
+    // A derivative with respect to a Context parameter that no scalar has any more would be meaningless.
+    std::vector<std::string> kept;
+    for (const std::string& derivative : derivatives)
+        if (hasContextParameter(derivative))
+            kept.push_back(derivative);
+    derivatives = kept;
 }
 
 inline const std::string& MembraneForce::getContextParameter(const std::string& parameter) const {
     return parameters[findParameter(parameter)].contextParameter;
 }
 
-inline void MembraneForce::addEnergyParameterDerivative(const std::string& name) {
+inline bool MembraneForce::hasContextParameter(const std::string& name) const {
     for (const Parameter& parameter : parameters)
-        if (!name.empty() && parameter.contextParameter == name) {
-            derivatives.push_back(name);
+        if (!name.empty() && parameter.contextParameter == name)
+            return true;
+    return false;
+}
+
+inline void MembraneForce::addEnergyParameterDerivative(const std::string& name) {
+    if (!hasContextParameter(name))
+        fail("no scalar has the Context parameter \"" + name + "\"; call setContextParameter() first");
+    for (const std::string& derivative : derivatives)
+        if (derivative == name)
             return;
-        }
-    fail("no scalar has the Context parameter \"" + name + "\"; call setContextParameter() first");
+    derivatives.push_back(name);
 }
 
 inline const std::string& MembraneForce::getEnergyParameterDerivativeName(int index) const {
@@ -358,7 +374,10 @@ inline void MembraneForce::updateParametersInContext(OpenMM::Context& context) {
 }
 
 inline OpenMM::ForceImpl* MembraneForce::createImpl() const {
-    return static_cast<OpenMM::ForceImpl*>(Helfrich_createImpl(this));
+    void* impl = Helfrich_createImpl(this);
+    if (impl == nullptr)
+        throw OpenMM::OpenMMException(lastError());
+    return static_cast<OpenMM::ForceImpl*>(impl);
 }
 
 #endif /*SWIG*/

@@ -1,0 +1,172 @@
+"""``openmm-helfrich info``: what a configuration file would simulate, without doing it."""
+
+from __future__ import annotations
+
+import time
+
+import click
+
+from .options import config_argument, platform_option, reader_options, tidy_errors
+
+__all__ = ["info"]
+
+# How long to measure the time per step, s.
+_MEASURE_SECONDS = 1.5
+
+
+@click.command()
+@config_argument
+@platform_option
+@click.option("--measure/--no-measure", default=True, help="Measure the time per step.")
+@reader_options
+def info(config, platform, measure, vcm_compatible, ignore_unknown):
+    """Say what the VCM configuration file CONFIG would simulate.
+
+    Meshes, potentials with their start energies, time scales, the time step beside what is
+    stable, and the time that the run would take.
+    """
+    with tidy_errors():
+        from .. import vcm
+
+        cfg = vcm.read(config, vcm_compatible, ignore_unknown=ignore_unknown)
+        for line in _general(cfg):
+            click.echo(line)
+        for membrane in cfg.membranes:
+            click.echo()
+            for line in _membrane(cfg, membrane):
+                click.echo(line)
+        click.echo()
+        for line in _energies(cfg):
+            click.echo(line)
+        if measure:
+            click.echo()
+            click.echo(_duration(cfg, platform))
+
+
+def _general(cfg) -> list[str]:
+    general = cfg.general
+    lines = [
+        f"{cfg.name}: {len(cfg.membranes)} membrane(s), {cfg.num_particles} vertices",
+        f"  {general['Integrator']}, {cfg.num_steps} steps of {cfg.step_size:g} ps: "
+        f"{general['SimulationTimeInPs']:g} ps at {cfg.temperature:g} K",
+    ]
+    if general["Integrator"] != "Verlet":
+        lines.append(f"  friction {general['FrictionIninvertPs']:g} /ps")
+    return lines
+
+
+def _membrane(cfg, membrane) -> list[str]:
+    """The mesh of one membrane, and what its time scales are."""
+    from ..vcm.springs import sticky_pairs
+
+    mesh = membrane.mesh
+    lines = [
+        f"Membrane {membrane.label}: {mesh.num_vertices} vertices, {mesh.num_triangles} triangles",
+        f"  area {mesh.area:.8g} nm², volume {mesh.volume:.8g} nm³, "
+        f"reduced volume {mesh.reduced_volume:.4f}",
+    ]
+    if membrane.num_reversed:
+        lines.append(
+            f"  orientation mended: {membrane.num_reversed} triangles of the file faced the other "
+            "way"
+        )
+    else:
+        lines.append("  orientation as in the file")
+    if membrane.settings["Sticky"]:
+        lines.append(f"  sticky: {len(sticky_pairs(cfg, membrane))} bonds to other membranes")
+    return lines + _time_scales(cfg, membrane)
+
+
+def _time_scales(cfg, membrane) -> list[str]:
+    """Softness, τ_h, τ_2 and the largest stable time step, for what the membrane has.
+
+    The bound is 0.1 √Ξ τ of the fastest mode, Phys. Rev. E 108, 015301 (2023), equations 40 to 43
+    and figure 5: a rule of thumb for the paper's moduli.
+    """
+    from ..vcm.membrane_forces import min_height
+    from ..vesicle import Vesicle
+
+    settings, lines = membrane.settings, []
+    least, rigidity = min_height(cfg, membrane), settings["MeanCurvatureCoeff"]
+    vesicle = Vesicle(
+        membrane.mesh,
+        rigidity=rigidity,
+        softness=membrane.mesh.softness(least),
+        epsilon=cfg.general["EpsilonH"] * cfg.kT,
+        mass=settings["NodeMass"],
+    )
+    heights = least > 0 and cfg.general["EpsilonH"] * cfg.kT > 0
+    if heights:
+        lines.append(
+            f"  softness Ξ = {vesicle.softness:.4g} (d = {least:g} nm), "
+            f"triangle heights relax in τ_h = {vesicle.tau_heights:.4g} ps"
+        )
+    if settings["MeanCurvatureModel"] is None or not rigidity:
+        return lines
+    lines.append(
+        f"  slowest mode τ_2 = {vesicle.tau_2:.5g} ps, fastest {vesicle.tau_fastest:.4g} ps"
+    )
+    if heights:
+        bound = vesicle.max_time_step
+        verdict = "within" if cfg.step_size <= bound else "ABOVE"
+        lines.append(
+            f"  time step {cfg.step_size:g} ps is {verdict} the bound 0.1 √Ξ τ = {bound:.3g} ps "
+            f"(√Ξ τ = {10 * bound:.3g} ps)"
+        )
+    return lines
+
+
+def _energies(cfg) -> list[str]:
+    """The energy of each term at the start positions, in double precision."""
+    import openmm
+
+    context = openmm.Context(
+        cfg.system(),
+        openmm.VerletIntegrator(0.001),
+        openmm.Platform.getPlatformByName("Reference"),
+    )
+    context.setPositions(cfg.positions)
+    terms = cfg.energies(context)
+    if not terms:
+        return ["No potentials."]
+    width = max(map(len, terms))
+    rows = [f"  {name:<{width}s} {energy:18.6f}" for name, energy in terms.items()]
+    return ["Energies at the start, kJ/mol:", *rows]
+
+
+def _duration(cfg, platform: str | None) -> str:
+    """How long the run would take, from a few of its steps."""
+    import openmm
+
+    from ..vcm.build import DEFAULT_PLATFORM, prepare, unprepared_simulation
+
+    try:
+        simulation = unprepared_simulation(cfg, platform or DEFAULT_PLATFORM)
+        prepare(cfg, simulation.context)
+        # The first step compiles kernels on a GPU.
+        simulation.integrator.step(2)
+        steps, elapsed = 0, 0.0
+        start = time.perf_counter()
+        while elapsed < _MEASURE_SECONDS:
+            chunk = max(1, min(steps, 1000))
+            simulation.integrator.step(chunk)
+            # Without a look at the state, a GPU may still be at work.
+            simulation.context.getState(getEnergy=True)
+            steps += chunk
+            elapsed = time.perf_counter() - start
+    except openmm.OpenMMException as reason:
+        raise click.ClickException(f"cannot measure the time per step: {reason}") from None
+    name = simulation.context.getPlatform().getName()
+    total = elapsed / steps * cfg.num_steps
+    return (
+        f"Expected run time: {_clock(total)} on {name} "
+        f"({elapsed / steps * 1e3:.3g} ms a step, without outputs)"
+    )
+
+
+def _clock(seconds: float) -> str:
+    if seconds < 90:
+        return f"{seconds:.1f} s"
+    if seconds < 5400:
+        return f"{seconds / 60:.1f} min"
+    return f"{seconds / 3600:.1f} h"

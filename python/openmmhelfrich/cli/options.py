@@ -1,0 +1,72 @@
+"""What the commands share: arguments, and errors as a user should see them."""
+
+from __future__ import annotations
+
+import contextlib
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+
+import click
+
+__all__ = ["config_argument", "platform_option", "reader_options", "tidy_errors"]
+
+config_argument = click.argument("config", type=click.Path(path_type=Path, dir_okay=False))
+
+
+def _check_platform(context: click.Context, parameter: click.Parameter, name: str | None):
+    if name is None:
+        return None
+    import openmm
+
+    count = openmm.Platform.getNumPlatforms()
+    known = {openmm.Platform.getPlatform(i).getName() for i in range(count)}
+    by_lower = {platform.lower(): platform for platform in known}
+    if name.lower() not in by_lower:
+        raise click.BadParameter(
+            f"no platform {name!r}; this OpenMM has {', '.join(sorted(known))}"
+        )
+    return by_lower[name.lower()]
+
+
+platform_option = click.option(
+    "--platform",
+    metavar="NAME",
+    callback=_check_platform,
+    help="OpenMM platform: Reference (the default, mostly the fastest), CPU, OpenCL, CUDA, HIP.",
+)
+
+
+def reader_options(command):
+    """The options that `vcm.read` has."""
+    command = click.option(
+        "--ignore-unknown", is_flag=True, help="Skip keys that do not exist, as VCM does."
+    )(command)
+    return click.option(
+        "--vcm-compatible",
+        is_flag=True,
+        help="Follow VCM's quirks, to compare with its old numbers.",
+    )(command)
+
+
+@contextlib.contextmanager
+def tidy_errors() -> Iterator[None]:
+    """Errors of the configuration and the run as one line, without a traceback."""
+    from ..vcm.grammar import ConfigError, ConfigWarning
+    from ..vcm.runner import RunError
+
+    shown = set()
+
+    def show(message, category, filename, lineno, file=None, line=None) -> None:
+        # A run that is resumed reads its configuration twice.
+        if str(message) not in shown:
+            click.echo(f"Warning: {message}", err=True)
+        shown.add(str(message))
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", ConfigWarning)
+        warnings.showwarning = show
+        try:
+            yield
+        except (ConfigError, RunError, FileNotFoundError) as reason:
+            raise click.ClickException(str(reason)) from None

@@ -1,0 +1,124 @@
+"""``openmm-helfrich run``: simulate what a configuration file says."""
+
+from __future__ import annotations
+
+import signal
+import sys
+from pathlib import Path
+
+import click
+
+from .options import config_argument, platform_option, reader_options, tidy_errors
+
+__all__ = ["run"]
+
+
+@click.command()
+@config_argument
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path, file_okay=False),
+    help="Folder for the outputs. Default: the project's name.",
+)
+@platform_option
+@click.option(
+    "--steps",
+    type=click.IntRange(min=0),
+    help="Step, counted from the start, to end with. Default: SimulationTimeInPs / StepSizeInFs.",
+)
+@click.option("--seed", type=click.IntRange(1, 2**31 - 1), help="Seed in place of the file's.")
+@click.option("--resume", is_flag=True, help="Go on with the run that the folder holds.")
+@click.option("--xtc/--no-xtc", default=True, help="Write an XTC trajectory.  [default: yes]")
+@click.option("--ply", is_flag=True, help="Write a PLY file per membrane and frame.")
+@click.option(
+    "--checkpoint",
+    "checkpoint_seconds",
+    type=click.FloatRange(min=0),
+    default=10.0,
+    show_default=True,
+    help="Seconds between checkpoints: what a kill can cost.",
+)
+@reader_options
+def run(config, out, steps, seed, **options):
+    """Simulate what the VCM configuration file CONFIG says.
+
+    The run can be interrupted at any moment, by Ctrl-C or a kill, and goes on with --resume from
+    its last checkpoint with nothing lost and nothing doubled.
+    """
+    with tidy_errors():
+        # OpenMM and the package take a second to load, which --help need not wait for.
+        from ..vcm.runner import Run
+
+        stop = _Stop()
+        job = Run(
+            config,
+            folder=out,
+            seed=seed or 0,
+            **options,
+        )
+        try:
+            done = _simulate(job, job.cfg.num_steps if steps is None else steps, stop)
+        finally:
+            job.close()
+    if not done:
+        click.echo(f"Interrupted at step {job.step}. Go on with --resume.", err=True)
+        sys.exit(128 + stop.signal)
+
+
+def _simulate(job, last_step: int, stop: _Stop) -> bool:
+    """Run with a progress bar; returns whether the last step was reached."""
+    from tqdm import tqdm
+
+    cfg = job.cfg
+    verb = f"resumed at step {job.step}" if job.resumed else f"seed {cfg.seed}"
+    click.echo(
+        f"{cfg.name}: {len(cfg.membranes)} membrane(s), {cfg.num_particles} vertices, "
+        f"platform {job.platform}, {verb}, outputs in {job.folder}"
+    )
+    # Without a terminal a line per report replaces the bar.
+    bar = tqdm(total=last_step, initial=job.step, unit="step", disable=None, dynamic_ncols=True)
+    with bar:
+
+        def progress(step: int) -> None:
+            bar.update(step - bar.n)
+
+        def report(frame) -> None:
+            bar.set_postfix_str(_summary(frame), refresh=False)
+            if bar.disable:
+                click.echo(f"step {frame.step}/{last_step}  {_summary(frame)}")
+
+        done = job.advance(last_step, progress, report, stop)
+    _print_terms(job.frame)
+    return done
+
+
+def _summary(frame) -> str:
+    terms = [f"{name} {energy:.5g}" for name, energy in frame.terms.items()]
+    return ", ".join([*terms, f"kinetic {frame.kinetic:.5g}"])
+
+
+def _print_terms(frame) -> None:
+    rows = {**frame.terms, "potential": frame.potential, "kinetic": frame.kinetic}
+    width = max(map(len, rows))
+    click.echo(f"Energies at step {frame.step}, {frame.time:.10g} ps, in kJ/mol:")
+    for name, energy in rows.items():
+        click.echo(f"  {name:<{width}s} {energy:18.6f}")
+
+
+class _Stop:
+    """Notes Ctrl-C and SIGTERM, so that the run can end with a checkpoint.
+
+    A second Ctrl-C ends at once; the last checkpoint is then where the run goes on.
+    """
+
+    def __init__(self):
+        self.signal = 0
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, self._note)
+
+    def _note(self, number: int, frame) -> None:
+        self.signal = number
+        signal.signal(number, signal.SIG_DFL)
+
+    def __call__(self) -> bool:
+        return self.signal != 0

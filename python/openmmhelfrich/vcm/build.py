@@ -1,0 +1,215 @@
+"""From a configuration to OpenMM: the plan of its potentials, System, topology, integrator.
+
+The plan is made when the file is read, so that what cannot be done is refused with its line; the
+forces themselves are made anew for every System.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import openmm
+from openmm import app, unit
+
+from . import interactions, membrane_forces, springs
+
+if TYPE_CHECKING:
+    from .config import Config
+
+__all__ = ["Term", "energies", "integrator", "plan", "simulation", "system", "topology"]
+
+_NUM_GROUPS = 32
+_ENERGY = unit.kilojoule_per_mole
+
+
+@dataclass(frozen=True)
+class Term:
+    """One potential: its name, its force group, and a function that makes its force."""
+
+    name: str
+    group: int
+    make: Callable[[], openmm.Force]
+
+
+def plan(cfg: Config) -> tuple[Term, ...]:
+    """The potentials that a configuration asks for, in the order of its membranes.
+
+    Names are those of the potentials; with several membranes their labels follow. Each has its own
+    force group as long as these last; with more potentials, those of one kind share one.
+
+    Raises
+    ------
+    ConfigError
+        If a potential is not done here, or its settings contradict each other.
+    """
+    found: list[tuple[str, str, Callable[[], openmm.Force]]] = []
+    for membrane in cfg.membranes:
+        makers = {
+            **membrane_forces.makers(cfg, membrane),
+            **springs.makers(cfg, membrane),
+        }
+        suffix = "" if len(cfg.membranes) == 1 else f" {membrane.label}"
+        found += [(kind, kind + suffix, make) for kind, make in makers.items()]
+    found += [(kind, kind, make) for kind, make in interactions.makers(cfg).items()]
+    _check_general(cfg)
+    # Group 31 is left to what a user adds.
+    if len(found) < _NUM_GROUPS:
+        return tuple(Term(name, group, make) for group, (_, name, make) in enumerate(found))
+    kinds = list(dict.fromkeys(kind for kind, _, _ in found))
+    return tuple(Term(kind, kinds.index(kind), make) for kind, _, make in found)
+
+
+def _check_general(cfg: Config) -> None:
+    """Refuse general settings that nothing here can follow."""
+    general = cfg.general
+    if general["MinimumForceDecleration"][0]:
+        raise general.error(
+            "MinimumForceDecleration",
+            "VCM's optimisation is not documented and not done here; set it to false, the physics "
+            "is the same",
+        )
+    for name in ("MCBarostatPressure", "MCAnisoBarostatPressure"):
+        wanted = np.any(general[name])
+        if wanted and not general["SimulationBoxLength"]:
+            raise general.error(name, "a barostat needs a periodic box; give SimulationBoxLength")
+        if wanted and not interactions.makers(cfg):
+            raise general.error(
+                name,
+                "a barostat needs potentials that see the periodic box, and only those of the "
+                "-InteractionTable do; it has none",
+            )
+    if cfg.general["setVelocitiesToTemperature"] and not cfg.temperature:
+        raise general.error("TemperatureinKelvin", "velocities cannot be drawn at 0 K")
+
+
+def system(cfg: Config, terms: tuple[Term, ...]) -> openmm.System:
+    """What `Config.system` returns."""
+    result = openmm.System()
+    for membrane in cfg.membranes:
+        mass = 0 if membrane.settings["FreezeSubLattice"] else membrane.settings["NodeMass"]
+        for _ in membrane.particles:
+            result.addParticle(mass)
+    for term in terms:
+        force = term.make()
+        force.setName(term.name)
+        force.setForceGroup(term.group)
+        result.addForce(force)
+    _add_box(cfg, result)
+    if cfg.general["CMMotionRemoverStep"]:
+        result.addForce(openmm.CMMotionRemover(cfg.general["CMMotionRemoverStep"]))
+    return result
+
+
+def _add_box(cfg: Config, result: openmm.System) -> None:
+    """The periodic box and its barostats."""
+    general = cfg.general
+    side = general["SimulationBoxLength"]
+    if not side:
+        return
+    result.setDefaultPeriodicBoxVectors(*(np.eye(3) * side).tolist())
+    if general["MCBarostatPressure"]:
+        result.addForce(
+            openmm.MonteCarloBarostat(
+                general["MCBarostatPressure"],
+                general["MCBarostatTemperature"] or cfg.temperature,
+                general["MCBarostatFrequency"] or 25,
+            )
+        )
+    pressures = general["MCAnisoBarostatPressure"]
+    if any(pressures):
+        result.addForce(
+            openmm.MonteCarloAnisotropicBarostat(
+                openmm.Vec3(*pressures),
+                general["MCAnisoBarostatTemperature"] or cfg.temperature,
+                *(pressure != 0 for pressure in pressures),
+                general["MCAnisoBarostatFrequency"] or 25,
+            )
+        )
+    for force in result.getForces():
+        if isinstance(force, (openmm.MonteCarloBarostat, openmm.MonteCarloAnisotropicBarostat)):
+            force.setRandomNumberSeed(cfg.seed)
+
+
+def topology(cfg: Config) -> app.Topology:
+    """What `Config.topology` returns: membrane n is chain n, and its atoms are called M<n>."""
+    result = app.Topology()
+    for number, membrane in enumerate(cfg.membranes):
+        chain = result.addChain(f"M{number}")
+        atoms = []
+        for _ in membrane.particles:
+            # A vertex is no chemical element; each is a residue of its own, see `Mesh.topology`.
+            residue = result.addResidue("MEM", chain)
+            atoms.append(result.addAtom(f"M{number}", None, residue))
+        for i, j in membrane.mesh.edges.tolist():
+            result.addBond(atoms[i], atoms[j])
+    if cfg.general["SimulationBoxLength"]:
+        result.setUnitCellDimensions([cfg.general["SimulationBoxLength"]] * 3)
+    return result
+
+
+def integrator(cfg: Config) -> openmm.Integrator:
+    """What `Config.integrator` returns."""
+    kind, friction = cfg.general["Integrator"], cfg.general["FrictionIninvertPs"]
+    if kind == "Verlet":
+        return openmm.VerletIntegrator(cfg.step_size)
+    cls = {
+        "Brownian": openmm.BrownianIntegrator,
+        "Langevin": openmm.LangevinIntegrator,
+        "LangevinMiddle": openmm.LangevinMiddleIntegrator,
+    }[kind]
+    result = cls(cfg.temperature, friction, cfg.step_size)
+    result.setRandomNumberSeed(cfg.seed)
+    return result
+
+
+#: What the commands run on unless they are told otherwise. Membrane forces are computed on the
+#: processor, in double precision; every other platform only adds the way there and back (the CPU
+#: platform the waking of its threads).
+DEFAULT_PLATFORM = "Reference"
+
+
+def simulation(cfg: Config, platform=None) -> app.Simulation:
+    """What `Config.simulation` returns."""
+    made = unprepared_simulation(cfg, platform)
+    prepare(cfg, made.context)
+    return made
+
+
+def unprepared_simulation(cfg: Config, platform=None) -> app.Simulation:
+    """A Simulation without positions and velocities, which a checkpoint may give instead."""
+    if isinstance(platform, str):
+        platform = openmm.Platform.getPlatformByName(platform)
+    # OpenMM refuses properties, even none, for a platform that it shall choose.
+    properties = None
+    if platform is not None and "Precision" in platform.getPropertyNames():
+        properties = {"Precision": cfg.general["Precision"]}
+    return app.Simulation(cfg.topology(), cfg.system(), cfg.integrator(), platform, properties)
+
+
+def prepare(cfg: Config, context: openmm.Context) -> None:
+    """Bring a Context to the start of the simulation."""
+    context.setPositions(cfg.positions)
+    general = cfg.general
+    if general["Minimise"]:
+        openmm.LocalEnergyMinimizer.minimize(
+            context, general["MinimiseTolerance"], general["MinimiseMaxIterations"]
+        )
+    if general["setVelocitiesToTemperature"]:
+        context.setVelocitiesToTemperature(cfg.temperature, cfg.seed)
+    if cfg.velocity_shifts.any():
+        state = context.getState(getVelocities=True)
+        drawn = state.getVelocities(asNumpy=True).value_in_unit(unit.nanometer / unit.picosecond)
+        context.setVelocities(drawn + cfg.velocity_shifts)
+
+
+def energies(terms: dict[str, int], context: openmm.Context) -> dict[str, float]:
+    """What `Config.energies` returns."""
+    return {
+        name: context.getState(getEnergy=True, groups={group})
+        .getPotentialEnergy()
+        .value_in_unit(_ENERGY)
+        for name, group in terms.items()
+    }

@@ -1,0 +1,248 @@
+"""A configuration as it was read: settings, start meshes, and the OpenMM objects made of them."""
+
+from __future__ import annotations
+
+import secrets
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import openmm
+from scipy.spatial.transform import Rotation
+
+from .._mesh import files
+from ..analysis import theory
+from ..errors import MeshError
+from ..mesh import Mesh
+from . import build, interactions
+from .grammar import GENERAL, MEMBRANE, TABLE, Section, read_sections
+from .settings import Settings
+
+__all__ = ["Config", "Membrane", "read"]
+
+# VCM's value of the gas constant, kJ/mol/K, from before the SI of 2019.
+_VCM_BOLTZMANN = 0.008314459920816468
+# The largest seed that OpenMM's generators take.
+_MAX_SEED = 2**31 - 1
+
+
+@dataclass(frozen=True)
+class Membrane:
+    """One membrane of a configuration.
+
+    label: what the file calls it
+    settings: the values of its section, by key
+    mesh: how it starts, in nm, triangles outward
+    offset: the particle that is vertex 0
+    num_reversed: how many triangles of the file faced the wrong way
+    """
+
+    label: str
+    settings: Settings
+    mesh: Mesh
+    offset: int
+    num_reversed: int
+
+    @property
+    def particles(self) -> range:
+        """Indices of its particles."""
+        return range(self.offset, self.offset + self.mesh.num_vertices)
+
+
+class Config:
+    """What a VCM configuration file asks for. `read` makes it.
+
+    Attributes
+    ----------
+    path : Path
+        The file.
+    vcm_compatible : bool
+        Whether VCM's quirks are followed that change numbers.
+    general : Settings
+        The values of the section GeneralParameters, by key, in the file's units.
+    membranes : tuple of Membrane
+        In the order of the file, which is that of their particles.
+    table : list of list of str
+        The interaction of each pair of membranes, lower triangular.
+    seed : int
+        Of all random numbers, above 0: the file's, or one drawn if that is 0.
+    """
+
+    def __init__(self, path, sections: list[Section], compatible: bool, ignore: bool, seed: int):
+        self.path = Path(path)
+        self.vcm_compatible = compatible
+        found = [section for section in sections if section.kind == GENERAL]
+        self.general = Settings(found[0] if found else None, GENERAL, ignore)
+        self.seed = seed or self.general["Seed"] or secrets.randbelow(_MAX_SEED) + 1
+        random = np.random.default_rng(self.seed)
+        membranes: list[Membrane] = []
+        for section in sections:
+            if section.kind == MEMBRANE:
+                offset = membranes[-1].particles.stop if membranes else 0
+                settings = Settings(section, MEMBRANE, ignore)
+                mesh, num_reversed = _start_mesh(settings, self.path.parent, random)
+                membranes.append(Membrane(section.label, settings, mesh, offset, num_reversed))
+        self.membranes = tuple(membranes)
+        tables = [section for section in sections if section.kind == TABLE]
+        self.table = interactions.read_table(tables[0] if tables else None, len(membranes))
+        # What cannot be built shall be refused when the file is read, with its line.
+        self._plan = build.plan(self)
+
+    def __repr__(self) -> str:
+        return f"<{self.name}: {len(self.membranes)} membranes, {self.num_particles} particles>"
+
+    @property
+    def name(self) -> str:
+        """The project's name."""
+        return self.general["ProjectName"]
+
+    @property
+    def num_particles(self) -> int:
+        """Number of particles of the System."""
+        return self.membranes[-1].particles.stop
+
+    @property
+    def meshes(self) -> tuple[Mesh, ...]:
+        """The start mesh of every membrane."""
+        return tuple(membrane.mesh for membrane in self.membranes)
+
+    @property
+    def temperature(self) -> float:
+        """T, K."""
+        return self.general["TemperatureinKelvin"]
+
+    @property
+    def kT(self) -> float:
+        """The thermal energy kB T, kJ/mol, with VCM's kB if it is to be followed."""
+        return (_VCM_BOLTZMANN if self.vcm_compatible else theory.BOLTZMANN) * self.temperature
+
+    @property
+    def step_size(self) -> float:
+        """Time step, ps."""
+        return self.general["StepSizeInFs"] / 1000
+
+    @property
+    def num_steps(self) -> int:
+        """Steps of the whole simulation."""
+        return round(self.general["SimulationTimeInPs"] / self.step_size)
+
+    @cached_property
+    def positions(self) -> np.ndarray:
+        """Start positions of all particles, shape (num_particles, 3), nm."""
+        return np.concatenate([mesh.vertices for mesh in self.meshes])
+
+    @cached_property
+    def velocity_shifts(self) -> np.ndarray:
+        """VelocityShiftVector of every particle, shape (num_particles, 3), nm/ps; 0 if frozen."""
+        rows = []
+        for membrane in self.membranes:
+            shift = membrane.settings["VelocityShiftVector"]
+            moving = not membrane.settings["FreezeSubLattice"]
+            rows.append(np.tile(shift * moving, (membrane.mesh.num_vertices, 1)))
+        return np.concatenate(rows)
+
+    @property
+    def terms(self) -> dict[str, int]:
+        """The potentials of the System by name, with the force group of each."""
+        return {term.name: term.group for term in self._plan}
+
+    def system(self) -> openmm.System:
+        """A new System: vertex i of a membrane is particle `offset` + i.
+
+        Every potential is one force with a name and a force group, see `terms`.
+        """
+        return build.system(self, self._plan)
+
+    def topology(self) -> openmm.app.Topology:
+        """A chain per membrane, an atom per vertex, a bond per edge."""
+        return build.topology(self)
+
+    def integrator(self) -> openmm.Integrator:
+        """A new integrator as the file asks for, with the seed set."""
+        return build.integrator(self)
+
+    def simulation(self, platform=None) -> openmm.app.Simulation:
+        """A Simulation at its start: positions and velocities set, minimised if the file says so.
+
+        Parameters
+        ----------
+        platform : openmm.Platform or str, optional
+            Default: the one that OpenMM prefers. `Precision` is handed to platforms that have it.
+        """
+        return build.simulation(self, platform)
+
+    def energies(self, context: openmm.Context) -> dict[str, float]:
+        """The energy of each of the `terms` in a Context of the System, kJ/mol."""
+        return build.energies(self.terms, context)
+
+
+def read(path, vcm_compatible: bool = False, *, ignore_unknown: bool = False, seed: int = 0):
+    """Read a configuration file of the Virtual Cell Model.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file. Meshes are looked for beside it.
+    vcm_compatible : bool
+        Follow those of VCM's quirks that change numbers, to compare with old results; by default
+        the file is taken at its word. ``docs/vcm.md`` lists them.
+    ignore_unknown : bool
+        Skip keys that do not exist, instead of refusing them.
+    seed : int
+        In place of the file's, if not 0.
+
+    Returns
+    -------
+    Config
+
+    Raises
+    ------
+    FileNotFoundError
+        If the file is not there.
+    ConfigError
+        If the file breaks the grammar, has an unknown key or a bad value, asks for a potential that
+        is not done here, or names a mesh that cannot be read. The message has file, line and key.
+    """
+    if not 0 <= seed <= _MAX_SEED:
+        raise ValueError(f"read: seed must be 0 to {_MAX_SEED}, got {seed}")
+    return Config(path, read_sections(path), bool(vcm_compatible), ignore_unknown, seed)
+
+
+def _start_mesh(settings: Settings, folder: Path, random) -> tuple[Mesh, int]:
+    """The mesh of a membrane as it starts, and how many triangles had to be turned."""
+    if not settings.given("MeshFile"):
+        raise settings.error("MeshFile", "a membrane needs a mesh")
+    path = folder / settings["MeshFile"]
+    if path.suffix.lower() not in (".ply", ".msh", ".obj"):
+        raise settings.error("MeshFile", f"expected a .ply, .msh or .obj file, got {path.name!r}")
+    try:
+        vertices, triangles = files.read(path)
+        mesh = Mesh(vertices, triangles)
+        num_reversed = _reversals(triangles, mesh.triangles)
+        mesh = mesh.scaled(settings["Scale"]).scaled(settings["XYZscale"])
+    except (FileNotFoundError, MeshError) as reason:
+        raise settings.error("MeshFile", str(reason)) from None
+    key = "ULM"
+    try:
+        amplitude, l, m = settings["ULM"]
+        if amplitude:
+            mesh = mesh.deformed(l, m, amplitude)
+        key = "NUL"
+        count, amplitude, lmax = settings["NUL"]
+        for _ in range(count if amplitude else 0):
+            l = int(random.integers(2, lmax + 1))
+            mesh = mesh.deformed(l, int(random.integers(-l, l + 1)), amplitude)
+    except MeshError as reason:
+        raise settings.error(key, str(reason)) from None
+    if settings["InitRandomRotation"]:
+        mesh = mesh.rotated(Rotation.random(random_state=random))
+    return mesh.translated(settings["CoordinateTranslateVector"]), num_reversed
+
+
+def _reversals(before: np.ndarray, after: np.ndarray) -> int:
+    """How many triangles run the other way round."""
+    same = np.zeros(len(after), dtype=bool)
+    for shift in range(3):
+        same |= (np.roll(before, shift, axis=1) == after).all(axis=1)
+    return int((~same).sum())

@@ -1,0 +1,312 @@
+"""The files of a run: VCM's own formats, and XTC, PLY and CSV.
+
+Every file only grows, and `Outputs` knows how long each one was at a checkpoint, so that a run can
+go on from there with nothing lost and nothing doubled.
+"""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import openmm
+from openmm import unit
+from openmm.app.internal.xtc_utils import xtc_write_frame
+
+from .._mesh import geometry, ply
+from ..analysis import mean_curvature
+from ..wireframe import write_psf
+
+if TYPE_CHECKING:
+    from .config import Config
+    from .parsers import Interval
+
+__all__ = ["Frame", "Outputs", "report_steps", "take_frame"]
+
+_KILOJOULE = unit.kilojoule_per_mole
+_FORCE = unit.kilojoule_per_mole / unit.nanometer
+_VELOCITY = unit.nanometer / unit.picosecond
+
+
+def report_steps(interval: Interval, step_size: float, num_steps: int) -> Iterator[int]:
+    """The steps after which to report, ascending, without end or up to the last one.
+
+    Parameters
+    ----------
+    interval : Interval
+        What the file says.
+    step_size : float
+        ps.
+    num_steps : int
+        Steps of the whole simulation as the file says, for a fixed number of growing intervals.
+    """
+    if interval.fs:
+        every = max(1, round(interval.fs / 1000 / step_size))
+        number = every
+        while True:
+            yield number
+            number += every
+    if interval.reports:
+        steps = np.geomspace(1, max(num_steps, 1), interval.reports)
+        yield from np.unique(np.rint(steps).astype(int)).tolist()
+        return
+    exact, last = 1.0, 0
+    while True:
+        if round(exact) > last:
+            last = round(exact)
+            yield last
+        exact *= interval.factor
+
+
+@dataclass(frozen=True)
+class Frame:
+    """What is known about one moment of a simulation, in OpenMM's units.
+
+    positions, velocities, forces: shape (num_particles, 3), nm, nm/ps, kJ/mol/nm; forces are None
+    unless asked for; terms: kJ/mol by name.
+    """
+
+    step: int
+    time: float
+    potential: float
+    kinetic: float
+    positions: np.ndarray
+    velocities: np.ndarray
+    forces: np.ndarray | None
+    terms: dict[str, float]
+    box: np.ndarray
+
+
+def take_frame(cfg: Config, context: openmm.Context, step: int) -> Frame:
+    """The present state of a Context.
+
+    Raises
+    ------
+    FloatingPointError
+        If the energy is not finite.
+    """
+    with_forces = "FORCE" in cfg.general["TextOutputs"]
+    # Energies by term come first, so that the forces of all of them are the last ones computed.
+    terms = cfg.energies(context) if cfg.general["ReportEnergy"] else {}
+    state = context.getState(
+        getPositions=True, getVelocities=True, getEnergy=True, getForces=with_forces
+    )
+    energies = [state.getPotentialEnergy(), state.getKineticEnergy()]
+    potential, kinetic = (energy.value_in_unit(_KILOJOULE) for energy in energies)
+    if not np.isfinite(potential + kinetic):
+        raise FloatingPointError(f"the energy is {potential} + {kinetic} kJ/mol at step {step}")
+    forces = None
+    if with_forces:
+        forces = state.getForces(asNumpy=True).value_in_unit(_FORCE)
+    box = state.getPeriodicBoxVectors(asNumpy=True).value_in_unit(unit.nanometer)
+    if not cfg.general["SimulationBoxLength"]:
+        box = np.zeros((3, 3))
+    return Frame(
+        step,
+        step * cfg.step_size,
+        potential,
+        kinetic,
+        state.getPositions(asNumpy=True).value_in_unit(unit.nanometer),
+        state.getVelocities(asNumpy=True).value_in_unit(_VELOCITY),
+        forces,
+        terms,
+        np.asarray(box),
+    )
+
+
+class Outputs:
+    """All files of one run that grow, in one folder.
+
+    Parameters
+    ----------
+    cfg : Config
+    folder : str or Path
+        Exists already.
+    xtc : bool
+        Write ``<name>.xtc`` too.
+    ply : bool
+        Write ``frames/<name>_<label>_<number>.ply`` too, a file per membrane and frame.
+    """
+
+    def __init__(self, cfg: Config, folder, xtc: bool = True, ply: bool = False):
+        self._cfg = cfg
+        self._folder = Path(folder)
+        self._names = [atom.name for atom in cfg.topology().atoms()]
+        self._ply = ply
+        self._num_frames = 0
+        text, binary = cfg.general["TextOutputs"], cfg.general["BinOutputs"]
+        double = cfg.general["Precision"] == "double"
+        self._type = np.dtype("<f8" if double else "<f4")
+        kind = "double" if double else "single"
+        writers: dict[str, tuple[bool, Callable[[Frame], bytes]]] = {
+            ".xyz": ("XYZ" in text, lambda f: self._xyz(f, f.positions)),
+            ".vel": ("VEL" in text, lambda f: self._xyz(f, f.velocities)),
+            ".force": ("FORCE" in text, lambda f: self._xyz(f, f.forces)),
+            ".curve": ("CURVE" in text, lambda f: self._xyz(f, self._curvatures(f))),
+            ".pdb": ("PDB" in text, self._pdb),
+            f".bin_xyz_{kind}": ("XYZ" in binary, lambda f: self._binary(f.positions)),
+            f".bin_vel_{kind}": ("VEL" in binary, lambda f: self._binary(f.velocities)),
+            f".bin_tpk_{kind}": (
+                "TPK" in binary,
+                lambda f: self._binary([f.time, f.potential, f.kinetic]),
+            ),
+            ".csv": (True, self._csv),
+        }
+        self._writers = {
+            self._folder / (cfg.name + suffix): write
+            for suffix, (wanted, write) in writers.items()
+            if wanted
+        }
+        self._xtc = self._folder / f"{cfg.name}.xtc" if xtc else None
+
+    @property
+    def paths(self) -> list[Path]:
+        """The files that grow."""
+        return [*self._writers, *([self._xtc] if self._xtc else [])]
+
+    @property
+    def num_frames(self) -> int:
+        """How many frames have been written."""
+        return self._num_frames
+
+    def start(self) -> None:
+        """Make empty files, and the PSF file."""
+        for path in self.paths:
+            path.write_bytes(b"")
+        self._remove_frames_from(0)
+        if "PSF" in self._cfg.general["TextOutputs"]:
+            psf = self._folder / f"{self._cfg.name}.psf"
+            write_psf(psf, self._cfg.topology(), self._cfg.system())
+
+    def write(self, frame: Frame) -> None:
+        """Add one frame to every file."""
+        for path, encode in self._writers.items():
+            with path.open("ab") as file:
+                file.write(encode(frame))
+        if self._xtc:
+            xtc_write_frame(
+                os.fsencode(self._xtc),
+                frame.positions.astype(np.float32),
+                frame.box.astype(np.float32),
+                np.float32(frame.time),
+                np.int32(frame.step),
+            )
+        if self._ply:
+            self._write_ply(frame)
+        self._num_frames += 1
+
+    def state(self) -> dict:
+        """The number of frames and the length of every file, once all of it is on the disk."""
+        sizes = {}
+        for path in self.paths:
+            with path.open("rb") as file:
+                os.fsync(file.fileno())
+                sizes[path.name] = os.fstat(file.fileno()).st_size
+        return {"frames": self._num_frames, "sizes": sizes}
+
+    def restore(self, state: dict) -> None:
+        """Cut every file back to an earlier `state`.
+
+        Raises
+        ------
+        ValueError
+            If the set of files is another, or a file is shorter than it was.
+        """
+        sizes = state["sizes"]
+        if {path.name for path in self.paths} != set(sizes):
+            raise ValueError(
+                f"the run wrote the files {', '.join(sorted(sizes))}, but now these are asked for: "
+                + ", ".join(sorted(path.name for path in self.paths))
+            )
+        for path in self.paths:
+            length = path.stat().st_size if path.exists() else 0
+            if length < sizes[path.name]:
+                raise ValueError(
+                    f"{path} had {sizes[path.name]} bytes at the checkpoint and has {length} now"
+                )
+        for path in self.paths:
+            os.truncate(path, sizes[path.name])
+        self._num_frames = state["frames"]
+        self._remove_frames_from(self._num_frames)
+
+    def _xyz(self, frame: Frame, values: np.ndarray) -> bytes:
+        """A frame in the XYZ format, with VCM's comment line; coordinates in nm."""
+        lines = [
+            str(len(self._names)),
+            f"timePs {frame.time:.10g} potential_energy_inKJpermol {frame.potential:.16g} "
+            f"energy_inKJpermol {frame.potential + frame.kinetic:.16g}",
+        ]
+        rows = np.asarray(values).reshape(len(self._names), -1).tolist()
+        lines += [
+            f"{name} " + " ".join(f"{value:.9g}" for value in row)
+            for name, row in zip(self._names, rows, strict=True)
+        ]
+        return ("\n".join(lines) + "\n").encode()
+
+    def _pdb(self, frame: Frame) -> bytes:
+        """A model of a PDB file, in nm: a vesicle of a micrometre in Å is too wide for a column."""
+        if np.abs(frame.positions).max() >= 9999:
+            warnings.warn("PDB: coordinates beyond 9999 nm do not fit their columns", stacklevel=2)
+        lines = [
+            f"MODEL {frame.step:>9d}",
+            f"REMARK 250 COORDINATES IN NANOMETRES, TIME {frame.time:.10g} PS",
+        ]
+        rows = zip(self._names, frame.positions.tolist(), strict=True)
+        for number, (name, (x, y, z)) in enumerate(rows, start=1):
+            lines.append(
+                f"ATOM  {number % 100000:5d} {name[:4]:<4s} MEM {name[-1]}{number % 10000:4d}    "
+                f"{x:8.3f}{y:8.3f}{z:8.3f}{1:6.2f}{0:6.2f}"
+            )
+        return ("\n".join([*lines, "ENDMDL"]) + "\n").encode()
+
+    def _binary(self, values) -> bytes:
+        return np.ascontiguousarray(values, dtype=self._type).tobytes()
+
+    def _parts(self, frame: Frame):
+        """Each membrane with the positions of its vertices."""
+        for membrane in self._cfg.membranes:
+            yield membrane, frame.positions[membrane.offset : membrane.particles.stop]
+
+    def _curvatures(self, frame: Frame) -> np.ndarray:
+        """Mean curvature H = C1 + C2 of every vertex, 1/nm."""
+        parts = self._parts(frame)
+        return np.concatenate([mean_curvature(v, membrane.mesh.triangles) for membrane, v in parts])
+
+    def _csv(self, frame: Frame) -> bytes:
+        columns: dict[str, float] = {"step": frame.step, "time (ps)": frame.time}
+        columns.update({f"{name} (kJ/mol)": energy for name, energy in frame.terms.items()})
+        columns["potential (kJ/mol)"] = frame.potential
+        columns["kinetic (kJ/mol)"] = frame.kinetic
+        for membrane, vertices in self._parts(frame):
+            triangles = membrane.mesh.triangles
+            area = geometry.surface_area(vertices, triangles)
+            columns[f"area {membrane.label} (nm^2)"] = area
+            columns[f"volume {membrane.label} (nm^3)"] = geometry.volume_enclosed(
+                vertices, triangles
+            )
+        line = ",".join(f"{value:.12g}" for value in columns.values()) + "\n"
+        header = ",".join(columns) + "\n" if self._num_frames == 0 else ""
+        return (header + line).encode()
+
+    def _frames(self) -> Path:
+        return self._folder / "frames"
+
+    def _write_ply(self, frame: Frame) -> None:
+        self._frames().mkdir(exist_ok=True)
+        for membrane, vertices in self._parts(frame):
+            name = f"{self._cfg.name}_{membrane.label}_{self._num_frames:06d}.ply"
+            (self._frames() / name).write_text(ply.write(vertices, membrane.mesh.triangles))
+
+    def _remove_frames_from(self, number: int) -> None:
+        if not self._ply:
+            return
+        for membrane in self._cfg.membranes:
+            stem = f"{self._cfg.name}_{membrane.label}_"
+            for path in self._frames().glob(f"{stem}*.ply"):
+                if int(path.stem.removeprefix(stem)) >= number:
+                    path.unlink()
