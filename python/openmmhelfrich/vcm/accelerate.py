@@ -320,9 +320,9 @@ class _Accelerator:
         for force in ours:
             system.addForce(copy.deepcopy(force))
         platform = mm.Platform.getPlatformByName("Reference")
-        context = mm.Context(system, mm.VerletIntegrator(0.001), platform)
-        context.setPositions(self._positions)
         try:
+            context = mm.Context(system, mm.VerletIntegrator(0.001), platform)
+            context.setPositions(self._positions)
             state = context.getState(energy=True, forces=True)
         except mm.OpenMMException as reason:
             raise Refused(f"our force cannot be evaluated at the positions: {reason}") from None

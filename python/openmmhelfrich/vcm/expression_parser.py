@@ -58,7 +58,10 @@ class Parser:
 
     def whole(self) -> int:
         """The number of the operation that is the value of the formula."""
-        result = self._operation(0)
+        try:
+            result = self._operation(0)
+        except RecursionError:
+            raise ExpressionError("its brackets are too deep") from None
         if self._at != len(self._tokens):
             raise ExpressionError(f"unexpected {self._tokens[self._at]!r}")
         return result
