@@ -187,8 +187,11 @@ void MembraneForceProxy::readForce(const SerializationNode& node, MembraneForce&
     if (hasForms)
         attributes.insert(what);
     allow(forceName, node, attributes, {"Parameters", "EnergyParameterDerivatives", "Triangles"});
-    force.setForceGroup(integer(forceName, node, "forceGroup"));
-    force.setName(text(forceName, node, "name"));
+    // What has a default may be left out, as in OpenMM's own XML.
+    if (node.hasProperty("forceGroup"))
+        force.setForceGroup(integer(forceName, node, "forceGroup"));
+    if (node.hasProperty("name"))
+        force.setName(text(forceName, node, "name"));
     if (hasForms) {
         string wanted = text(forceName, node, what);
         int form = 0;
@@ -199,7 +202,8 @@ void MembraneForceProxy::readForce(const SerializationNode& node, MembraneForce&
         force.setForm(form);
     }
     for (const string& property : switches)
-        force.setSwitch(property, boolean(forceName, node, property));
+        if (node.hasProperty(property))
+            force.setSwitch(property, boolean(forceName, node, property));
     readParameters(child(forceName, node, "Parameters"), force);
 
     const SerializationNode& derivatives = child(forceName, node, "EnergyParameterDerivatives");
