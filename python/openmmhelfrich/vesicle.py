@@ -24,6 +24,7 @@ from .forces import (
     TriangleAreaRepulsionForce,
     TriangleHeightForce,
 )
+from .mesh import Mesh
 
 # kBT at the paper's 300 K, in kJ/mol: its energies are given in multiples of this.
 KBT = theory.BOLTZMANN * 300
@@ -128,6 +129,8 @@ class Vesicle:
         min_triangle_area=0.0,
     ):
         nm = unit.nanometer
+        if not isinstance(mesh, Mesh):
+            raise TypeError(f"Vesicle: mesh needs a Mesh, got {type(mesh).__name__}")
         self._mesh = mesh
         self._rigidity = _field("rigidity", rigidity, _ENERGY, mesh)
         self._area_modulus = _number("area_modulus", area_modulus, _ENERGY / nm**2)
@@ -158,6 +161,8 @@ class Vesicle:
             raise ValueError("Vesicle: give either volume or reduced_volume, not both")
         self._volume = _number("volume", volume, nm**3, zero=False)
         self._placement = None
+        # The forces refuse a scheme or form that does not exist: now, not when they are used.
+        self._forces(0)
 
     def __repr__(self):
         return (
@@ -414,13 +419,20 @@ def _triangle_areas(mesh):
 
 def _field(name, value, dimension, mesh, negative=False):
     """One number, or an array of one for each vertex of the mesh."""
-    if np.ndim(value.value_in_unit(value.unit) if unit.is_quantity(value) else value) == 0:
+    bare = value.value_in_unit(value.unit) if unit.is_quantity(value) else value
+    try:
+        single = np.ndim(bare) == 0
+    except ValueError:
+        raise TypeError(f"Vesicle: {name} needs numbers, got lists of unequal length") from None
+    if single:
         return _number(name, value, dimension, negative=negative)
     if unit.is_quantity(value):
         # The message of a wrong dimension is that of a single number.
         _number(name, 1.0 * value.unit, dimension, negative=True)
         value = value.value_in_unit(dimension)
     values = np.array(value)
+    if values.dtype.kind not in "iuf":
+        raise TypeError(f"Vesicle: {name} needs numbers, got dtype {values.dtype}")
     if values.shape != (mesh.num_vertices,):
         raise ValueError(
             f"Vesicle: {name} must be one number or one for each of the {mesh.num_vertices} "
@@ -441,6 +453,8 @@ def _number(name, value, dimension, zero=True, negative=False):
     """A checked number in OpenMM's units, for the parameter `name`."""
     if unit.is_quantity(value) and not value.unit.is_compatible(dimension):
         raise TypeError(f"Vesicle: {name} needs the unit {dimension}, got {value}")
+    if isinstance(value, (bool, np.bool_, str)):
+        raise TypeError(f"Vesicle: {name} needs a number, got {value!r}")
     try:
         number = _plain(value, dimension)
     except (TypeError, ValueError):

@@ -364,6 +364,30 @@ class TestEverythingElse:
         with pytest.raises(ValueError, match=fragment):
             Vesicle(mesh, rigidity=given)
 
+    @pytest.mark.parametrize(
+        ("name", "value"),
+        [
+            ("rigidity", True),
+            ("rigidity", "stiff"),
+            ("rigidity", [True, False]),
+            ("rigidity", [[1.0], [1.0, 2.0]]),
+            ("epsilon", np.True_),
+            ("scheme", "Nobody"),
+            ("scheme", 1.0),
+            ("dihedral_form", 9),
+        ],
+    )
+    def test_what_is_no_number_or_constant_is_refused_at_once(self, mesh, name, value):
+        stiff = {"dihedral_stiffness": 1.0} if name == "dihedral_form" else {}
+        with pytest.raises(
+            (TypeError, ValueError, openmm.OpenMMException), match=r"Force:|Vesicle:"
+        ):
+            Vesicle(mesh, **stiff, **{name: value})
+
+    def test_what_is_no_mesh_is_refused(self):
+        with pytest.raises(TypeError, match="Vesicle: mesh needs a Mesh, got str"):
+            Vesicle("sphere.ply")
+
     def test_two_vesicles_and_particles_example(self, tmp_path):
         script = Path(__file__).resolve().parents[2] / "examples" / "two_vesicles.py"
         command = [sys.executable, script, "--steps", "200", "--out", tmp_path]
