@@ -19,6 +19,7 @@ positions are taken before anything is squared, so that a mesh far from the orig
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from itertools import combinations
 
@@ -85,7 +86,7 @@ def _number(value: float) -> str:
     return f"({float(value)!r})"
 
 
-class _Stencil:
+class _Stencil(ABC):
     """Writes one bond's expression: quantities are named once, however often they are used.
 
     Points are the bond's particles, numbered from 1 as in OpenMM's ``p1``. The two subclasses say
@@ -104,33 +105,28 @@ class _Stencil:
         definitions = reversed(self._definitions.items())
         return "; ".join([energy, *(f"{name}={text}" for name, text in definitions)])
 
+    @abstractmethod
     def turning(self, c: int, a: int, b: int, d: int) -> str:
         """φ of edge ab between triangles abc and bad: 0 if flat, positive if convex."""
-        raise NotImplementedError
 
+    @abstractmethod
     def length(self, a: int, b: int) -> str:
-        raise NotImplementedError
+        """Distance of a and b."""
 
     def length2(self, a: int, b: int) -> str:
         return self.define(f"q{min(a, b)}_{max(a, b)}", f"{self.length(a, b)}^2")
 
+    @abstractmethod
     def double_area(self, a: int, b: int, c: int) -> str:
-        raise NotImplementedError
+        """Twice the area of the triangle abc."""
 
+    @abstractmethod
     def corner(self, b: int, a: int, c: int) -> str:
         """The angle at a, between the directions to b and to c."""
-        raise NotImplementedError
 
-    def cotangent(self, b: int, a: int, c: int) -> str:
-        """The cotangent of that angle."""
-        raise NotImplementedError
-
+    @abstractmethod
     def dot(self, a: int, b: int, c: int) -> str:
         """(b − a) · (c − a)."""
-        raise NotImplementedError
-
-    def double_heights_squared(self, a: int, b: int, c: int) -> list[str]:
-        raise NotImplementedError
 
 
 class _Geometric(_Stencil):

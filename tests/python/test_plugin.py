@@ -73,7 +73,6 @@ PYTHON = f'case "$2" in *version*) echo 3.11;; *Python.h*) echo {__file__};; esa
 TOOLS = {"cargo": "", "rustc": RUSTC, "c++": "", "cc": "", "python3": PYTHON}
 
 
-@pytest.mark.skipif(shutil.which("make") is None, reason="needs make")
 class TestMissingTools:
     """`make` names what is missing. The tools here are stand-ins that answer just its questions."""
 
