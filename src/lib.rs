@@ -38,6 +38,7 @@ pub mod membrane;
 pub mod mesh;
 pub mod openmm;
 pub mod potentials;
+pub mod team;
 
 #[cfg(test)]
 mod test_meshes;
