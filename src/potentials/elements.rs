@@ -3,14 +3,13 @@
 //!
 //! A formula is generic over [`Real`], so it is written once for both.
 
-use super::{Contribution, Term};
-use crate::evaluator::simd::{BLOCK, EdgeBlock, TriangleTile, VertexTile};
+use super::{Contribution, Needs, Term};
+use crate::evaluator::simd::{BLOCK, EdgeBlock, Level, TriangleTile, VertexTile};
 use crate::mesh::geometry::{
     EdgeGeometry, EdgePartials, TriangleGeometry, TrianglePartials, VertexGeometry, VertexPartials,
 };
 use crate::mesh::vertex_vectors::VertexVectors;
 use crate::real::Real;
-use pulp::Arch;
 
 /// The most scalars of a potential that lives on elements.
 const SCALARS: usize = 2;
@@ -103,6 +102,12 @@ impl Place<'_> {
 
 /// A formula for the energy of a triangle; adds to the slopes.
 pub trait TriangleFormula {
+    /// Whether the energy and its derivatives vanish, in all lanes: the formula is not applied then.
+    #[inline(always)]
+    fn vanishes<R: Real>(&self, _: &Triangle<R>) -> bool {
+        false
+    }
+
     /// Apply it.
     fn apply<R: Real>(
         &self,
@@ -121,6 +126,9 @@ pub trait EdgeFormula {
 
 /// A formula for the energy of a vertex; adds to the slopes.
 pub trait VertexFormula {
+    /// What it uses beyond the area: curvatures, vectors (which brings the Voronoi area), normals.
+    const USES: Needs;
+
     /// Apply it.
     fn apply<R: Real>(&self, place: Place, vertex: &Vertex<R>, slopes: &mut Vertex<R>) -> Sums<R>;
 }
@@ -134,7 +142,7 @@ pub enum Triangles<'a> {
         partials: &'a mut [TrianglePartials],
     },
     /// In lanes; the tile starts with the triangles of these indices.
-    Lanes { arch: Arch, ids: &'a [u32], tile: &'a mut TriangleTile },
+    Lanes { level: Level, ids: &'a [u32], tile: &'a mut TriangleTile },
 }
 
 /// A run of edges to apply a formula to.
@@ -158,7 +166,7 @@ pub enum Vertices<'a> {
         vector_partials: &'a mut [VertexVectors],
     },
     /// In lanes; the tile starts with the vertices of these indices.
-    Lanes { arch: Arch, total: usize, ids: &'a [u32], tile: &'a mut VertexTile },
+    Lanes { level: Level, total: usize, ids: &'a [u32], tile: &'a mut VertexTile },
 }
 
 impl From<Sums<f64>> for Contribution {
@@ -198,6 +206,9 @@ impl Triangles<'_> {
                 for (index, (known, partial)) in geometry.iter().zip(partials).enumerate() {
                     let ids = &[(first + index) as u32];
                     let triangle = Triangle { twice_area: known.twice_area, dots: known.dots };
+                    if formula.vanishes(&triangle) {
+                        continue;
+                    }
                     let TrianglePartials { area, length_squared } = *partial;
                     let mut slopes = TriangleSlopes { area, length_squared };
                     sum.add(formula.apply(Place { term, ids }, &triangle, &mut slopes));
@@ -206,7 +217,7 @@ impl Triangles<'_> {
                 }
                 sum
             }
-            Self::Lanes { arch, ids, tile } => tile.apply(arch, term, ids, formula),
+            Self::Lanes { level, ids, tile } => tile.apply(level, term, ids, formula),
         };
         sum.without_hidden(term)
     }
@@ -285,7 +296,7 @@ impl Vertices<'_> {
                 }
                 sum
             }
-            Self::Lanes { arch, ids, tile, .. } => tile.apply(arch, term, ids, formula),
+            Self::Lanes { level, ids, tile, .. } => tile.apply(level, term, ids, formula),
         };
         sum.without_hidden(term)
     }

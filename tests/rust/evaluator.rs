@@ -185,7 +185,7 @@ fn bits_do_not_depend_on_the_number_of_threads() {
         let with = |threads| CpuEvaluator::with(topology.clone(), set, threads);
         let results = [1, 2, 3, 8].map(|threads| evaluate(&mut with(threads), &terms, &mesh.0));
         for other in &results[1..] {
-            assert_eq!(results[0], *other);
+            assert!(results[0] == *other);
         }
     }
 }

@@ -52,9 +52,13 @@ pub struct Arrays {
     /// Tensions along sides 2, 0, 1 and 2 again of each triangle, from potentials of triangles, kJ/mol/nm²;
     /// so the sides that meet at corner k are at k and k + 1. Empty until needed.
     pub tensions: Numbers,
+    /// Angles at corners 0, 1, 2 of each triangle, and nothing; empty until needed.
+    pub angles: Numbers,
+    /// The same beginning with corner 1.
+    pub next_angles: Numbers,
     /// φ / l for each step and lane.
     pub bends: Numbers,
-    /// l² for each step and lane; empty until needed.
+    /// l² for each step and lane.
     pub lengths_squared: Numbers,
     /// Bending moments per length for each step and lane, from potentials of angles; empty until needed.
     pub moments: Numbers,
@@ -64,6 +68,8 @@ pub struct Arrays {
     pub vector_slopes: Numbers,
     /// ∂E/∂U, with Espriu's vector U, and nothing; empty until needed.
     pub umbrella_slopes: Numbers,
+    /// ∂E/∂(sum of normals), and nothing; empty until needed.
+    pub normal_slopes: Numbers,
 }
 
 impl Arrays {
@@ -73,12 +79,15 @@ impl Arrays {
             positions: Numbers::new(4 * layout.vertex_ids.len()),
             normals: Numbers::new(4 * (layout.triangle_ids.len() + 1)),
             tensions: Numbers::new(0),
+            angles: Numbers::new(0),
+            next_angles: Numbers::new(0),
             bends: Numbers::new(0),
             lengths_squared: Numbers::new(0),
             moments: Numbers::new(0),
             slopes: Numbers::new(2 * layout.vertex_ids.len()),
             vector_slopes: Numbers::new(0),
             umbrella_slopes: Numbers::new(0),
+            normal_slopes: Numbers::new(0),
         }
     }
 }
