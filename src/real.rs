@@ -149,3 +149,13 @@ pub fn plus_scaled<R: Real>(sum: [R; 3], factor: R, vector: [R; 3]) -> [R; 3] {
         factor.mul_add(vector[2], sum[2]),
     ]
 }
+
+/// `sum` − `factor` · `vector`.
+#[inline(always)]
+pub fn minus_scaled<R: Real>(sum: [R; 3], factor: R, vector: [R; 3]) -> [R; 3] {
+    [
+        factor.neg_mul_add(vector[0], sum[0]),
+        factor.neg_mul_add(vector[1], sum[1]),
+        factor.neg_mul_add(vector[2], sum[2]),
+    ]
+}

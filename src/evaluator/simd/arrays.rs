@@ -62,7 +62,7 @@ pub struct Arrays {
     pub lengths_squared: Numbers,
     /// Bending moments per length for each step and lane, from potentials of angles; empty until needed.
     pub moments: Numbers,
-    /// ∂E/∂J and ∂E/∂a_B of each vertex.
+    /// ½ ∂E/∂J and ⅙ ∂E/∂a_B of each vertex, so that the last pass need not multiply.
     pub slopes: Numbers,
     /// ∂E/∂S and ∂E/∂a_V of each vertex; empty until needed.
     pub vector_slopes: Numbers,

@@ -6,7 +6,7 @@ use super::lanes::{BLOCK, Lane, Records, WithLanes};
 use super::layout::Layout;
 use crate::mesh::geometry::TotalPartials;
 use crate::mesh::vertex_vectors::COT_60;
-use crate::real::{Real, cross, dot, minus, plus, plus_scaled, scaled};
+use crate::real::{Real, cross, dot, minus, minus_scaled, plus, plus_scaled, scaled};
 
 /// Where the forces of all particles are, x y z of one after the other.
 #[derive(Clone, Copy)]
@@ -43,7 +43,7 @@ struct Arm<S: Records> {
     /// r_j − r_i.
     e: [Lane<S>; 3],
     length_squared: Lane<S>,
-    /// ∂E/∂J and ∂E/∂a_B of the neighbour.
+    /// ½ ∂E/∂J and ⅙ ∂E/∂a_B of the neighbour.
     by_curvature: Lane<S>,
     by_area: Lane<S>,
     /// ∂E/∂S_i − ∂E/∂S_j.
@@ -145,10 +145,9 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: 
     /// `index` is that of a step and lane.
     #[inline(always)]
     unsafe fn moment<S: Records>(&self, centre: &Centre<S>, arm: &Arm<S>, index: usize) -> Lane<S> {
-        let sum = centre.slopes[0] + arm.by_curvature;
         // SAFETY: there are moments for each step and lane.
         let own = unsafe { Lane::load(centre.position[0].simd(), self.arrays.moments.at(index)) };
-        sum.mul_add(sum.of(0.5), own)
+        centre.slopes[0] + arm.by_curvature + own
     }
 }
 
@@ -161,7 +160,7 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: 
     fn with_lanes<S: Records>(self, simd: S) {
         let (layout, arrays) = (self.layout, self.arrays);
         let zero = Lane::splat(simd, 0.0);
-        let by_total_area = zero.of(self.totals.area);
+        let by_total_area = zero.of(0.5 * self.totals.area);
         let by_volume = zero.of(self.totals.volume / 6.0);
         let vertices = layout.vertex_tile(self.index);
         for first in vertices.clone().step_by(Lane::<S>::COUNT) {
@@ -173,7 +172,7 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: 
             let triangles = layout.triangles.as_ptr().cast::<u32>().wrapping_add(lane);
             let places = layout.places.as_ptr().cast::<u32>().wrapping_add(lane);
             let [own_curvature, own_area] = centre.slopes;
-            let constant_area = own_area.mul_add(zero.of(1.0 / 3.0), by_total_area);
+            let constant_area = own_area + by_total_area;
             let mut force = [zero; 3];
             // The tension along the present arm from the triangle before it.
             let mut tension = zero;
@@ -192,9 +191,8 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: 
                 let at_end = arm.length_squared - at_centre;
                 let at_next = next.length_squared - at_centre;
 
-                // ∂E/∂(area of the triangle)
-                let mut by_area =
-                    (arm.by_area + next.by_area).mul_add(zero.of(1.0 / 3.0), constant_area);
+                // ½ ∂E/∂(area of the triangle)
+                let mut by_area = arm.by_area + next.by_area + constant_area;
                 let (mut along, mut along_next) = (tension, zero);
                 if TENSIONS {
                     let [before, after] = unsafe {
@@ -222,7 +220,7 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: 
                     along_next = inverse.mul_add(here + facing - there, along_next);
                     let weighted =
                         here.mul_add(at_next, there.mul_add(at_end, facing * at_centre));
-                    by_area = (inverse * inverse * 2.0).neg_mul_add(weighted, by_area);
+                    by_area = (inverse * inverse).neg_mul_add(weighted, by_area);
                     // The explicit squared sides of Voronoi's area.
                     along = (arm.voronoi * 0.25).mul_add(cot_next, along);
                     along_next = (next.voronoi * 0.25).mul_add(cot_end, along_next);
@@ -260,7 +258,7 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: 
                     along_next = twice_area.mul_add(end - own - far, along_next);
                     let turned =
                         own.mul_add(at_centre, end.mul_add(at_end, far * at_next));
-                    by_area = turned.mul_add(zero.of(2.0), by_area);
+                    by_area = by_area + turned;
                     // A unit normal turns only: its gradient at a corner, times a constant vector, is along it.
                     let weighted = plus_scaled(
                         plus_scaled(scaled(centre.normal, own_angle), end_angle, arm.normal),
@@ -270,14 +268,14 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: 
                     let torque = dot(n, cross(minus(arm.e, next.e), weighted));
                     pressure = inverse.mul_add(torque, pressure);
                 }
-                let stress = by_area * inverse * 0.5;
+                let stress = by_area * inverse;
                 along = stress.mul_add(at_next, along);
                 along_next = stress.mul_add(at_end, along_next);
 
                 // Past the end of a ring the moments repeat the first.
                 let next_moment = if MOMENTS { unsafe { self.moment(&centre, &next, (step + 1) * BLOCK + lane) } } else { zero };
                 if MOMENTS {
-                    let facing = (arm.by_curvature + next.by_curvature) * 0.5
+                    let facing = arm.by_curvature + next.by_curvature
                         + unsafe {
                             let offsets = layout.opposite()[step].as_ptr().add(lane);
                             Lane::gather1(simd, arrays.moments.at(0), offsets)
@@ -285,17 +283,18 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: 
                     let turn = at_end * (own_moment - facing) + at_next * (next_moment - facing);
                     pressure = inverse.mul_add(turn, pressure);
                 } else if BENDS {
-                    let turn = at_end * (own_curvature - next.by_curvature)
-                        + at_next * (own_curvature - arm.by_curvature);
-                    pressure = (inverse * 0.5).mul_add(turn, pressure);
+                    let turn = at_next.mul_add(
+                        own_curvature - arm.by_curvature,
+                        at_end * (own_curvature - next.by_curvature),
+                    );
+                    pressure = inverse.mul_add(turn, pressure);
                 }
                 if BENDS {
                     let bend = unsafe { Lane::load(simd, arrays.bends.at(step * BLOCK + lane)) };
-                    let mean = (own_curvature + arm.by_curvature) * 0.5;
-                    along = bend.mul_add(mean, along);
+                    along = bend.mul_add(own_curvature + arm.by_curvature, along);
                 }
                 force = plus_scaled(force, along, arm.e);
-                force = plus_scaled(force, zero - pressure, [nx, ny, nz]);
+                force = minus_scaled(force, pressure, [nx, ny, nz]);
                 tension = along_next;
                 arm = next;
                 own_moment = next_moment;

@@ -52,11 +52,16 @@ impl<const BENDS: bool, const LEVEL: u8> WithLanes for Forward<'_, BENDS, LEVEL>
             let here = unsafe {
                 Lane::gather3(simd, arrays.positions.at(4 * first), CONSECUTIVE.as_ptr())
             };
-            let mut last =
-                unsafe { Lane::gather3(simd, normals, layout.before[block].as_ptr().add(lane)) };
-            let mut e = unsafe {
-                minus(Lane::gather3(simd, positions, neighbours.add(BLOCK * steps.start)), here)
+            let (last, last_arm, mut e) = unsafe {
+                let before = layout.neighbours_before[block].as_ptr().add(lane);
+                (
+                    Lane::gather4(simd, normals, layout.before[block].as_ptr().add(lane)),
+                    minus(Lane::gather3(simd, positions, before), here),
+                    minus(Lane::gather3(simd, positions, neighbours.add(BLOCK * steps.start)), here),
+                )
             };
+            let (mut last_normal, mut last_twice, mut last_arm) =
+                ([last[0], last[1], last[2]], last[3], last_arm);
             let mut length_squared = dot(e, e);
             let (mut area, mut voronoi) = (zero, zero);
             let (mut cotangent, mut umbrella, mut normal_sum) = ([zero; 3], [zero; 3], [zero; 3]);
@@ -68,17 +73,19 @@ impl<const BENDS: bool, const LEVEL: u8> WithLanes for Forward<'_, BENDS, LEVEL>
                 area = area + twice_area;
                 let exists = twice_area.above(zero);
                 if BENDS {
-                    // With sin φ = e·(n × m) / l and cos φ = n·m of the normals n, m on the left and right,
-                    // tan(φ/2) = sin φ / (1 + cos φ). Here is tan(φ/2) / l.
-                    let cosine = dot(n, last);
-                    let determinant = dot(e, cross(n, last));
-                    let slope = determinant / length_squared.mul_add(cosine, length_squared);
+                    // With the triangles on the left and right, tan(φ/2) / l = −N·d / (N·M + |N||M|), where d leads
+                    // from this vertex to the neighbour before; both sides are divided by |N||M| here.
+                    let cosine = dot(n, last_normal);
+                    let depth = dot(n, last_arm);
+                    let slope = (zero - depth) / last_twice.mul_add(cosine, last_twice);
                     flattest = flattest.min(cosine.or_else(exists, zero.of(1.0)));
                     unsafe {
                         slope.store(arrays.bends.at(step * BLOCK + lane));
                         length_squared.store(arrays.lengths_squared.at(step * BLOCK + lane));
                     }
-                    last = n;
+                    last_normal = n;
+                    last_twice = twice_area.or_else(exists, zero.of(1.0));
+                    last_arm = e;
                 }
                 let next = unsafe {
                     minus(Lane::gather3(simd, positions, neighbours.add(BLOCK * (step + 1))), here)
@@ -216,7 +223,8 @@ impl<const LEVEL: u8> WithLanes for Slopes<'_, LEVEL> {
             let index = first % TILE;
             // SAFETY: the records of vertices have whole blocks.
             unsafe {
-                let pair = [slopes.curvature.load(simd, index), slopes.area.load(simd, index)];
+                let curvature = slopes.curvature.load(simd, index) * 0.5;
+                let pair = [curvature, slopes.area.load(simd, index) * (1.0 / 6.0)];
                 Lane::store2(self.arrays.slopes.at(2 * first), pair);
                 if LEVEL >= VORONOI {
                     let voronoi = slopes.voronoi_area.load(simd, index);

@@ -44,6 +44,8 @@ pub struct Layout {
     pub places: Vec<[u32; BLOCK]>,
     /// For each block of vertices and each lane, the triangle before the first: the last of the ring.
     pub before: Vec<[u32; BLOCK]>,
+    /// The neighbour before the first.
+    pub neighbours_before: Vec<[u32; BLOCK]>,
     /// How many triangles must be known before a tile of vertices can be handled.
     pub frontier: Vec<u32>,
     opposite: OnceLock<Vec<[u32; BLOCK]>>,
@@ -137,6 +139,7 @@ impl Layout {
             triangles: Vec::new(),
             places: Vec::new(),
             before: Vec::new(),
+            neighbours_before: Vec::new(),
             frontier: Vec::new(),
             opposite: OnceLock::new(),
         };
@@ -236,8 +239,10 @@ impl Layout {
                 }));
             }
             self.steps.push(self.neighbours.len() as u32);
-            self.before.push(std::array::from_fn(|lane| {
-                4 * triangle_number[rings[lane][rings[lane].len() - 1] / 3]
+            let last = |lane: usize| rings[lane][rings[lane].len() - 1];
+            self.before.push(std::array::from_fn(|lane| 4 * triangle_number[last(lane) / 3]));
+            self.neighbours_before.push(std::array::from_fn(|lane| {
+                4 * number[neighbour(topology, last(lane)) as usize]
             }));
         }
     }

@@ -36,6 +36,9 @@ use layout::TILE;
 use std::sync::Arc;
 use triangles::TriangleSums;
 
+/// Below twice this area, nm², a triangle has none: its reciprocal and products of it are no numbers any more.
+const SMALLEST_AREA: f64 = 1e-140;
+
 /// Evaluates terms on one mesh in lanes, on one thread or several.
 pub struct SimdEvaluator {
     level: Level,
@@ -199,7 +202,7 @@ impl SimdEvaluator {
         }
         let TriangleSums { twice_area, six_volumes, smallest, silent } = sum;
         let totals = Totals { area: 0.5 * twice_area, volume: six_volumes / 6.0 };
-        (smallest > 0.0 && twice_area.is_finite()).then_some((totals, silent))
+        (smallest > SMALLEST_AREA && twice_area.is_finite()).then_some((totals, silent))
     }
 }
 
