@@ -1,7 +1,7 @@
 //! The readable reference: plain scalar code, one pass for each kind of element.
 
-use super::passes::{Nothing, fill, fill_pair};
 use super::checks::{check_energies, culprit};
+use super::passes::{Nothing, fill, fill_pair};
 use crate::error::Result;
 use crate::mesh::Topology;
 use crate::mesh::geometry::{
@@ -91,11 +91,9 @@ impl ReferenceEvaluator {
         contributions: &mut [Contribution],
         forces: Option<&mut [f64]>,
     ) -> Result<()> {
-        let needs =
-            terms.iter().fold(Needs::empty(), |all, term| all | term.potential.needs(term));
+        let needs = terms.iter().fold(Needs::empty(), |all, term| all | term.potential.needs(term));
         self.gather_positions(positions);
-        let totals =
-            self.forward_triangles().ok_or_else(|| culprit(&self.topology, positions))?;
+        let totals = self.forward_triangles().ok_or_else(|| culprit(&self.topology, positions))?;
         if needs.intersects(Needs::EDGES | Needs::CURVATURES) {
             self.forward_edges();
         }
@@ -106,8 +104,7 @@ impl ReferenceEvaluator {
             self.forward_vectors(needs);
         }
         let mut ignored = vec![Contribution::default(); terms.len()];
-        let contributions =
-            if contributions.is_empty() { &mut ignored[..] } else { contributions };
+        let contributions = if contributions.is_empty() { &mut ignored[..] } else { contributions };
         let total_partials = self.potentials(terms, needs, &totals, contributions);
         check_energies(terms, contributions)?;
         if let Some(forces) = forces {

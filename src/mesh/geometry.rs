@@ -96,8 +96,8 @@ impl EdgeGeometry {
     /// From the start and end of the edge, a point of the right triangle off the edge, and the
     /// geometry of the left and right triangles.
     ///
-    /// With n₁, n₂ the normals, tan(φ/2) = l D / (n₁·n₂ + |n₁||n₂|), where D, six times the volume
-    /// of the tetrahedron that the two triangles span, carries the sign of φ.
+    /// With n₁, n₂ the normals, tan φ = l D / n₁·n₂, where D, six times the volume of the tetrahedron that
+    /// the two triangles span, carries the sign of φ.
     #[inline]
     pub fn new(
         start: &Vec3,
@@ -108,16 +108,9 @@ impl EdgeGeometry {
     ) -> Self {
         let length_squared = (end - start).norm_squared();
         let cosine = left.normal.dot(&right.normal);
-        let norms = left.twice_area * right.twice_area;
         let determinant = left.normal.dot(&(start - right_tip));
-        let slope = determinant / (cosine + norms);
-        let z = length_squared * slope * slope;
-        let bend = if z <= POLYNOMIAL_RANGE {
-            2.0 * slope * arctan_over_argument(z)
-        } else {
-            let length = length_squared.sqrt();
-            (length * determinant).atan2(cosine) / length
-        };
+        let length = length_squared.sqrt();
+        let bend = (length * determinant).atan2(cosine) / length;
         Self { length_squared, bend }
     }
 }

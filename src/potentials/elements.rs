@@ -135,38 +135,67 @@ pub trait VertexFormula {
 
 /// A run of triangles to apply a formula to.
 pub enum Triangles<'a> {
-    /// One by one; `first` is the index of the first in the mesh.
+    /// One by one.
     Plain {
+        /// Index of the first in the mesh.
         first: usize,
+        /// The triangles.
         geometry: &'a [TriangleGeometry],
+        /// To be added to.
         partials: &'a mut [TrianglePartials],
     },
-    /// In lanes; the tile starts with the triangles of these indices.
-    Lanes { level: Level, ids: &'a [u32], tile: &'a mut TriangleTile },
+    /// In lanes.
+    Lanes {
+        /// What the processor has.
+        level: Level,
+        /// Indices in the mesh of the triangles that the tile starts with.
+        ids: &'a [u32],
+        /// The triangles, and the slopes to be added to.
+        tile: &'a mut TriangleTile,
+    },
 }
 
 /// A run of edges to apply a formula to.
 pub enum Edges<'a> {
     /// Each edge once.
-    Plain { geometry: &'a [EdgeGeometry], partials: &'a mut [EdgePartials] },
+    Plain {
+        /// The edges.
+        geometry: &'a [EdgeGeometry],
+        /// To be added to.
+        partials: &'a mut [EdgePartials],
+    },
     /// Each edge from both of its ends.
     Lanes(EdgeBlock<'a>),
 }
 
 /// A run of vertices to apply a formula to.
 pub enum Vertices<'a> {
-    /// One by one; `first` is the index of the first in the mesh, which has `total` of them. Vectors and
-    /// their partials are empty unless the potential wants them.
+    /// One by one.
     Plain {
+        /// Index of the first in the mesh.
         first: usize,
+        /// How many vertices the mesh has.
         total: usize,
+        /// Areas and curvatures.
         scalars: &'a [VertexGeometry],
+        /// Curvature vectors and normals; empty unless the potential wants them.
         vectors: &'a [VertexVectors],
+        /// To be added to.
         scalar_partials: &'a mut [VertexPartials],
+        /// To be added to; empty unless the potential wants them.
         vector_partials: &'a mut [VertexVectors],
     },
-    /// In lanes; the tile starts with the vertices of these indices.
-    Lanes { level: Level, total: usize, ids: &'a [u32], tile: &'a mut VertexTile },
+    /// In lanes.
+    Lanes {
+        /// What the processor has.
+        level: Level,
+        /// How many vertices the mesh has.
+        total: usize,
+        /// Indices in the mesh of the vertices that the tile starts with.
+        ids: &'a [u32],
+        /// The vertices, and the slopes to be added to.
+        tile: &'a mut VertexTile,
+    },
 }
 
 impl From<Sums<f64>> for Contribution {
@@ -236,7 +265,8 @@ impl Edges<'_> {
                 }
             }
             Self::Lanes(block) => {
-                let known = block.bends.as_flattened().iter().zip(block.lengths_squared.as_flattened());
+                let known =
+                    block.bends.as_flattened().iter().zip(block.lengths_squared.as_flattened());
                 let moments = block.moments.as_flattened_mut();
                 for (index, ((bend, length_squared), moment)) in known.zip(moments).enumerate() {
                     let length = length_squared.sqrt();

@@ -6,6 +6,7 @@ use std::cell::UnsafeCell;
 /// Two cache lines, since processors fetch lines in pairs.
 #[derive(Clone, Copy)]
 #[repr(align(128))]
+#[expect(dead_code, reason = "the numbers are reached by pointers")]
 struct Line([f64; 16]);
 
 /// Numbers that several threads fill, each thread its own places.
@@ -58,7 +59,7 @@ pub struct Arrays {
     pub next_angles: Numbers,
     /// φ / l for each step and lane.
     pub bends: Numbers,
-    /// l² for each step and lane.
+    /// l² for each step and lane; empty until needed.
     pub lengths_squared: Numbers,
     /// Bending moments per length for each step and lane, from potentials of angles; empty until needed.
     pub moments: Numbers,

@@ -89,7 +89,8 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: 
                 centre.vector = Lane::gather4(simd, arrays.vector_slopes.at(4 * first), offsets);
             }
             if LEVEL >= VECTORS {
-                centre.umbrella = Lane::gather3(simd, arrays.umbrella_slopes.at(4 * first), offsets);
+                centre.umbrella =
+                    Lane::gather3(simd, arrays.umbrella_slopes.at(4 * first), offsets);
             }
             if LEVEL >= NORMALS {
                 centre.normal = Lane::gather3(simd, arrays.normal_slopes.at(4 * first), offsets);
@@ -107,8 +108,7 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: 
         unsafe {
             let e = minus(Lane::gather3(simd, arrays.positions.at(0), offsets), centre.position);
             let length_squared = dot(e, e);
-            let [by_curvature, by_area] =
-                Lane::gather2::<2>(simd, arrays.slopes.at(0), offsets);
+            let [by_curvature, by_area] = Lane::gather2::<2>(simd, arrays.slopes.at(0), offsets);
             let mut arm = Arm {
                 e,
                 length_squared,
@@ -128,8 +128,7 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: 
                 if LEVEL >= VECTORS {
                     arm.g = minus([gx, gy, gz], [x, y, z]);
                     arm.umbrella = Lane::gather3(simd, arrays.umbrella_slopes.at(0), offsets);
-                    arm.by_cotangent =
-                        dot(arm.g, e).neg_mul_add(zero.of(0.5), arm.by_cotangent);
+                    arm.by_cotangent = dot(arm.g, e).neg_mul_add(zero.of(0.5), arm.by_cotangent);
                 }
             }
             if LEVEL >= NORMALS {
@@ -169,7 +168,6 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: 
             // SAFETY: here and below, all offsets of the layout are within the arrays that they are for.
             let centre = unsafe { self.centre(simd, first) };
             let neighbours = layout.neighbours.as_ptr().cast::<u32>().wrapping_add(lane);
-            let triangles = layout.triangles.as_ptr().cast::<u32>().wrapping_add(lane);
             let places = layout.places.as_ptr().cast::<u32>().wrapping_add(lane);
             let [own_curvature, own_area] = centre.slopes;
             let constant_area = own_area + by_total_area;
@@ -177,12 +175,16 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: 
             // The tension along the present arm from the triangle before it.
             let mut tension = zero;
             let mut arm = unsafe { self.arm(simd, neighbours.add(BLOCK * steps.start), &centre) };
-            let mut own_moment = if MOMENTS { unsafe { self.moment(&centre, &arm, steps.start * BLOCK + lane) } } else { zero };
+            let mut own_moment = if MOMENTS {
+                unsafe { self.moment(&centre, &arm, steps.start * BLOCK + lane) }
+            } else {
+                zero
+            };
             for step in steps {
                 let next = unsafe { self.arm(simd, neighbours.add(BLOCK * (step + 1)), &centre) };
                 let [nx, ny, nz, twice_area] = unsafe {
-                    let offsets = triangles.add(BLOCK * step);
-                    Lane::gather4(simd, arrays.normals.at(0), offsets)
+                    let offsets = places.add(BLOCK * step);
+                    Lane::gather4_within(simd, arrays.normals.at(0), offsets)
                 };
                 let exists = twice_area.above(zero);
                 let inverse = (zero.of(1.0) / twice_area).or_else(exists, zero);
@@ -218,8 +220,7 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: 
                     let (here, there) = (arm.by_cotangent, next.by_cotangent);
                     along = inverse.mul_add(facing + there - here, along);
                     along_next = inverse.mul_add(here + facing - there, along_next);
-                    let weighted =
-                        here.mul_add(at_next, there.mul_add(at_end, facing * at_centre));
+                    let weighted = here.mul_add(at_next, there.mul_add(at_end, facing * at_centre));
                     by_area = (inverse * inverse).neg_mul_add(weighted, by_area);
                     // The explicit squared sides of Voronoi's area.
                     along = (arm.voronoi * 0.25).mul_add(cot_next, along);
@@ -256,8 +257,7 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: 
                     let far = dot(next.normal, n) * inverse_side / next.length_squared;
                     along = twice_area.mul_add(far - own - end, along);
                     along_next = twice_area.mul_add(end - own - far, along_next);
-                    let turned =
-                        own.mul_add(at_centre, end.mul_add(at_end, far * at_next));
+                    let turned = own.mul_add(at_centre, end.mul_add(at_end, far * at_next));
                     by_area = by_area + turned;
                     // A unit normal turns only: its gradient at a corner, times a constant vector, is along it.
                     let weighted = plus_scaled(
@@ -273,9 +273,14 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: 
                 along_next = stress.mul_add(at_end, along_next);
 
                 // Past the end of a ring the moments repeat the first.
-                let next_moment = if MOMENTS { unsafe { self.moment(&centre, &next, (step + 1) * BLOCK + lane) } } else { zero };
+                let next_moment = if MOMENTS {
+                    unsafe { self.moment(&centre, &next, (step + 1) * BLOCK + lane) }
+                } else {
+                    zero
+                };
                 if MOMENTS {
-                    let facing = arm.by_curvature + next.by_curvature
+                    let facing = arm.by_curvature
+                        + next.by_curvature
                         + unsafe {
                             let offsets = layout.opposite()[step].as_ptr().add(lane);
                             Lane::gather1(simd, arrays.moments.at(0), offsets)

@@ -24,6 +24,8 @@ pub struct Forward<'a, const BENDS: bool, const LEVEL: u8> {
     pub layout: &'a Layout,
     pub arrays: &'a Arrays,
     pub index: usize,
+    /// Whether the edges' lengths are wanted.
+    pub lengths: bool,
     pub tile: &'a mut VertexTile,
 }
 
@@ -38,14 +40,15 @@ impl<const BENDS: bool, const LEVEL: u8> WithLanes for Forward<'_, BENDS, LEVEL>
 
     #[inline(always)]
     fn with_lanes<S: Records>(self, simd: S) {
-        let Self { layout, arrays, index: tile_index, tile } = self;
+        let Self { layout, arrays, index: tile_index, lengths: lengths_wanted, tile } = self;
+        // A row for each step of the longest ring, used up before the next ring begins.
+        let ring = tile.ring.as_mut_ptr();
         let zero = Lane::splat(simd, 0.0);
         let (positions, normals) = (arrays.positions.at(0), arrays.normals.at(0));
         for first in layout.vertex_tile(tile_index).step_by(Lane::<S>::COUNT) {
             let (block, lane) = (first / BLOCK, first % BLOCK);
             let steps = layout.steps[block] as usize..layout.steps[block + 1] as usize - 1;
             let neighbours = layout.neighbours.as_ptr().cast::<u32>().wrapping_add(lane);
-            let triangles = layout.triangles.as_ptr().cast::<u32>().wrapping_add(lane);
             let places = layout.places.as_ptr().cast::<u32>().wrapping_add(lane);
             // SAFETY: here and below, all offsets of the layout are within the arrays that they are for, and those
             // of vertices have whole blocks.
@@ -57,7 +60,10 @@ impl<const BENDS: bool, const LEVEL: u8> WithLanes for Forward<'_, BENDS, LEVEL>
                 (
                     Lane::gather4(simd, normals, layout.before[block].as_ptr().add(lane)),
                     minus(Lane::gather3(simd, positions, before), here),
-                    minus(Lane::gather3(simd, positions, neighbours.add(BLOCK * steps.start)), here),
+                    minus(
+                        Lane::gather3(simd, positions, neighbours.add(BLOCK * steps.start)),
+                        here,
+                    ),
                 )
             };
             let (mut last_normal, mut last_twice, mut last_arm) =
@@ -68,7 +74,7 @@ impl<const BENDS: bool, const LEVEL: u8> WithLanes for Forward<'_, BENDS, LEVEL>
             let mut flattest = zero.of(1.0);
             for step in steps.clone() {
                 let [nx, ny, nz, twice_area] =
-                    unsafe { Lane::gather4(simd, normals, triangles.add(BLOCK * step)) };
+                    unsafe { Lane::gather4_within(simd, normals, places.add(BLOCK * step)) };
                 let n = [nx, ny, nz];
                 area = area + twice_area;
                 let exists = twice_area.above(zero);
@@ -80,8 +86,9 @@ impl<const BENDS: bool, const LEVEL: u8> WithLanes for Forward<'_, BENDS, LEVEL>
                     let slope = (zero - depth) / last_twice.mul_add(cosine, last_twice);
                     flattest = flattest.min(cosine.or_else(exists, zero.of(1.0)));
                     unsafe {
-                        slope.store(arrays.bends.at(step * BLOCK + lane));
-                        length_squared.store(arrays.lengths_squared.at(step * BLOCK + lane));
+                        let [slopes, lengths] = &mut *ring.add(step - steps.start);
+                        slope.store(slopes.as_mut_ptr());
+                        length_squared.store(lengths.as_mut_ptr());
                     }
                     last_normal = n;
                     last_twice = twice_area.or_else(exists, zero.of(1.0));
@@ -105,8 +112,9 @@ impl<const BENDS: bool, const LEVEL: u8> WithLanes for Forward<'_, BENDS, LEVEL>
                     umbrella = plus_scaled(umbrella, share, plus(e, next));
                 }
                 if LEVEL >= NORMALS {
-                    let angle =
-                        unsafe { Lane::gather1(simd, arrays.angles.at(0), places.add(BLOCK * step)) };
+                    let angle = unsafe {
+                        Lane::gather1(simd, arrays.angles.at(0), places.add(BLOCK * step))
+                    };
                     normal_sum = plus_scaled(normal_sum, angle, n);
                 }
                 e = next;
@@ -121,8 +129,12 @@ impl<const BENDS: bool, const LEVEL: u8> WithLanes for Forward<'_, BENDS, LEVEL>
                 for step in steps.clone() {
                     let at = step * BLOCK + lane;
                     unsafe {
-                        let slope = Lane::load(simd, arrays.bends.at(at));
-                        let length_squared = Lane::load(simd, arrays.lengths_squared.at(at));
+                        let [slopes, lengths] = &*ring.add(step - steps.start);
+                        let slope = Lane::load(simd, slopes.as_ptr());
+                        let length_squared = Lane::load(simd, lengths.as_ptr());
+                        if lengths_wanted {
+                            length_squared.store(arrays.lengths_squared.at(at));
+                        }
                         let angle_part = arctan_over_argument(length_squared * (slope * slope));
                         let bend = (slope + slope) * angle_part;
                         bend.store(arrays.bends.at(at));
@@ -165,7 +177,7 @@ impl Ring<'_> {
     /// together; returns the sum of l φ.
     ///
     /// # Safety
-    /// The pass before has filled positions, normals, bends and lengths.
+    /// The pass before has filled positions, normals and bends.
     #[cold]
     #[inline(never)]
     unsafe fn careful<S: Records>(&self, simd: S) -> Lane<S> {
@@ -183,11 +195,10 @@ impl Ring<'_> {
             let mut last = record(&arrays.normals, layout.before[self.block][lane + other]);
             for step in steps.clone() {
                 let e = record(&arrays.positions, layout.neighbours[step][lane + other]) - here;
-                let n = record(&arrays.normals, layout.triangles[step][lane + other]);
-                let at = step * BLOCK + lane + other;
-                // SAFETY: there are bends and lengths for each step and lane.
-                let (bend, length_squared) =
-                    unsafe { (&mut *arrays.bends.at(at), *arrays.lengths_squared.at(at)) };
+                let n = record(&arrays.normals, layout.places[step][lane + other] & !3);
+                let length_squared = e.norm_squared();
+                // SAFETY: there are bends for each step and lane.
+                let bend = unsafe { &mut *arrays.bends.at(step * BLOCK + lane + other) };
                 let cosine = n.dot(&last);
                 // Where a ring has ended, the normals are zero, and so is the bend.
                 if cosine < POLYNOMIAL_LIMIT && n.norm_squared() > 0.0 {

@@ -23,17 +23,31 @@ pub trait Records: Simd {
     /// `offsets` has as many entries as there are lanes, and four numbers follow `base` at each.
     #[inline(always)]
     unsafe fn gather3(self, base: *const f64, offsets: *const u32) -> [Self::f64s; 3] {
-        let [a, b, c, _] = unsafe { self.gather4(base, offsets) };
+        let [a, b, c, _] = unsafe { self.gather4::<false>(base, offsets) };
         [a, b, c]
     }
 
-    /// A record of four numbers for each lane.
+    /// A record of four numbers for each lane. With `WITHIN`, offsets may point into a record instead of to its
+    /// beginning.
     ///
     /// # Safety
     /// As [`Records::gather3`].
     #[inline(always)]
-    unsafe fn gather4(self, base: *const f64, offsets: *const u32) -> [Self::f64s; 4] {
-        unsafe { gather::<Self, 4, 1>(self, base, offsets) }
+    unsafe fn gather4<const WITHIN: bool>(
+        self,
+        base: *const f64,
+        offsets: *const u32,
+    ) -> [Self::f64s; 4] {
+        unsafe {
+            if WITHIN {
+                let mut starts = [0; BLOCK];
+                for (lane, start) in starts[..Self::F64_LANES].iter_mut().enumerate() {
+                    *start = *offsets.add(lane) & !3;
+                }
+                return gather::<Self, 4, 1>(self, base, starts.as_ptr());
+            }
+            gather::<Self, 4, 1>(self, base, offsets)
+        }
     }
 
     /// Two numbers for each lane, at its offset divided by `BY`.
@@ -127,7 +141,7 @@ mod x86 {
 
     /// Two numbers of the records of two lanes.
     #[inline(always)]
-    unsafe fn pair<const BY: u32>(
+    unsafe fn pair<const BY: u32, const KEEP: u32>(
         simd: V3,
         base: *const f64,
         low: *const u32,
@@ -135,15 +149,15 @@ mod x86 {
     ) -> __m256d {
         // SAFETY: the caller's records are there.
         unsafe {
-            let low = simd.sse2._mm_loadu_pd(base.add((*low / BY) as usize));
-            let high = simd.sse2._mm_loadu_pd(base.add((*high / BY) as usize));
+            let low = simd.sse2._mm_loadu_pd(base.add(((*low & KEEP) / BY) as usize));
+            let high = simd.sse2._mm_loadu_pd(base.add(((*high & KEEP) / BY) as usize));
             simd.avx._mm256_insertf128_pd::<1>(simd.avx._mm256_castpd128_pd256(low), high)
         }
     }
 
     /// Two numbers of the records of lanes 0 and 2, and of lanes 1 and 3.
     #[inline(always)]
-    unsafe fn halves<const BY: u32>(
+    unsafe fn halves<const BY: u32, const KEEP: u32>(
         simd: V3,
         base: *const f64,
         offsets: *const u32,
@@ -151,8 +165,8 @@ mod x86 {
         // SAFETY: the caller's records are there.
         unsafe {
             [
-                pair::<BY>(simd, base, offsets, offsets.add(2)),
-                pair::<BY>(simd, base, offsets.add(1), offsets.add(3)),
+                pair::<BY, KEEP>(simd, base, offsets, offsets.add(2)),
+                pair::<BY, KEEP>(simd, base, offsets.add(1), offsets.add(3)),
             ]
         }
     }
@@ -171,17 +185,32 @@ mod x86 {
         #[inline(always)]
         unsafe fn gather3(self, base: *const f64, offsets: *const u32) -> [Self::f64s; 3] {
             // SAFETY: the caller's records are there.
-            let (low, high) =
-                unsafe { (halves::<1>(self, base, offsets), halves::<1>(self, base.add(2), offsets)) };
+            let (low, high) = unsafe {
+                (
+                    halves::<1, { u32::MAX }>(self, base, offsets),
+                    halves::<1, { u32::MAX }>(self, base.add(2), offsets),
+                )
+            };
             let [a, b] = columns(self, low);
             [cast!(a), cast!(b), cast!(self.avx._mm256_unpacklo_pd(high[0], high[1]))]
         }
 
         #[inline(always)]
-        unsafe fn gather4(self, base: *const f64, offsets: *const u32) -> [Self::f64s; 4] {
+        unsafe fn gather4<const WITHIN: bool>(
+            self,
+            base: *const f64,
+            offsets: *const u32,
+        ) -> [Self::f64s; 4] {
             // SAFETY: the caller's records are there.
-            let (low, high) =
-                unsafe { (halves::<1>(self, base, offsets), halves::<1>(self, base.add(2), offsets)) };
+            let (low, high) = unsafe {
+                if WITHIN {
+                    let low = halves::<1, { !3 }>(self, base, offsets);
+                    (low, halves::<1, { !3 }>(self, base.add(2), offsets))
+                } else {
+                    let low = halves::<1, { u32::MAX }>(self, base, offsets);
+                    (low, halves::<1, { u32::MAX }>(self, base.add(2), offsets))
+                }
+            };
             let ([a, b], [c, d]) = (columns(self, low), columns(self, high));
             [cast!(a), cast!(b), cast!(c), cast!(d)]
         }
@@ -193,7 +222,7 @@ mod x86 {
             offsets: *const u32,
         ) -> [Self::f64s; 2] {
             // SAFETY: the caller's records are there.
-            let [a, b] = columns(self, unsafe { halves::<BY>(self, base, offsets) });
+            let [a, b] = columns(self, unsafe { halves::<BY, { u32::MAX }>(self, base, offsets) });
             [cast!(a), cast!(b)]
         }
 
@@ -264,10 +293,16 @@ mod x86 {
         }
 
         #[inline(always)]
-        unsafe fn gather4(self, base: *const f64, offsets: *const u32) -> [Self::f64s; 4] {
+        unsafe fn gather4<const WITHIN: bool>(
+            self,
+            base: *const f64,
+            offsets: *const u32,
+        ) -> [Self::f64s; 4] {
             // SAFETY: as the caller says.
-            let (low, high) =
-                unsafe { ((*self).gather4(base, offsets), (*self).gather4(base, offsets.add(4))) };
+            let (low, high) = unsafe {
+                let low = (*self).gather4::<WITHIN>(base, offsets);
+                (low, (*self).gather4::<WITHIN>(base, offsets.add(4)))
+            };
             [
                 join(self, low[0], high[0]),
                 join(self, low[1], high[1]),
@@ -462,7 +497,21 @@ impl<S: Records> Lane<S> {
     #[inline(always)]
     pub unsafe fn gather4(simd: S, base: *const f64, offsets: *const u32) -> [Self; 4] {
         // SAFETY: as the caller says.
-        let [a, b, c, d] = unsafe { simd.gather4(base, offsets) };
+        Self::four(simd, unsafe { simd.gather4::<false>(base, offsets) })
+    }
+
+    /// [`Records::gather4`] with offsets that may point into a record.
+    ///
+    /// # Safety
+    /// As there.
+    #[inline(always)]
+    pub unsafe fn gather4_within(simd: S, base: *const f64, offsets: *const u32) -> [Self; 4] {
+        // SAFETY: as the caller says.
+        Self::four(simd, unsafe { simd.gather4::<true>(base, offsets) })
+    }
+
+    #[inline(always)]
+    fn four(simd: S, [a, b, c, d]: [S::f64s; 4]) -> [Self; 4] {
         [
             Self { simd, value: a },
             Self { simd, value: b },

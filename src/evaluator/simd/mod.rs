@@ -68,7 +68,6 @@ struct Sweep<'a, 't> {
     terms: &'a [&'t Term<'t>],
     needs: Needs,
     positions: &'a [f64],
-    wants_energy: bool,
 }
 
 impl SimdEvaluator {
@@ -93,7 +92,9 @@ impl SimdEvaluator {
     /// Let so many threads share the work, or as many as the system has left.
     pub fn set_threads(&mut self, threads: usize) {
         self.team = Team::new(threads).unwrap_or_else(|_| alone());
-        let scratch = || Scratch { triangles: TriangleTile::EMPTY, vertices: VertexTile::EMPTY };
+        let steps = self.layout.longest;
+        let scratch =
+            || Scratch { triangles: TriangleTile::EMPTY, vertices: VertexTile::new(steps) };
         self.scratch.resize_with(self.team.size(), scratch);
     }
 
@@ -105,8 +106,7 @@ impl SimdEvaluator {
         contributions: &mut [Contribution],
         forces: Option<&mut [f64]>,
     ) -> Result<()> {
-        let needs =
-            terms.iter().fold(Needs::empty(), |all, term| all | term.potential.needs(term));
+        let needs = terms.iter().fold(Needs::empty(), |all, term| all | term.potential.needs(term));
         self.make_room(needs, terms.len());
         let sweep = Sweep {
             level: self.level,
@@ -115,7 +115,6 @@ impl SimdEvaluator {
             terms,
             needs,
             positions,
-            wants_energy: !contributions.is_empty(),
         };
         let sums = Parts::new(&mut self.triangle_sums);
         let parts = Parts::new(&mut self.contributions);
@@ -163,10 +162,10 @@ impl SimdEvaluator {
         let steps = BLOCK * layout.neighbours.len();
         if needs.intersects(Needs::EDGES | Needs::CURVATURES) {
             arrays.bends.require(steps, 0.0);
-            // Where a ring has ended, any length will do.
-            arrays.lengths_squared.require(steps, 1.0);
         }
         if needs.contains(Needs::EDGES) {
+            // Where a ring has ended, any length will do.
+            arrays.lengths_squared.require(steps, 1.0);
             arrays.moments.require(steps, 0.0);
         }
         if needs.contains(Needs::TRIANGLES) {
@@ -265,7 +264,9 @@ impl Sweep<'_, '_> {
         for (index, &particle) in particles[share].iter().enumerate() {
             let position = all[particle as usize];
             // SAFETY: each member writes the vertices of its share.
-            unsafe { *records.add(index) = [position[0] - x, position[1] - y, position[2] - z, 0.0] };
+            unsafe {
+                *records.add(index) = [position[0] - x, position[1] - y, position[2] - z, 0.0]
+            };
         }
     }
 
@@ -315,10 +316,11 @@ impl Sweep<'_, '_> {
         let (layout, arrays, level, needs) = (self.layout, self.arrays, self.level, self.needs);
         contributions.fill(Contribution::default());
         let bends = needs.intersects(Needs::EDGES | Needs::CURVATURES);
+        let lengths = needs.contains(Needs::EDGES);
         macro_rules! forward {
             ($bends:literal $vectors:expr) => {{
                 type Pass<'a> = forward::Forward<'a, $bends, { $vectors }>;
-                dispatch(level, Pass { layout, arrays, index, tile })
+                dispatch(level, Pass { layout, arrays, index, lengths, tile })
             }};
         }
         match (bends, vector_level(needs)) {
@@ -332,7 +334,7 @@ impl Sweep<'_, '_> {
             (true, VECTORS) => forward!(true VECTORS),
             (true, _) => forward!(true NORMALS),
         }
-        if needs.contains(Needs::EDGES) {
+        if lengths {
             self.edges(index, contributions);
         }
         if !needs.contains(Needs::VERTICES) {
@@ -391,9 +393,9 @@ impl Sweep<'_, '_> {
             }
             // Past the end of a ring comes its first edge again.
             let nothing = 4 * layout.triangle_ids.len() as u32;
-            let triangles = &layout.triangles[steps];
+            let places = &layout.places[steps];
             for lane in 0..BLOCK {
-                let ends = triangles.iter().position(|lanes| lanes[lane] == nothing);
+                let ends = places.iter().position(|lanes| lanes[lane] == nothing);
                 if let Some(end) = ends {
                     moments[end][lane] = moments[0][lane];
                 }

@@ -6,7 +6,6 @@ use crate::potentials::{
     Contribution, Needs, Place, Sums, Term, Triangle, TriangleFormula, TriangleSlopes, Vertex,
     VertexFormula,
 };
-use crate::real::Real;
 
 /// One quantity of the elements of a tile.
 #[derive(Clone, Copy)]
@@ -62,6 +61,8 @@ pub struct VertexColumns {
 pub struct VertexTile {
     pub known: VertexColumns,
     pub slopes: VertexColumns,
+    /// tan(φ/2) / l and l² of the edges of a block, step by step.
+    pub ring: Vec<[[f64; BLOCK]; 2]>,
 }
 
 /// The edges at a block of vertices, step by step of their rings.
@@ -174,8 +175,11 @@ impl VertexColumns {
 }
 
 impl VertexTile {
-    /// Nothing.
-    pub const EMPTY: Self = Self { known: VertexColumns::ZERO, slopes: VertexColumns::ZERO };
+    /// For rings of so many steps.
+    pub fn new(steps: usize) -> Self {
+        let (known, slopes) = (VertexColumns::ZERO, VertexColumns::ZERO);
+        Self { known, slopes, ring: vec![[[0.0; BLOCK]; 2]; steps] }
+    }
 
     /// Apply a formula to the elements with these indices; returns the sum.
     pub fn apply<F: VertexFormula>(

@@ -143,7 +143,8 @@ fn angle<R: Real>(opposite: R, adjacent: R) -> R {
     // tan(α/2) in the form that does not cancel, on either side of a right angle.
     let one = opposite.of(1.0);
     let obtuse = adjacent.zero().above(adjacent);
-    let half = ((hypotenuse - adjacent) / opposite).or_else(obtuse, opposite / (hypotenuse + adjacent));
+    let half =
+        ((hypotenuse - adjacent) / opposite).or_else(obtuse, opposite / (hypotenuse + adjacent));
     let quarter = half / (one + half.mul_add(half, one).sqrt());
     let eighth = quarter / (one + quarter.mul_add(quarter, one).sqrt());
     eighth * arctan_over_argument(eighth * eighth) * 8.0
