@@ -6,6 +6,8 @@
 
 #![allow(non_snake_case, reason = "names follow OpenMM's C API")]
 
+mod dynamics;
+
 use crate::error::{Error, Result};
 use crate::membrane::{self, Membrane};
 use crate::mesh::orientation;
@@ -387,19 +389,28 @@ pub unsafe extern "C" fn Helfrich_Membrane_evaluate(
 
 unsafe extern "C" {
     fn helfrich_shim_registerSerialization() -> c_int;
+    fn helfrich_shim_registerPlatform();
+    fn helfrich_shim_adoptKernels();
     fn helfrich_shim_createImpl(force: *const c_void) -> *mut c_void;
 }
 
-/// OpenMM's plugin entry point for platforms; this plugin has none of its own.
+/// OpenMM's plugin entry point for platforms: registers the platform `Helfrich`.
 #[unsafe(no_mangle)]
-pub extern "C" fn registerPlatforms() {}
+pub extern "C" fn registerPlatforms() {
+    // SAFETY: the shim's function takes nothing and throws nothing.
+    unsafe { helfrich_shim_registerPlatform() };
+}
 
 /// OpenMM's plugin entry point for kernels. The forces need none; their XML readers are registered here.
 #[unsafe(no_mangle)]
 pub extern "C" fn registerKernelFactories() {
-    // SAFETY: the shim's function takes nothing and throws nothing. If OpenMM is of another version it says
+    // SAFETY: the shim's functions take nothing and throw nothing. If OpenMM is of another version the first says
     // so on the standard error and registers nothing: a plugin in a folder must not stop the others.
-    unsafe { helfrich_shim_registerSerialization() };
+    unsafe {
+        if helfrich_shim_registerSerialization() == 0 {
+            helfrich_shim_adoptKernels();
+        }
+    }
 }
 
 /// Make the implementation of a force. The force classes are compiled into several libraries (this one,

@@ -30,8 +30,10 @@ use std::any::Any;
 use std::cell::UnsafeCell;
 use std::hint::spin_loop;
 use std::io;
+use std::marker::PhantomData;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::slice;
 use std::sync::atomic::Ordering::{AcqRel, Acquire, Relaxed, Release, SeqCst};
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -299,6 +301,35 @@ impl Member<'_> {
     }
 }
 
+/// A slice that the members of a team divide among themselves.
+pub struct Parts<'slice, T> {
+    start: *mut T,
+    length: usize,
+    borrow: PhantomData<&'slice mut [T]>,
+}
+
+// SAFETY: a shared `Parts` hands out exclusive parts of its slice only, as `part` demands of its callers; so it is
+// like sending these parts to other threads.
+unsafe impl<T: Send> Sync for Parts<'_, T> {}
+
+impl<'slice, T> Parts<'slice, T> {
+    /// Divide a slice, which nobody else can use meanwhile.
+    pub fn new(slice: &'slice mut [T]) -> Self {
+        Self { start: slice.as_mut_ptr(), length: slice.len(), borrow: PhantomData }
+    }
+
+    /// A part of the slice; panics if there is no such part.
+    ///
+    /// # Safety
+    /// Parts that are in use at the same time must not overlap.
+    #[allow(clippy::mut_from_ref, reason = "the caller promises that parts are apart")]
+    pub unsafe fn part(&self, range: Range<usize>) -> &mut [T] {
+        assert!(range.start <= range.end && range.end <= self.length, "no part {range:?}");
+        // SAFETY: the range lies in the slice, and the caller promises that nobody else uses it.
+        unsafe { slice::from_raw_parts_mut(self.start.add(range.start), range.len()) }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -366,6 +397,32 @@ mod tests {
                 assert!(hits.iter().all(|hit| hit.load(Relaxed) == 1));
             }
         }
+    }
+
+    #[test]
+    fn members_fill_their_parts_of_a_slice() {
+        for size in SIZES {
+            let mut team = Team::new(size).unwrap();
+            let mut numbers = vec![0; 1001];
+            let parts = Parts::new(&mut numbers);
+            team.run(|member| {
+                let share = member.share(1001);
+                // SAFETY: the shares of members do not overlap.
+                let part = unsafe { parts.part(share.clone()) };
+                for (number, i) in part.iter_mut().zip(share) {
+                    *number = i;
+                }
+            });
+            assert!(numbers.iter().enumerate().all(|(i, &number)| number == i));
+        }
+    }
+
+    #[test]
+    #[should_panic(expected = "no part 2..4")]
+    fn there_is_no_part_beyond_the_end() {
+        let mut numbers = [1, 2, 3];
+        // SAFETY: there is no other part.
+        unsafe { Parts::new(&mut numbers).part(2..4) };
     }
 
     #[test]
