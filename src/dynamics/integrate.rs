@@ -273,3 +273,120 @@ pub fn clear(team: Option<&mut Team>, forces: &mut [f64]) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::instructions::{Fused, Plain};
+    use super::*;
+
+    const SIZE: usize = 100;
+    const STEP: f64 = 0.003;
+
+    /// Positions, velocities and forces without any pattern.
+    fn arrays(num_particles: usize) -> [Vec<f64>; 3] {
+        let mut stream = Stream { key: [17, 0], draws: 0 };
+        std::array::from_fn(|_| {
+            let mut values = vec![0.0; 3 * num_particles];
+            super::super::random::normals(&mut stream, &mut values);
+            values
+        })
+    }
+
+    fn masses(num_particles: usize) -> Vec<f64> {
+        (0..num_particles).map(|i| if i % 5 == 2 { 0.0 } else { 1.0 + i as f64 }).collect()
+    }
+
+    fn langevin_steps(masses: &[f64], threads: usize, steps: usize) -> [Vec<f64>; 2] {
+        let dynamics = Dynamics::new(masses);
+        let [mut positions, mut velocities, forces] = arrays(masses.len());
+        let mut stream = Stream { key: [1, 2], draws: 0 };
+        let mut team = Team::new(threads).unwrap();
+        for _ in 0..steps {
+            let particles = Particles {
+                positions: &mut positions,
+                velocities: &mut velocities,
+                forces: &forces,
+            };
+            dynamics.langevin_middle(Some(&mut team), particles, &mut stream, (STEP, 1.5, 2.5));
+        }
+        assert_eq!(stream.draws, steps as u64);
+        [positions, velocities]
+    }
+
+    /// The loops of the kernels against the scheme as the textbook has it, one component after the other.
+    #[test]
+    fn langevin_steps_are_those_of_the_scheme() {
+        let masses = masses(SIZE);
+        let [positions, velocities] = langevin_steps(&masses, 1, 1);
+        let [old_positions, old_velocities, forces] = arrays(SIZE);
+        let mut noise = vec![0.0; 3 * SIZE];
+        super::super::random::normals(&mut Stream { key: [1, 2], draws: 0 }, &mut noise);
+        let scale = (-STEP * 1.5).exp();
+        for i in 0..3 * SIZE {
+            let mass = masses[i / 3];
+            let (mut x, mut v) = (old_positions[i], old_velocities[i]);
+            if mass != 0.0 {
+                v += STEP * forces[i] / mass;
+                x += v * STEP / 2.0;
+                v = scale * v + ((1.0 - scale * scale) * 2.5 / mass).sqrt() * noise[i];
+                x += v * STEP / 2.0;
+            }
+            assert!((positions[i] - x).abs() < 1e-14 && (velocities[i] - v).abs() < 1e-14, "{i}");
+        }
+    }
+
+    #[test]
+    fn threads_do_not_change_the_bits() {
+        let masses = masses(PARALLEL_FROM + 7);
+        let one = langevin_steps(&masses, 1, 2);
+        for threads in [2, 3] {
+            assert_eq!(langevin_steps(&masses, threads, 2), one);
+        }
+        // The first particles do not notice how many there are.
+        assert_eq!(langevin_steps(&masses[..SIZE], 1, 2)[0][..], one[0][..3 * SIZE]);
+    }
+
+    /// Without fused multiply-adds, the random numbers differ by rounding and nothing else does.
+    #[test]
+    fn instructions_change_the_last_digits_of_noise_only() {
+        fn step<A: Arithmetic, S: Scheme>(scheme: &S) -> [Vec<f64>; 2] {
+            let [mut positions, mut velocities, forces] = arrays(SIZE);
+            Advance {
+                scheme,
+                stream: &Stream { key: [1, 2], draws: 3 },
+                first_group: 0,
+                masses: MassesOf::Equal(0.02, 0.02f64.sqrt()),
+                positions: &mut positions,
+                velocities: &mut velocities,
+                forces: &forces,
+            }
+            .execute::<A>();
+            [positions, velocities]
+        }
+        let verlet = Verlet { step: STEP, inverse_step: 1.0 / STEP };
+        assert_eq!(step::<Plain, _>(&verlet), step::<Fused, _>(&verlet));
+        let langevin = LangevinMiddle { step: STEP, half_step: STEP / 2.0, scale: 0.9, noise: 1.0 };
+        let (plain, fused) = (step::<Plain, _>(&langevin), step::<Fused, _>(&langevin));
+        for (a, b) in plain.iter().flatten().zip(fused.iter().flatten()) {
+            assert!((a - b).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn forces_are_cleared_with_and_without_threads() {
+        for (length, threads) in [(0, 1), (7, 2), (3 * PARALLEL_FROM + 1, 3)] {
+            let mut forces = vec![1.0; length];
+            clear(Some(&mut Team::new(threads).unwrap()), &mut forces);
+            assert!(forces.iter().all(|&force| force == 0.0));
+        }
+    }
+
+    #[test]
+    #[should_panic(expected = "as many masses as particles")]
+    fn masses_and_particles_must_match() {
+        let [mut positions, mut velocities, forces] = arrays(SIZE);
+        let particles =
+            Particles { positions: &mut positions, velocities: &mut velocities, forces: &forces };
+        Dynamics::new(&[1.0, 2.0]).verlet(None, particles, STEP);
+    }
+}

@@ -11,7 +11,6 @@
 
 #include <istream>
 #include <ostream>
-#include <sstream>
 
 using namespace HelfrichPlugin;
 using namespace OpenMM;
@@ -284,11 +283,6 @@ void HelfrichIntegrateBrownianStepKernel::initialize(const System& system, const
 void HelfrichIntegrateBrownianStepKernel::execute(ContextImpl& context, const BrownianIntegrator& integrator) {
     if (step.isDelegated())
         return step.reference.getAs<IntegrateBrownianStepKernel>().execute(context, integrator);
-    if (!(integrator.getFriction() > 0)) {
-        std::stringstream message;
-        message << "BrownianIntegrator: friction must be above zero, got " << integrator.getFriction();
-        throw OpenMMException(message.str());
-    }
     HelfrichParticleArrays particles = step.getParticles();
     check(Helfrich_Dynamics_brownian(step.dynamics, step.team, &particles, stream, integrator.getStepSize(),
                                      integrator.getFriction(), BOLTZ * integrator.getTemperature()));
