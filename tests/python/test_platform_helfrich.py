@@ -486,8 +486,8 @@ class TestDistributions:
 
     @pytest.mark.parametrize("platform", ["Reference", "Helfrich"])
     def test_a_harmonic_trap(self, platform):
-        """The variance of positions is kT/k exactly in this scheme, that of velocities up to a factor
-        1 − (ω dt / 2)² (doi:10.1021/acs.jpca.9b02771).
+        """The variance of positions is exactly kT/k in this scheme, that of velocities up to a
+        factor 1 − (ω dt / 2)² (doi:10.1021/acs.jpca.9b02771).
         """
         mass, stiffness, step = 50.0, 20_000.0, 0.02
         integrator = mm.LangevinMiddleIntegrator(TEMPERATURE, 20, step)
