@@ -3,7 +3,7 @@
 //! A time step of a small membrane takes some ten microseconds and needs its threads to meet several times. A
 //! general pool costs as much as there is to gain: `rayon::broadcast` takes several microseconds a call.
 //! The members of a [`Team`] stay at their post instead. Within a run they meet at barriers that spin; between
-//! runs they spin for [`IDLE_SPIN`], then sleep, so that an idle simulation leaves its cores to others.
+//! runs they spin for `IDLE_SPIN`, then sleep, so that an idle simulation leaves its cores to others.
 //! Whoever waits for longer than the work of a step takes sleeps, too, so that a team with more members than there
 //! are free cores is slow but never stands still: threads that spin or yield would burn the time that
 //! the system has for those that they wait for.
