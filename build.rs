@@ -126,11 +126,11 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
 /// OpenMM's own C API, for Rust users and the tests.
 fn bind_c_api(include: &Path, site_packages: Option<&Path>) {
     let wheel = site_packages.map(|path| path.join("clang/native"));
-    if let Some(folder) = wheel.filter(|folder| folder.exists()) {
-        if env::var_os("LIBCLANG_PATH").is_none() {
-            // SAFETY: a build script has one thread.
-            unsafe { env::set_var("LIBCLANG_PATH", folder) };
-        }
+    if let Some(folder) = wheel.filter(|folder| folder.exists())
+        && env::var_os("LIBCLANG_PATH").is_none()
+    {
+        // SAFETY: a build script has one thread.
+        unsafe { env::set_var("LIBCLANG_PATH", folder) };
     }
     let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
     let bindings = std::panic::catch_unwind(|| {

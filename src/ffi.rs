@@ -6,6 +6,8 @@
 
 #![allow(non_snake_case, reason = "names follow OpenMM's C API")]
 
+mod dynamics;
+
 use crate::error::{Error, Result};
 use crate::membrane::{self, Membrane};
 use crate::mesh::orientation;
@@ -355,7 +357,17 @@ pub unsafe extern "C" fn Helfrich_Membrane_checkTerm(
     guarded(subject, || unsafe { &*membrane }.check(&unsafe { (*term).term() }))
 }
 
-/// Evaluate terms together. `forces` may be null; otherwise forces are added to it.
+/// Let so many threads share evaluations, where that turns out faster; 0 for as many as there are.
+///
+/// # Safety
+/// `membrane` must be alive and used by no other thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Membrane_setThreads(membrane: *mut Membrane, threads: c_int) {
+    unsafe { &mut *membrane }.set_threads(usize::try_from(threads).unwrap_or(0));
+}
+
+/// Evaluate terms together. `contributions` may be null; then no energies are computed. `forces` may be null;
+/// otherwise forces are added to it.
 ///
 /// # Safety
 /// `subject` must end with a NUL; `membrane` must be alive and used by no other thread; `terms` and
@@ -374,7 +386,11 @@ pub unsafe extern "C" fn Helfrich_Membrane_evaluate(
     guarded(unsafe { text(subject) }, || {
         let (count, length) = (num_terms as usize, 3 * num_particles as usize);
         let inputs = unsafe { slice(terms, count) };
-        let contributions = unsafe { slice::from_raw_parts_mut(contributions, count) };
+        let contributions = if contributions.is_null() {
+            &mut []
+        } else {
+            unsafe { slice::from_raw_parts_mut(contributions, count) }
+        };
         let positions = unsafe { slice(positions, length) };
         let forces =
             (!forces.is_null()).then(|| unsafe { slice::from_raw_parts_mut(forces, length) });
@@ -387,19 +403,28 @@ pub unsafe extern "C" fn Helfrich_Membrane_evaluate(
 
 unsafe extern "C" {
     fn helfrich_shim_registerSerialization() -> c_int;
+    fn helfrich_shim_registerPlatform();
+    fn helfrich_shim_adoptKernels();
     fn helfrich_shim_createImpl(force: *const c_void) -> *mut c_void;
 }
 
-/// OpenMM's plugin entry point for platforms; this plugin has none of its own.
+/// OpenMM's plugin entry point for platforms: registers the platform `Helfrich`.
 #[unsafe(no_mangle)]
-pub extern "C" fn registerPlatforms() {}
+pub extern "C" fn registerPlatforms() {
+    // SAFETY: the shim's function takes nothing and throws nothing.
+    unsafe { helfrich_shim_registerPlatform() };
+}
 
 /// OpenMM's plugin entry point for kernels. The forces need none; their XML readers are registered here.
 #[unsafe(no_mangle)]
 pub extern "C" fn registerKernelFactories() {
-    // SAFETY: the shim's function takes nothing and throws nothing. If OpenMM is of another version it says
+    // SAFETY: the shim's functions take nothing and throw nothing. If OpenMM is of another version the first says
     // so on the standard error and registers nothing: a plugin in a folder must not stop the others.
-    unsafe { helfrich_shim_registerSerialization() };
+    unsafe {
+        if helfrich_shim_registerSerialization() == 0 {
+            helfrich_shim_adoptKernels();
+        }
+    }
 }
 
 /// Make the implementation of a force. The force classes are compiled into several libraries (this one,

@@ -30,6 +30,7 @@
 #![warn(missing_docs)]
 
 pub mod c_api;
+pub mod dynamics;
 pub mod error;
 pub mod evaluator;
 pub mod ffi;

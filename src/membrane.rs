@@ -35,6 +35,11 @@ impl Membrane {
         Ok(Self { topology, evaluator, num_particles })
     }
 
+    /// Let so many threads share evaluations, where that turns out faster; 0 for as many as there are.
+    pub fn set_threads(&mut self, threads: usize) {
+        self.evaluator.set_threads(threads);
+    }
+
     /// The mesh.
     pub fn topology(&self) -> &Topology {
         &self.topology

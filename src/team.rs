@@ -3,9 +3,10 @@
 //! A time step of a small membrane takes some ten microseconds and needs its threads to meet several times. A
 //! general pool costs as much as there is to gain: `rayon::broadcast` takes several microseconds a call.
 //! The members of a [`Team`] stay at their post instead. Within a run they meet at barriers that spin; between
-//! runs they spin for [`IDLE_SPIN`], then sleep, so that an idle simulation leaves its cores to others.
-//! Whoever waits for longer than the work of a step takes gives its core away, so that a team with
-//! more members than there are cores is slow but never stands still.
+//! runs they spin for `IDLE_SPIN`, then sleep, so that an idle simulation leaves its cores to others.
+//! Whoever waits for longer than the work of a step takes sleeps, too, so that a team with more members than there
+//! are free cores is slow but never stands still: threads that spin or yield would burn the time that
+//! the system has for those that they wait for.
 //!
 //! ```
 //! use openmm_helfrich::team::Team;
@@ -34,17 +35,17 @@ use std::marker::PhantomData;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::slice;
-use std::sync::atomic::Ordering::{AcqRel, Acquire, Relaxed, Release, SeqCst};
+use std::sync::atomic::Ordering::{AcqRel, Acquire, Relaxed, SeqCst};
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 /// How long members look out for the next run before they sleep.
 const IDLE_SPIN: Duration = Duration::from_micros(50);
 
-/// How often a waiting member looks before it lets other threads have its core: some 10 µs.
-const PATIENCE: u32 = 500;
+/// How often a waiting member looks before it sleeps: some 40 µs.
+const PATIENCE: u32 = 2000;
 
 /// The number of the run that ends all runs.
 const STOP: u64 = u64::MAX;
@@ -76,8 +77,12 @@ struct Shared {
     job: UnsafeCell<Option<Job>>,
     /// What the first member to panic said.
     panic: Mutex<Option<Box<dyn Any + Send>>>,
-    /// Which members sleep, or are about to.
+    /// Which members sleep between runs, or are about to.
     sleeping: Box<[Apart<AtomicBool>]>,
+    /// How many members sleep within a run, or are about to.
+    blocked: Apart<AtomicU32>,
+    bed: Mutex<()>,
+    bell: Condvar,
 }
 
 /// What members at a barrier watch.
@@ -121,6 +126,9 @@ impl Team {
             job: UnsafeCell::new(None),
             panic: Mutex::new(None),
             sleeping: (0..size).map(|_| Apart(AtomicBool::new(false))).collect(),
+            blocked: Apart(AtomicU32::new(0)),
+            bed: Mutex::new(()),
+            bell: Condvar::new(),
         });
         // A team that fails half-way is dropped here, which sends those home that have come.
         let mut team = Self { shared, workers: Vec::with_capacity(size - 1) };
@@ -159,7 +167,7 @@ impl Team {
         shared.run.0.store(shared.run.0.load(Relaxed) + 1, SeqCst);
         self.wake();
         shared.take_part(0);
-        shared.wait(|| shared.finished.0.load(Acquire) as usize == shared.size - 1);
+        shared.wait(|| shared.finished.0.load(SeqCst) as usize == shared.size - 1);
         shared.finished.0.store(0, Relaxed);
         // SAFETY: all members have finished.
         unsafe { *shared.job.get() = None };
@@ -201,7 +209,8 @@ impl Shared {
                 return;
             }
             self.take_part(index);
-            self.finished.0.fetch_add(1, Release);
+            self.finished.0.fetch_add(1, SeqCst);
+            self.ring();
         }
     }
 
@@ -245,19 +254,34 @@ impl Shared {
                 let mut first = self.panic.lock().unwrap_or_else(PoisonError::into_inner);
                 first.get_or_insert(panic);
             }
-            self.gate.0.broken.store(true, Release);
+            self.gate.0.broken.store(true, SeqCst);
+            self.ring();
         }
     }
 
+    /// Wait for what another member does before it calls [`Self::ring`]; both use SeqCst.
     fn wait(&self, is_over: impl Fn() -> bool) {
-        let mut patience = if self.spins { PATIENCE } else { 0 };
-        while !is_over() {
-            if patience > 0 {
-                patience -= 1;
-                spin_loop();
-            } else {
-                thread::yield_now();
+        let patience = if self.spins { PATIENCE } else { 0 };
+        for _ in 0..patience {
+            if is_over() {
+                return;
             }
+            spin_loop();
+        }
+        let mut bed = self.bed.lock().unwrap_or_else(PoisonError::into_inner);
+        self.blocked.0.fetch_add(1, SeqCst);
+        while !is_over() {
+            bed = self.bell.wait(bed).unwrap_or_else(PoisonError::into_inner);
+        }
+        self.blocked.0.fetch_sub(1, SeqCst);
+    }
+
+    /// Wake those who wait. In the one order of SeqCst, either this sees that somebody is blocked, or he looks
+    /// after the change that he waits for; and he holds the lock from before he looks until he sleeps.
+    fn ring(&self) {
+        if self.blocked.0.load(SeqCst) > 0 {
+            drop(self.bed.lock().unwrap_or_else(PoisonError::into_inner));
+            self.bell.notify_all();
         }
     }
 }
@@ -283,11 +307,12 @@ impl Member<'_> {
         let passed = gate.passed.load(Relaxed);
         if shared.arrived.0.fetch_add(1, AcqRel) as usize == shared.size - 1 {
             shared.arrived.0.store(0, Relaxed);
-            gate.passed.store(passed.wrapping_add(1), Release);
+            gate.passed.store(passed.wrapping_add(1), SeqCst);
+            shared.ring();
             return;
         }
-        let is_open = || gate.passed.load(Acquire) != passed;
-        shared.wait(|| is_open() || gate.broken.load(Relaxed));
+        let is_open = || gate.passed.load(SeqCst) != passed;
+        shared.wait(|| is_open() || gate.broken.load(SeqCst));
         if !is_open() {
             // Unwinds without a message: the one who broke the barrier has given his.
             resume_unwind(Box::new(Abandoned));
@@ -341,7 +366,7 @@ mod tests {
         for size in SIZES {
             let mut team = Team::new(size).unwrap();
             let counts: Vec<_> = (0..size).map(|_| AtomicU64::new(0)).collect();
-            for round in 1..=2000 {
+            for round in 1..=500 {
                 team.run(|member| {
                     assert_eq!(member.size(), size);
                     counts[member.index()].fetch_add(1, Relaxed);
@@ -359,7 +384,7 @@ mod tests {
             // Plain writes through pointers, so that a missing order shows in the numbers.
             let slots: Vec<_> = (0..size).map(|_| Apart(AtomicU64::new(1))).collect();
             let mut expected = vec![1u64; size];
-            for _ in 0..200 {
+            for _ in 0..50 {
                 team.run(|member| {
                     for _ in 0..10 {
                         let me = member.index();

@@ -17,8 +17,8 @@ pub enum InstructionSet {
     Scalar,
 }
 
-/// From this many vertices on, a second thread saves more than it costs.
-const PARALLEL_VERTICES: usize = 2000;
+/// Below so many vertices several threads are never faster, whatever the processor.
+const PARALLEL_VERTICES: usize = 700;
 
 /// Evaluates any set of terms on one mesh: geometry forward, potentials, geometry backward.
 ///
@@ -40,21 +40,24 @@ impl InstructionSet {
 }
 
 impl CpuEvaluator {
-    /// Buffers for a mesh, with as many threads as pay off.
+    /// Buffers for a mesh. Threads share the work where that turns out faster.
     pub fn new(topology: Arc<Topology>) -> Self {
-        let cores = std::thread::available_parallelism().map_or(1, usize::from);
-        let threads = if topology.num_vertices() < PARALLEL_VERTICES { 1 } else { cores };
-        Self::with(topology, InstructionSet::Best, threads)
+        Self::with(topology, InstructionSet::Best, 0)
     }
 
-    /// The same with a certain instruction set and number of threads.
+    /// The same with a certain instruction set and number of threads at most, 0 for as many as there are.
     pub fn with(topology: Arc<Topology>, set: InstructionSet, threads: usize) -> Self {
-        Self { simd: SimdEvaluator::new(topology, set.level(), threads) }
+        let mut evaluator = Self { simd: SimdEvaluator::new(topology, set.level()) };
+        evaluator.set_threads(threads);
+        evaluator
     }
 
-    /// Let so many threads share the work, or fewer if the system has no more.
+    /// Let so many threads share the work, 0 for as many as there are; fewer if the system has no more.
     pub fn set_threads(&mut self, threads: usize) {
-        self.simd.set_threads(threads);
+        let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+        let threads = if threads == 0 { cores() } else { threads };
+        let small = self.simd.num_vertices() < PARALLEL_VERTICES;
+        self.simd.set_threads(if small { 1 } else { threads });
     }
 
     /// Evaluate terms at the positions of all particles, x y z of one after the other, nm.

@@ -57,7 +57,7 @@ pub struct EdgeGeometry {
 }
 
 /// tan² of 22.5°: up to a dihedral angle of 45° the angle is a polynomial in its half's tangent.
-const POLYNOMIAL_RANGE: f64 = 0.171_572_875_253_809_9;
+pub const POLYNOMIAL_RANGE: f64 = 0.171_572_875_253_809_9;
 
 /// arctan(t) / t for t² = `z` ≤ [`POLYNOMIAL_RANGE`], to 2e-18: the Chebyshev fit of degree 11 in z.
 #[inline(always)]

@@ -76,7 +76,7 @@ int main(int count, char** arguments) {
         std::vector<Vec3> positions = readPositions(arguments[3]);
         for (int i = 0; i < Platform::getNumPlatforms(); i++) {
             std::string name = Platform::getPlatform(i).getName();
-            if (name == "Reference" || name == "CPU")
+            if (name == "Reference" || name == "CPU" || name == "Helfrich")
                 printEnergies(*system, positions, name.c_str());
         }
     } catch (const std::exception& error) {

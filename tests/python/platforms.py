@@ -33,7 +33,8 @@ class Target:
 
 REFERENCE = Target("Reference", "Reference", 1e-9)
 CPU = Target("CPU", "CPU", 1e-9, {"Threads": "2"})
-ON_PROCESSOR = [REFERENCE, CPU]
+HELFRICH = Target("Helfrich", "Helfrich", 1e-9, {"Threads": "2"})
+ON_PROCESSOR = [REFERENCE, CPU, HELFRICH]
 ON_OPENCL = [
     Target("OpenCL-single", "OpenCL", 1e-4, {"Precision": "single"}),
     # Positions are doubles here; forces pass through single precision on their way.

@@ -158,3 +158,8 @@ def test_bench():
     text = run(ROOT / "benches" / "steps.py", "--quick").stdout
     assert "ratio" in text
     assert "N^" in text
+
+
+def test_bench_of_empty_steps():
+    text = run(ROOT / "benches" / "empty_steps.py", "--repeats", "1", "--sizes", "252").stdout
+    assert "Helfrich x2" in text and text.count(" 252 ") == 3

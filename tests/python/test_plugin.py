@@ -99,9 +99,9 @@ class TestMissingTools:
     @pytest.mark.parametrize(
         "tool, script, message",
         [
-            ("cargo", None, "Rust is missing (cargo is not in PATH); install Rust 1.85"),
-            ("rustc", None, "Rust is missing (rustc is not in PATH); install Rust 1.85"),
-            ("rustc", "echo rustc 1.84.1", "Rust 1.84.1 is too old; install Rust 1.85"),
+            ("cargo", None, "Rust is missing (cargo is not in PATH); install Rust 1.89"),
+            ("rustc", None, "Rust is missing (rustc is not in PATH); install Rust 1.89"),
+            ("rustc", "echo rustc 1.88.1", "Rust 1.88.1 is too old; install Rust 1.89"),
             ("rustc", "echo no toolchain; exit 1", "rustc does not run: no toolchain"),
             ("c++", None, "the C++ compiler c++ is missing; install one"),
             ("c++", "exit 1", "c++ does not compile C++17"),

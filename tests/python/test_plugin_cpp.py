@@ -123,14 +123,16 @@ def test_from_its_own_folder(program, membrane):
     """The folder of the package holds nothing but the plugin, so no failure at all is allowed."""
     output = run(program, str(_core.LIBRARY_PATH.parent), membrane[2])
     assert output.loaded == [_core.LIBRARY_PATH] and output.failures == []
-    assert_finds_and_computes(output, _core.LIBRARY_PATH, membrane, {"Reference"})
+    assert_finds_and_computes(output, _core.LIBRARY_PATH, membrane, {"Reference", "Helfrich"})
 
 
 def test_from_the_environment(program, membrane):
     """OPENMM_PLUGIN_DIR takes several folders: here OpenMM's own and the plugin's."""
     folders = f"{OWN_PLUGINS}{os.pathsep}{_core.LIBRARY_PATH.parent}"
     output = run(program, "default", membrane[2], OPENMM_PLUGIN_DIR=folders)
-    assert_finds_and_computes(output, _core.LIBRARY_PATH, membrane, {"Reference", "CPU"})
+    assert_finds_and_computes(
+        output, _core.LIBRARY_PATH, membrane, {"Reference", "CPU", "Helfrich"}
+    )
 
 
 def test_from_the_plugin_folder(program, membrane, tmp_path):
@@ -144,7 +146,7 @@ def test_from_the_plugin_folder(program, membrane, tmp_path):
         (plugins / original.name).symlink_to(original)
     library = Path(shutil.copy(_core.LIBRARY_PATH, plugins))
     output = run(program, str(plugins), membrane[2], lib=lib)
-    assert_finds_and_computes(output, library, membrane, {"Reference", "CPU"})
+    assert_finds_and_computes(output, library, membrane, {"Reference", "CPU", "Helfrich"})
 
 
 def test_a_bad_mesh_is_an_exception_with_the_class_name(program, lumpy, tmp_path):

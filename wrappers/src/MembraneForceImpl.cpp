@@ -29,8 +29,8 @@ void MembraneForceImpl::initialize(ContextImpl& context) {
     inPlace = dynamic_cast<const ReferencePlatform*>(&context.getPlatform()) != nullptr;
     if (!inPlace && !derivatives.empty())
         throw OpenMMException(owner.getTypeName() +
-                              ": energy parameter derivatives need the Reference or CPU "
-                              "platform, not " +
+                              ": energy parameter derivatives need the Reference, CPU or "
+                              "Helfrich platform, not " +
                               context.getPlatform().getName());
     check(Helfrich_Potential_find(owner.getTypeName().c_str(), &term.potential));
     term.wantsDerivatives = !derivatives.empty();
@@ -86,9 +86,8 @@ double MembraneForceImpl::calcForcesAndEnergy(ContextImpl& context, bool include
         return 0;
     auto* data = static_cast<ReferencePlatform::PlatformData*>(context.getPlatformData());
     // OpenMM clears the derivatives before each evaluation, and may want them without the energy.
-    double energy = membrane->evaluate(owner.getTypeName(), context, groups, *data->positions,
-                                       includeForces ? data->forces : nullptr, data->energyParameterDerivatives);
-    return includeEnergy ? energy : 0;
+    return membrane->evaluate(owner.getTypeName(), context, groups, *data->positions, includeEnergy,
+                              includeForces ? data->forces : nullptr, data->energyParameterDerivatives);
 }
 
 double MembraneForceImpl::computeForce(ContextImpl& context, const vector<Vec3>& positions, vector<Vec3>& forces) {
@@ -97,7 +96,7 @@ double MembraneForceImpl::computeForce(ContextImpl& context, const vector<Vec3>&
     int groups = context.getLastForceGroups();
     if (!membrane->isLeader(*this, groups))
         return 0;
-    return membrane->evaluate(owner.getTypeName(), context, groups, positions, &forces, nullptr);
+    return membrane->evaluate(owner.getTypeName(), context, groups, positions, true, &forces, nullptr);
 }
 
 map<string, double> MembraneForceImpl::getDefaultParameters() {

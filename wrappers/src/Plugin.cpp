@@ -1,4 +1,5 @@
 #include "ForceFactory.h"
+#include "HelfrichPlatform.h"
 #include "MembraneForceImpl.h"
 #include "MembraneForceProxy.h"
 
@@ -16,22 +17,54 @@ void registerForce(const std::string& name) {
     OpenMM::SerializationProxy::registerProxy(typeid(ForceClass), new MembraneForceProxy(name, makeForce<ForceClass>));
 }
 
+bool isRightVersion() {
+    return OpenMM::Platform::getOpenMMVersion() == HELFRICH_OPENMM_VERSION;
+}
+
+/** This plugin's platform, or null: the library may be in memory twice, and the first copy has registered it. */
+HelfrichPlatform* findPlatform() {
+    for (int i = 0; i < OpenMM::Platform::getNumPlatforms(); i++)
+        if (auto* platform = dynamic_cast<HelfrichPlatform*>(&OpenMM::Platform::getPlatform(i)))
+            return platform;
+    return nullptr;
+}
+
 } // namespace
 
 // The core exports these under names that OpenMM's plugin loader and the force classes look for.
 extern "C" {
 
 int helfrich_shim_registerSerialization() {
-    std::string found = OpenMM::Platform::getOpenMMVersion();
-    if (found != HELFRICH_OPENMM_VERSION) {
+    if (!isRightVersion()) {
         std::cerr << "openmm-helfrich was built against OpenMM " << HELFRICH_OPENMM_VERSION
-                  << " and cannot be used with OpenMM " << found << ". Rebuild it against this version.\n";
+                  << " and cannot be used with OpenMM " << OpenMM::Platform::getOpenMMVersion()
+                  << ". Rebuild it against this version.\n";
         return 1;
     }
 #define REGISTER(ForceClass) registerForce<ForceClass>(#ForceClass);
     HELFRICH_FORCES(REGISTER)
 #undef REGISTER
     return 0;
+}
+
+void helfrich_shim_registerPlatform() {
+    // Of another version nothing is registered here; registerSerialization complains.
+    if (!isRightVersion() || findPlatform() != nullptr)
+        return;
+    try {
+        OpenMM::Platform::registerPlatform(new HelfrichPlatform());
+    } catch (const std::exception& error) {
+        std::cerr << "openmm-helfrich: platform Helfrich is not available: " << error.what() << "\n";
+    }
+}
+
+void helfrich_shim_adoptKernels() {
+    try {
+        if (HelfrichPlatform* platform = findPlatform())
+            platform->adoptReferenceKernels();
+    } catch (const std::exception& error) {
+        std::cerr << "openmm-helfrich: platform Helfrich lacks kernels of other plugins: " << error.what() << "\n";
+    }
 }
 
 void* helfrich_shim_createImpl(const void* force) {

@@ -1,5 +1,6 @@
 #include "SharedMembrane.h"
 
+#include "HelfrichPlatform.h"
 #include "MembraneForceImpl.h"
 
 #include <openmm/System.h>
@@ -39,10 +40,12 @@ shared_ptr<SharedMembrane> SharedMembrane::acquire(const string& subject, Contex
     return membrane;
 }
 
-SharedMembrane::SharedMembrane(const string& subject, const ContextImpl& context, const vector<int>& triangles)
+SharedMembrane::SharedMembrane(const string& subject, ContextImpl& context, const vector<int>& triangles)
     : triangles(triangles), core(nullptr) {
     check(Helfrich_Membrane_create(subject.c_str(), triangles.data(), (int64_t) triangles.size() / 3,
                                    context.getSystem().getNumParticles(), &core));
+    if (int threads = helfrichThreads(context))
+        Helfrich_Membrane_setThreads(core, threads);
 }
 
 SharedMembrane::~SharedMembrane() {
@@ -72,7 +75,7 @@ bool SharedMembrane::isLeader(const MembraneForceImpl& member, int groups) const
 }
 
 double SharedMembrane::evaluate(const string& subject, ContextImpl& context, int groups, const vector<Vec3>& positions,
-                                vector<Vec3>* forces, std::map<string, double>* derivatives) {
+                                bool includeEnergy, vector<Vec3>* forces, std::map<string, double>* derivatives) {
     active.clear();
     terms.clear();
     for (MembraneForceImpl* member : members)
@@ -83,12 +86,15 @@ double SharedMembrane::evaluate(const string& subject, ContextImpl& context, int
             if (member->usesContextParameters())
                 checkTerm(member->getOwner().getTypeName(), terms.back());
         }
-    contributions.resize(terms.size());
+    bool wantsDerivatives =
+        derivatives != nullptr && std::any_of(terms.begin(), terms.end(),
+                                              [](const HelfrichTerm& term) { return term.wantsDerivatives != 0; });
+    contributions.assign(terms.size(), HelfrichContribution());
     // Vec3 is three doubles and nothing else, but its operator[] returns copies.
     static_assert(sizeof(Vec3) == 3 * sizeof(double), "an array of Vec3 is an array of coordinates");
     check(Helfrich_Membrane_evaluate(subject.c_str(), core, terms.data(), (int64_t) terms.size(),
                                      (int64_t) positions.size(), reinterpret_cast<const double*>(positions.data()),
-                                     contributions.data(),
+                                     includeEnergy || wantsDerivatives ? contributions.data() : nullptr,
                                      forces == nullptr ? nullptr : reinterpret_cast<double*>(forces->data())));
     double energy = 0;
     for (size_t i = 0; i < active.size(); i++) {

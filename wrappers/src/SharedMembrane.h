@@ -45,13 +45,14 @@ public:
      * @param context      the Context
      * @param groups       a bit for each force group
      * @param positions    of all particles, nm
+     * @param includeEnergy  whether the energy is wanted; it is 0 otherwise
      * @param forces       of all particles, kJ/mol/nm; the forces are added, unless it is null
      * @param derivatives  of the energy with respect to Context parameters; those asked for are added,
      *                     unless it is null
      * @return the energy, kJ/mol
      */
     double evaluate(const std::string& subject, OpenMM::ContextImpl& context, int groups,
-                    const std::vector<OpenMM::Vec3>& positions, std::vector<OpenMM::Vec3>* forces,
+                    const std::vector<OpenMM::Vec3>& positions, bool includeEnergy, std::vector<OpenMM::Vec3>* forces,
                     std::map<std::string, double>* derivatives);
     /** Refuse a term that cannot be evaluated on this membrane. */
     void checkTerm(const std::string& subject, const HelfrichTerm& term) const {
@@ -64,7 +65,7 @@ public:
     std::vector<std::pair<int, int>> getEdges() const;
 
 private:
-    SharedMembrane(const std::string& subject, const OpenMM::ContextImpl& context, const std::vector<int>& triangles);
+    SharedMembrane(const std::string& subject, OpenMM::ContextImpl& context, const std::vector<int>& triangles);
 
     /**
      * Whether the members are forces of this very Context. When a Context cannot be made, OpenMM leaves

@@ -12,6 +12,7 @@
 
 mod arrays;
 mod backward;
+mod choice;
 mod forward;
 mod lanes;
 mod layout;
@@ -30,6 +31,7 @@ use crate::potentials::{Contribution, Edges, Needs, Term, Triangles, Vertices};
 use crate::team::{Member, Parts, Team};
 use arrays::Arrays;
 use backward::{Backward, Forces};
+use choice::Choice;
 use forward::{NORMALS, VECTORS, VORONOI};
 use lanes::dispatch;
 use layout::TILE;
@@ -45,7 +47,10 @@ pub struct SimdEvaluator {
     topology: Arc<Topology>,
     layout: Layout,
     arrays: Arrays,
-    team: Team,
+    /// The calling thread, and the team that it belongs to where that is worth a try.
+    alone: Team,
+    team: Option<Team>,
+    choice: Choice,
     scratch: Vec<Scratch>,
     triangle_sums: Vec<TriangleSums>,
     /// For each tile of triangles, then of vertices, a contribution for each term.
@@ -72,7 +77,7 @@ struct Sweep<'a, 't> {
 
 impl SimdEvaluator {
     /// Buffers for a mesh. `level` is the instruction set to use, which the processor must have.
-    pub fn new(topology: Arc<Topology>, level: Level, threads: usize) -> Self {
+    pub fn new(topology: Arc<Topology>, level: Level) -> Self {
         let layout = Layout::new(&topology);
         let mut evaluator = Self {
             level,
@@ -81,21 +86,29 @@ impl SimdEvaluator {
             contributions: Vec::new(),
             topology,
             layout,
-            team: alone(),
+            alone: Team::new(1).expect("no thread is made for a team of one"),
+            team: None,
+            choice: Choice::new(),
             scratch: Vec::new(),
             has_slopes: false,
         };
-        evaluator.set_threads(threads);
+        evaluator.set_threads(1);
         evaluator
     }
 
-    /// Let so many threads share the work, or as many as the system has left.
+    /// Number of vertices.
+    pub fn num_vertices(&self) -> usize {
+        self.layout.num_vertices
+    }
+
+    /// Let so many threads share the work where that is faster, or as many as the system has left.
     pub fn set_threads(&mut self, threads: usize) {
-        self.team = Team::new(threads).unwrap_or_else(|_| alone());
+        self.team = if threads > 1 { Team::new(threads).ok() } else { None };
+        self.choice = Choice::new();
         let steps = self.layout.longest;
         let scratch =
             || Scratch { triangles: TriangleTile::EMPTY, vertices: VertexTile::new(steps) };
-        self.scratch.resize_with(self.team.size(), scratch);
+        self.scratch.resize_with(self.team.as_ref().map_or(1, Team::size), scratch);
     }
 
     /// As [`super::CpuEvaluator::evaluate`].
@@ -119,12 +132,12 @@ impl SimdEvaluator {
         let sums = Parts::new(&mut self.triangle_sums);
         let parts = Parts::new(&mut self.contributions);
         let scratch = Parts::new(&mut self.scratch);
-        self.team.run(|member| {
+        team.run(|member| {
             // SAFETY: each member has its own place.
             let scratch = unsafe { scratch.part(member.index()..member.index() + 1) };
             sweep.forward(&member, &mut scratch[0], &sums, &parts);
         });
-        let (totals, silent) = self.totals().ok_or_else(|| culprit(&self.topology, positions))?;
+        let (totals, silent) = totals(&self.triangle_sums).ok_or_else(|| culprit(&self.topology, positions))?;
         let mut total_partials = TotalPartials::default();
         let mut ignored = Contribution::default();
         for (k, term) in terms.iter().enumerate() {
@@ -146,7 +159,7 @@ impl SimdEvaluator {
             let (layout, arrays, level) = (&self.layout, &self.arrays, self.level);
             let needs = if silent { needs - Needs::TRIANGLES } else { needs };
             let (totals, forces) = (&total_partials, Forces(forces.as_mut_ptr()));
-            self.team.run(|member| {
+            team.run(|member| {
                 for index in member.share(layout.vertex_tiles()) {
                     backward(level, needs, layout, arrays, totals, index, forces);
                 }
@@ -192,17 +205,17 @@ impl SimdEvaluator {
         let tiles = layout.triangle_tiles() + layout.vertex_tiles();
         self.contributions.resize(tiles * terms, Contribution::default());
     }
+}
 
-    /// Area and volume, and whether no potential of triangles acts; unless the mesh has no geometry.
-    fn totals(&self) -> Option<(Totals, bool)> {
-        let mut sum = TriangleSums::default();
-        for part in &self.triangle_sums {
-            sum += *part;
-        }
-        let TriangleSums { twice_area, six_volumes, smallest, silent } = sum;
-        let totals = Totals { area: 0.5 * twice_area, volume: six_volumes / 6.0 };
-        (smallest > SMALLEST_AREA && twice_area.is_finite()).then_some((totals, silent))
+/// Area and volume, and whether no potential of triangles acts; unless the mesh has no geometry.
+fn totals(sums: &[TriangleSums]) -> Option<(Totals, bool)> {
+    let mut sum = TriangleSums::default();
+    for part in sums {
+        sum += *part;
     }
+    let TriangleSums { twice_area, six_volumes, smallest, silent } = sum;
+    let totals = Totals { area: 0.5 * twice_area, volume: six_volumes / 6.0 };
+    (smallest > SMALLEST_AREA && twice_area.is_finite()).then_some((totals, silent))
 }
 
 impl Sweep<'_, '_> {
@@ -457,9 +470,4 @@ fn vector_level(needs: Needs) -> u8 {
         needs if needs.contains(Needs::VECTORS) => VORONOI,
         _ => 0,
     }
-}
-
-/// A team of the calling thread.
-fn alone() -> Team {
-    Team::new(1).expect("no thread is made for a team of one")
 }

@@ -58,6 +58,7 @@ void Helfrich_Membrane_destroy(HelfrichMembrane* membrane);
 int64_t Helfrich_Membrane_numEdges(const HelfrichMembrane* membrane);
 void Helfrich_Membrane_edges(const HelfrichMembrane* membrane, int* particles);
 int Helfrich_Membrane_checkTerm(const char* subject, const HelfrichMembrane* membrane, const HelfrichTerm* term);
+void Helfrich_Membrane_setThreads(HelfrichMembrane* membrane, int threads);
 int Helfrich_Membrane_evaluate(const char* subject, HelfrichMembrane* membrane, const HelfrichTerm* terms,
                                int64_t numTerms, int64_t numParticles, const double* positions,
                                HelfrichContribution* contributions, double* forces);

@@ -1,0 +1,142 @@
+#include "HelfrichPlatform.h"
+#include "HelfrichKernels.h"
+
+#include <openmm/KernelFactory.h>
+#include <openmm/OpenMMException.h>
+#include <openmm/internal/ContextImpl.h>
+#include <openmm/internal/OSRngSeed.h>
+#include <openmm/kernels.h>
+
+#include <cstdlib>
+
+using namespace HelfrichPlugin;
+using namespace OpenMM;
+using std::map;
+using std::string;
+
+namespace {
+
+const string THREADS = "Threads";
+
+/** More than any machine has; a team of more is a mistake. */
+const int MAX_THREADS = 1024;
+
+// OpenMM does not tell which kernels a platform has. The rules of the language allow to name a private member in
+// an explicit instantiation, and nowhere else.
+using Factories = map<string, KernelFactory*> Platform::*;
+Factories getFactoriesMember();
+template <Factories member>
+struct Access {
+    friend Factories getFactoriesMember() {
+        return member;
+    }
+};
+template struct Access<&Platform::kernelFactories>;
+
+/** Lets Reference's factory make a kernel for this platform; each platform deletes its own factories. */
+class BorrowedFactory : public KernelFactory {
+public:
+    explicit BorrowedFactory(const KernelFactory& owner) : owner(owner) {
+    }
+    KernelImpl* createKernelImpl(string name, const Platform& platform, ContextImpl& context) const {
+        return owner.createKernelImpl(name, platform, context);
+    }
+
+private:
+    const KernelFactory& owner;
+};
+
+int parseThreads(const string& text) {
+    char* end = nullptr;
+    long value = std::strtol(text.c_str(), &end, 10);
+    if (text.empty() || *end != '\0' || value < 1 || value > MAX_THREADS)
+        throw OpenMMException("Platform Helfrich: " + THREADS + " must be a whole number from 1 to " +
+                              std::to_string(MAX_THREADS) + ", got \"" + text + "\"");
+    return (int) value;
+}
+
+} // namespace
+
+HelfrichPlatform::HelfrichPlatform() {
+    KernelFactory* factory = new HelfrichKernelFactory();
+    for (const string& name : HelfrichKernelFactory::getKernelNames())
+        registerKernelFactory(name, factory);
+    platformProperties.push_back(THREADS);
+    const char* fromEnvironment = std::getenv("OPENMM_CPU_THREADS");
+    setPropertyDefaultValue(
+        THREADS, fromEnvironment != nullptr ? string(fromEnvironment) : std::to_string(Helfrich_Team_available()));
+    adoptReferenceKernels();
+}
+
+const string& HelfrichPlatform::getName() const {
+    static const string name = "Helfrich";
+    return name;
+}
+
+double HelfrichPlatform::getSpeed() const {
+    return 0.5;
+}
+
+const string& HelfrichPlatform::getPropertyValue(const Context& context, const string& property) const {
+    if (property != THREADS)
+        return ReferencePlatform::getPropertyValue(context, property);
+    return getData(const_cast<ContextImpl&>(getContextImpl(context)))->threadsProperty;
+}
+
+void HelfrichPlatform::contextCreated(ContextImpl& context, const map<string, string>& properties) const {
+    auto given = properties.find(THREADS);
+    int threads = parseThreads(given != properties.end() ? given->second : getPropertyDefaultValue(THREADS));
+    // Kernels cast the pointer to Reference's class, so it must be one to this part of the object.
+    ReferencePlatform::PlatformData* data = new PlatformData(context.getSystem(), threads);
+    context.setPlatformData(data);
+}
+
+void HelfrichPlatform::contextDestroyed(ContextImpl& context) const {
+    // Reference's class has no virtual destructor: the object must be deleted as what it is.
+    delete getData(context);
+}
+
+HelfrichPlatform::PlatformData* HelfrichPlatform::getData(ContextImpl& context) {
+    if (dynamic_cast<const HelfrichPlatform*>(&context.getPlatform()) == nullptr)
+        return nullptr;
+    return static_cast<PlatformData*>(static_cast<ReferencePlatform::PlatformData*>(context.getPlatformData()));
+}
+
+void HelfrichPlatform::adoptReferenceKernels() {
+    Factories member = getFactoriesMember();
+    for (auto& [name, factory] : Platform::getPlatformByName("Reference").*member)
+        if ((this->*member).count(name) == 0)
+            registerKernelFactory(name, new BorrowedFactory(*factory));
+}
+
+HelfrichPlatform::PlatformData::PlatformData(const System& system, int numThreads)
+    : ReferencePlatform::PlatformData(system, numThreads), numThreads(numThreads),
+      threadsProperty(std::to_string(numThreads)), team(nullptr) {
+}
+
+HelfrichPlatform::PlatformData::~PlatformData() {
+    Helfrich_Team_destroy(team);
+}
+
+HelfrichTeam* HelfrichPlatform::PlatformData::getTeam() {
+    if (team == nullptr && numThreads > 1)
+        check(Helfrich_Team_create(numThreads, &team));
+    return team;
+}
+
+HelfrichStream& HelfrichPlatform::PlatformData::addStream(int seed) {
+    uint32_t key = (uint32_t) (seed == 0 ? osrngseed() : seed);
+    // The second half of the key keeps two integrators of one seed apart.
+    streams.push_back({{key, (uint32_t) streams.size()}, 0});
+    return streams.back();
+}
+
+int HelfrichPlugin::helfrichThreads(ContextImpl& context) {
+    auto* data = HelfrichPlatform::getData(context);
+    return data == nullptr ? 0 : data->numThreads;
+}
+
+HelfrichTeam* HelfrichPlugin::helfrichTeam(ContextImpl& context) {
+    auto* data = HelfrichPlatform::getData(context);
+    return data == nullptr ? nullptr : data->getTeam();
+}
