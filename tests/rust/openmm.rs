@@ -114,7 +114,7 @@ fn directly(terms: &[Term]) -> (f64, Vec<[f64; 3]>) {
     let mut forces = [[0.0; 3]; NUM_PARTICLES];
     CpuEvaluator::new(topology)
         .evaluate(
-            terms.iter(),
+            &terms.iter().collect::<Vec<_>>(),
             POSITIONS.as_flattened(),
             &mut contributions,
             Some(forces.as_flattened_mut()),

@@ -119,8 +119,24 @@ impl SimdEvaluator {
         contributions: &mut [Contribution],
         forces: Option<&mut [f64]>,
     ) -> Result<()> {
+        let attempt = self.choice.next();
+        let outcome = self.attempt(terms, positions, contributions, forces, attempt.together);
+        self.choice.done(&attempt);
+        outcome
+    }
+
+    /// An evaluation, by the team or by this thread alone.
+    fn attempt(
+        &mut self,
+        terms: &[&Term],
+        positions: &[f64],
+        contributions: &mut [Contribution],
+        forces: Option<&mut [f64]>,
+        together: bool,
+    ) -> Result<()> {
         let needs = terms.iter().fold(Needs::empty(), |all, term| all | term.potential.needs(term));
         self.make_room(needs, terms.len());
+        let team = self.team.as_mut().filter(|_| together).unwrap_or(&mut self.alone);
         let sweep = Sweep {
             level: self.level,
             layout: &self.layout,
@@ -137,7 +153,8 @@ impl SimdEvaluator {
             let scratch = unsafe { scratch.part(member.index()..member.index() + 1) };
             sweep.forward(&member, &mut scratch[0], &sums, &parts);
         });
-        let (totals, silent) = totals(&self.triangle_sums).ok_or_else(|| culprit(&self.topology, positions))?;
+        let (totals, silent) =
+            totals(&self.triangle_sums).ok_or_else(|| culprit(&self.topology, positions))?;
         let mut total_partials = TotalPartials::default();
         let mut ignored = Contribution::default();
         for (k, term) in terms.iter().enumerate() {
