@@ -152,8 +152,8 @@ def read_sections(path) -> list[Section]:
         raise FileNotFoundError(f"openmmhelfrich.vcm: there is no file {path}")
     if path.suffix.lower() == ".toml":
         raise ConfigError(
-            f"{path}:1: this is TOML, not a VCM configuration; openmmhelfrich.config.read takes it, "
-            "and so do 'openmm-helfrich run' and 'info'"
+            f"{path}:1: this is TOML, not a VCM configuration; config.read takes it, as do "
+            "the commands run and info"
         )
     sections: list[Section] = []
     text = path.read_text(encoding="utf-8-sig", errors="replace")
