@@ -84,7 +84,7 @@ KEYS: tuple[Key, ...] = (
     Key("integrator", "temperature", number(above=0), 300.0,
         "T, K, also that of \"… kT\" and of the first velocities."),
     Key("integrator", "friction", number(least=0), 0.01, "γ, 1/ps; Verlet has none."),
-    Key("output", "interval", number(above=0), 100.0, "Time between frames, ps."),
+    Key("output", "interval", number(above=0), 100.0, "Time between frames, ps, in whole steps."),
     Key("output", "xtc", boolean, True, "Write a trajectory `<name>.xtc`."),
     Key("output", "ply", boolean, False, "Write a mesh per vesicle and frame."),
     Key("output", "text", choices(_TEXTS), (),

@@ -54,6 +54,11 @@ class Configuration(vcm.Config):
         integrator = Table(document, ("integrator",), "integrator")
         output = Table(document, ("output",), "output")
         self._step_size = integrator["time_step"]
+        if output["interval"] < self._step_size:
+            raise output.error(
+                "interval",
+                f"{output['interval']:g} ps is less than the time step of {self._step_size:g} ps",
+            )
         self.general = _general(simulation, integrator, output, self.path.stem)
         self.seed = seed or simulation["seed"] or secrets.randbelow(_MAX_SEED) + 1
         self.platform = _platform(simulation)

@@ -34,9 +34,13 @@ Reader = Callable[[Any, float], Any]
 def _finite(value: Any, what: str = "a number") -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise ValueError(f"expected {what}, got {value!r}")
-    if not math.isfinite(value):
+    try:
+        result = float(value)
+    except OverflowError:
+        result = math.inf
+    if not math.isfinite(result):
         raise ValueError(f"expected a finite number, got {value}")
-    return float(value)
+    return result
 
 
 def _check_range(value: float, least: float | None, above: float | None) -> None:
