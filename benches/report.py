@@ -16,7 +16,7 @@ def compose(results, options, failed, jax, used, evaluations):
     ----------
     results : Results
     options : argparse.Namespace
-        With `repeats` and `seconds`.
+        With `repeats`, `seconds`, and `load`, the machine's before the start.
     failed : dict of str
         Platforms that did not start, with the reason.
     jax : dict of str or None
@@ -55,7 +55,8 @@ def _circumstances(options, jax):
         "",
         "- " + ", ".join(f"{name}: {value}" for name, value in machine().items()),
         "- " + ", ".join(f"{name} {value}" for name, value in which.items()),
-        f"- {datetime.date.today().isoformat()}",
+        f"- {datetime.date.today().isoformat()}, with a load of {options.load:.1f} before the start"
+        + (", too much for figures to be relied on" if options.load > 1.5 else ""),
     ]
 
 

@@ -11,6 +11,7 @@ side alone. What `cargo bench` has measured before (`make bench` does) is printe
 """
 
 import argparse
+import os
 import sys
 from pathlib import Path
 
@@ -50,6 +51,7 @@ def main(arguments=None):
     )
     options = parser.parse_args(arguments)
     options.most_vertices = MOST_VERTICES
+    options.load = os.getloadavg()[0]
     if options.quick:
         options.parts, options.repeats, options.seconds = PARTS[:2], 2, 0.03
         options.most_vertices = dict.fromkeys(MOST_VERTICES, 252)
