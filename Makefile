@@ -55,9 +55,11 @@ test-python: build # what a user sees
 demo: build ## simulate a vesicle and draw it with its fluctuation spectrum (about two minutes)
 	@$(VENV)/bin/python examples/vesicle.py
 
-bench: build ## measure the cost of an evaluation and of a time step
-	@$(CARGO) bench -q --locked --bench evaluate -- --output-format bencher --warm-up-time 0.5 --measurement-time 2
-	@$(VENV)/bin/python benches/steps.py
+bench: build ## race evaluations, time steps and the paper's Table III; BENCH=--quick is short (else half an hour)
+	@$(CARGO) bench -q --locked --bench evaluate -- --output-format bencher $(if $(findstring --quick,$(BENCH)),--quick,\
+	    --warm-up-time 0.5 --measurement-time 2)
+	@$(VENV)/bin/python benches/steps.py $(BENCH)
+	@$(VENV)/bin/python benches/table3.py $(findstring --quick,$(BENCH))
 
 clean: ## remove everything that was built, .venv too
 	rm -rf $(VENV) build dist target out python/*.egg-info

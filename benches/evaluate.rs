@@ -1,89 +1,147 @@
 //! Time of one evaluation of the paper's default forces, per mesh size: `cargo bench`.
+//!
+//! Groups are bending schemes, with area, volume and heights in each; within a group every evaluator
+//! has a name that says its threads. `benches/steps.py` reads what criterion leaves in the target
+//! folder and prints the ratios.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use openmm_helfrich::evaluator::CpuEvaluator;
 use openmm_helfrich::mesh::Topology;
 use openmm_helfrich::potentials::{Contribution, Term};
 use std::collections::HashMap;
+use std::f64::consts::PI;
 use std::hint::black_box;
 use std::sync::Arc;
 
-/// An icosahedron of which each triangle is split into four, `times` times, on a sphere of 1000 nm.
-fn sphere(times: usize) -> (Vec<f64>, Vec<[i64; 3]>) {
-    let g = (1.0 + 5f64.sqrt()) / 2.0;
-    let mut vertices: Vec<[f64; 3]> = Vec::new();
-    for (s, t) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
-        vertices.extend([[0.0, s, t * g], [s, t * g, 0.0], [t * g, 0.0, s]]);
-    }
-    let distance = |a: &[f64; 3], b: &[f64; 3]| (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>();
-    let near = |a: usize, b: usize| (distance(&vertices[a], &vertices[b]) - 4.0).abs() < 1e-9;
+/// Bending schemes in the order of their codes.
+const SCHEMES: [&str; 5] =
+    ["Julicher", "GompperKroll", "GompperKrollBarycentric", "JulicherVoronoi", "Espriu"];
+/// Parts of a side of the icosahedron: N = 1002, 4002, the sizes at which schemes are compared.
+const COMPARED: [usize; 2] = [10, 20];
+/// N = 252 to 40 962, at which Jülicher's scheme is timed.
+const SIZES: [usize; 5] = [5, 10, 20, 32, 64];
+
+/// What computes forces of terms at positions, and adds them to the last argument.
+type Evaluate = Box<dyn FnMut(&[Term], &[f64], &mut [f64]) + Send>;
+
+/// One way to evaluate, under its name in the tables.
+struct Contender {
+    name: &'static str,
+    threads: usize,
+    make: fn(Arc<Topology>) -> Evaluate,
+}
+
+/// All ways to evaluate. The plain one is the readable reference, to which ratios refer.
+const CONTENDERS: [Contender; 2] = [
+    Contender { name: "plain, 1 thread", threads: 1, make: plain },
+    Contender { name: "plain, 2 threads", threads: 2, make: plain },
+];
+
+fn plain(topology: Arc<Topology>) -> Evaluate {
+    let mut evaluator = CpuEvaluator::new(topology);
+    Box::new(move |terms, positions, forces| {
+        let mut contributions = [Contribution::default(); 4];
+        evaluator.evaluate(terms.iter(), positions, &mut contributions, Some(forces)).unwrap();
+    })
+}
+
+/// An icosphere: every side of the icosahedron cut into `n` parts, radius 100 n nm.
+fn sphere(n: usize) -> (Vec<f64>, Vec<[i64; 3]>) {
+    let (corners, faces) = icosahedron();
+    let mut index = HashMap::new();
+    let mut positions = Vec::new();
     let mut triangles = Vec::new();
-    for a in 0..12 {
-        for b in a + 1..12 {
-            for c in b + 1..12 {
-                if near(a, b) && near(b, c) && near(c, a) {
-                    let [p, q, r] = [a, b, c].map(|v| nalgebra::Vector3::from(vertices[v]));
-                    let outward = p.dot(&q.cross(&r)) > 0.0;
-                    let (b, c) = if outward { (b, c) } else { (c, b) };
-                    triangles.push([a as i64, b as i64, c as i64]);
+    for face in faces {
+        // A point of a face by its weights; neighbouring faces name it by the same corners.
+        let mut vertex = |weights: [usize; 3]| {
+            let mut key: Vec<_> = (0..3).map(|k| (face[k], weights[k])).collect();
+            key.retain(|&(_, weight)| weight > 0);
+            key.sort_unstable();
+            let fresh = index.len() as i64;
+            *index.entry(key.clone()).or_insert_with(|| {
+                let point: [f64; 3] = std::array::from_fn(|axis| {
+                    key.iter().map(|&(corner, w)| w as f64 * corners[corner][axis]).sum()
+                });
+                let norm = point.iter().map(|x| x * x).sum::<f64>().sqrt();
+                positions.extend(point.map(|x| 100.0 * n as f64 * x / norm));
+                fresh
+            })
+        };
+        for i in 0..n {
+            for j in 0..n - i {
+                let k = n - 1 - i - j;
+                triangles.push([[i + 1, j, k], [i, j + 1, k], [i, j, k + 1]].map(&mut vertex));
+                if k > 0 {
+                    let turned = [[i, j + 1, k], [i + 1, j, k], [i + 1, j + 1, k - 1]];
+                    triangles.push(turned.map(&mut vertex));
                 }
             }
         }
     }
-    for _ in 0..times {
-        let mut middle = HashMap::new();
-        let mut finer = Vec::with_capacity(4 * triangles.len());
-        for &[a, b, c] in &triangles {
-            let mut between = |i: i64, j: i64| {
-                *middle.entry((i.min(j), i.max(j))).or_insert_with(|| {
-                    let (p, q) = (vertices[i as usize], vertices[j as usize]);
-                    vertices.push(std::array::from_fn(|k| 0.5 * (p[k] + q[k])));
-                    vertices.len() as i64 - 1
-                })
-            };
-            let (ab, bc, ca) = (between(a, b), between(b, c), between(c, a));
-            finer.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
-        }
-        triangles = finer;
+    (positions, triangles)
+}
+
+/// Corners and outward faces of an icosahedron.
+fn icosahedron() -> (Vec<[f64; 3]>, Vec<[usize; 3]>) {
+    let g = (1.0 + 5f64.sqrt()) / 2.0;
+    let mut corners: Vec<[f64; 3]> = Vec::new();
+    for (s, t) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
+        corners.extend([[0.0, s, t * g], [s, t * g, 0.0], [t * g, 0.0, s]]);
     }
-    let scaled = |v: &[f64; 3]| {
-        let norm = v.iter().map(|x| x * x).sum::<f64>().sqrt();
-        v.map(|x| 1000.0 * x / norm)
+    let near = |a: usize, b: usize| {
+        let square: f64 = (0..3).map(|k| (corners[a][k] - corners[b][k]).powi(2)).sum();
+        (square - 4.0).abs() < 1e-9
     };
-    (vertices.iter().flat_map(scaled).collect(), triangles)
+    let mut faces = Vec::new();
+    for a in 0..12 {
+        for b in a + 1..12 {
+            for c in b + 1..12 {
+                if near(a, b) && near(b, c) && near(c, a) {
+                    let [p, q, r] = [a, b, c].map(|v| nalgebra::Vector3::from(corners[v]));
+                    let outward = p.dot(&q.cross(&r)) > 0.0;
+                    faces.push(if outward { [a, b, c] } else { [a, c, b] });
+                }
+            }
+        }
+    }
+    (corners, faces)
 }
 
 fn evaluate(criterion: &mut Criterion) {
-    let mut group = criterion.benchmark_group("Julicher + area + volume + heights");
-    for times in 2..=6 {
-        let (positions, triangles) = sphere(times);
-        let count = positions.len() / 3;
-        let mut evaluator = CpuEvaluator::new(Arc::new(Topology::new(&triangles, count).unwrap()));
-        let terms = [
-            Term::new("BendingForce", 0, &[50.0, 0.0]).unwrap(),
-            Term::new("SurfaceAreaForce", 0, &[1.3, 1.25e7]).unwrap(),
-            Term::new("EnclosedVolumeForce", 0, &[0.04, 4.1e9]).unwrap(),
-            Term::new("TriangleHeightForce", 0, &[20.0, 9.977]).unwrap(),
-        ];
-        let mut contributions = [Contribution::default(); 4];
-        let mut forces = vec![0.0; positions.len()];
-        group.throughput(Throughput::Elements(count as u64));
-        group.bench_function(BenchmarkId::from_parameter(count), |bencher| {
-            bencher.iter(|| {
-                forces.fill(0.0);
-                evaluator
-                    .evaluate(
-                        terms.iter(),
-                        black_box(&positions),
-                        &mut contributions,
-                        Some(&mut forces),
-                    )
-                    .unwrap();
-                black_box(&forces);
-            });
-        });
+    for (form, scheme) in SCHEMES.into_iter().enumerate() {
+        let mut group = criterion.benchmark_group(scheme);
+        for &n in if form == 0 { &SIZES[..] } else { &COMPARED[..] } {
+            let (positions, triangles) = sphere(n);
+            let count = positions.len() / 3;
+            let radius = 100.0 * n as f64;
+            let area = 4.0 * PI * radius.powi(2);
+            let terms = [
+                Term::new("BendingForce", form, &[50.0, 0.0]).unwrap(),
+                Term::new("SurfaceAreaForce", 0, &[1.3, area]).unwrap(),
+                Term::new("EnclosedVolumeForce", 0, &[0.04, area * radius / 3.0]).unwrap(),
+                Term::new("TriangleHeightForce", 0, &[20.0, 9.977]).unwrap(),
+            ];
+            let topology = Arc::new(Topology::new(&triangles, count).unwrap());
+            let mut forces = vec![0.0; positions.len()];
+            group.throughput(Throughput::Elements(count as u64));
+            for contender in &CONTENDERS {
+                let mut run = (contender.make)(topology.clone());
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(contender.threads);
+                let pool = pool.build().unwrap();
+                group.bench_function(BenchmarkId::new(contender.name, count), |bencher| {
+                    // Inside of the pool, so that the timed part does not include the way there.
+                    pool.install(|| {
+                        bencher.iter(|| {
+                            forces.fill(0.0);
+                            run(&terms, black_box(&positions), &mut forces);
+                            black_box(&forces);
+                        });
+                    });
+                });
+            }
+        }
+        group.finish();
     }
-    group.finish();
 }
 
 criterion_group!(benches, evaluate);

@@ -19,7 +19,7 @@ from . import _plugin
 
 _plugin.load()
 
-from . import analysis, vcm  # noqa: E402
+from . import analysis, config, vcm  # noqa: E402
 from ._paths import cmake_path, include_path, library_path  # noqa: E402
 from .errors import MeshError  # noqa: E402
 from .forces import *  # noqa: E402, F403
@@ -35,6 +35,7 @@ __all__ = [
     "Vesicle",
     "analysis",
     "cmake_path",
+    "config",
     "include_path",
     "library_path",
     "vcm",

@@ -52,29 +52,78 @@ def icosphere(n, radius: float) -> tuple[np.ndarray, np.ndarray]:
     corners = np.array([(0.0, s, t * golden) for s in (1, -1) for t in (1, -1)])
     corners = np.concatenate([np.roll(corners, shift, axis=1) for shift in range(3)])
     faces = _outward(corners, ConvexHull(corners).simplices)
-    index: dict[tuple, int] = {}
-    points = []
-    triangles = []
+    sides = {(int(a), int(b)): number for number, (a, b) in enumerate(_sides(faces))}
+    shares = _shares(n)
+    stencil = _subdivision(n)
+    num_points = 10 * n * n + 2
+    points = np.empty((num_points, 3))
+    triangles = np.empty((len(faces), n * n, 3), dtype=np.int64)
+    for number, face in enumerate(faces):
+        names = _names(face, number, sides, shares)
+        triangles[number] = names[stencil]
+        # In ascending order of corners, so that two faces find the same bits for a shared point.
+        order = np.argsort(face)
+        points[names] = sum(
+            shares[:, corner, np.newaxis] * corners[face[corner]] for corner in order
+        )
+    # Vertices are numbered as the triangles first name them, which keeps neighbours close.
+    flat = triangles.ravel()
+    first = np.empty(num_points, dtype=np.int64)
+    first[flat[::-1]] = np.arange(len(flat))[::-1]
+    order = np.argsort(first)
+    rank = np.empty(num_points, dtype=np.int64)
+    rank[order] = np.arange(num_points)
+    return radius * _project(points[order]), rank[flat].reshape(-1, 3)
 
-    def vertex(face: np.ndarray, weights: tuple[int, int, int]) -> int:
-        # Two faces name a point of their common side by the same corners and weights, so that
-        # neighbours share it without a comparison of coordinates.
-        key = tuple(sorted((int(c), w) for c, w in zip(face, weights, strict=True) if w > 0))
-        if key not in index:
-            index[key] = len(points)
-            points.append(sum(w * corners[c] for c, w in key))
-        return index[key]
 
-    for face in faces:
-        for i in range(n):
-            for j in range(n - i):
-                k = n - 1 - i - j
-                rows = [((i + 1, j, k), (i, j + 1, k), (i, j, k + 1))]
-                if k > 0:
-                    # The triangle across the side of the first one, turned by half a turn.
-                    rows.append(((i, j + 1, k), (i + 1, j, k), (i + 1, j + 1, k - 1)))
-                triangles += [[vertex(face, weights) for weights in row] for row in rows]
-    return radius * _project(np.array(points)), np.array(triangles, dtype=np.int64)
+def _sides(faces: np.ndarray) -> np.ndarray:
+    """The sides of the icosahedron, lower corner first, shape (30, 2)."""
+    return np.unique(np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]], axis=2).reshape(-1, 2), axis=0)
+
+
+def _shares(n: int) -> np.ndarray:
+    """What each corner of a face contributes to each of its points, in parts of n.
+
+    Shape ((n + 1)(n + 2) / 2, 3): every i, j, k ≥ 0 with i + j + k = n, ascending by i, then j.
+    """
+    i, j = np.nonzero(np.arange(n + 1)[:, np.newaxis] + np.arange(n + 1) <= n)
+    return np.stack([i, j, n - i - j], axis=1)
+
+
+def _subdivision(n: int) -> np.ndarray:
+    """The triangles of a subdivided face as indices into `_shares`, shape (n², 3)."""
+    i, j, k = _shares(n - 1).T
+
+    def place(i, j):
+        # Before row i come the rows 0 … i − 1, of n + 1, n, … points.
+        return i * (n + 1) - i * (i - 1) // 2 + j
+
+    upright = np.stack([place(i + 1, j), place(i, j + 1), place(i, j)], axis=1)
+    # The triangle across the side of the first one, turned by half a turn.
+    turned = np.stack([place(i, j + 1), place(i + 1, j), place(i + 1, j + 1)], axis=1)
+    exists = np.stack([np.ones(len(k), dtype=bool), k > 0], axis=1)
+    return np.stack([upright, turned], axis=1)[exists]
+
+
+def _names(face: np.ndarray, number: int, sides: dict, shares: np.ndarray) -> np.ndarray:
+    """A number for every point of a face, under which neighbouring faces know it too.
+
+    First come the 12 corners of the icosahedron, then the inner points of its 30 sides, then those
+    of its 20 faces. So points are shared without a comparison of coordinates.
+    """
+    n = int(shares[0].sum())
+    names = np.empty(len(shares), dtype=np.int64)
+    inner = (shares > 0).all(axis=1)
+    count = int(inner.sum())
+    names[inner] = 12 + 30 * (n - 1) + number * count + np.arange(count)
+    for a, b in ((0, 1), (1, 2), (2, 0)):
+        low, high = (a, b) if face[a] < face[b] else (b, a)
+        on_side = (shares[:, low] > 0) & (shares[:, high] > 0) & ~inner
+        start = 12 + (n - 1) * sides[int(face[low]), int(face[high])]
+        names[on_side] = start + shares[on_side, low] - 1
+    for corner in range(3):
+        names[shares[:, corner] == n] = face[corner]
+    return names
 
 
 def random_sphere(num_vertices, radius: float, seed) -> tuple[np.ndarray, np.ndarray]:

@@ -20,15 +20,15 @@ _MEASURE_SECONDS = 1.5
 @click.option("--measure/--no-measure", default=True, help="Measure the time per step.")
 @reader_options
 def info(config, platform, measure, vcm_compatible, ignore_unknown):
-    """Say what the VCM configuration file CONFIG would simulate.
+    """Say what CONFIG would simulate: a VCM configuration, or our own in TOML.
 
     Meshes, potentials with their start energies, time scales, the time step beside what is
     stable, and the time that the run would take.
     """
     with tidy_errors():
-        from .. import vcm
+        from ..config import read_any
 
-        cfg = vcm.read(config, vcm_compatible, ignore_unknown=ignore_unknown)
+        cfg = read_any(config, vcm_compatible, ignore_unknown=ignore_unknown)
         for line in _general(cfg):
             click.echo(line)
         for membrane in cfg.membranes:
@@ -83,25 +83,14 @@ def _time_scales(cfg, membrane) -> list[str]:
     The bound is 0.1 √Ξ τ of the fastest mode, Phys. Rev. E 108, 015301 (2023), equations 40 to 43
     and figure 5: a rule of thumb for the paper's moduli.
     """
-    from ..vcm.membrane_forces import min_height
-    from ..vesicle import Vesicle
-
-    settings, lines = membrane.settings, []
-    least, rigidity = min_height(cfg, membrane), settings["MeanCurvatureCoeff"]
-    vesicle = Vesicle(
-        membrane.mesh,
-        rigidity=rigidity,
-        softness=membrane.mesh.softness(least),
-        epsilon=cfg.general["EpsilonH"] * cfg.kT,
-        mass=settings["NodeMass"],
-    )
-    heights = least > 0 and cfg.general["EpsilonH"] * cfg.kT > 0
+    vesicle, heights, bends = _as_vesicle(cfg, membrane)
+    lines = []
     if heights:
         lines.append(
-            f"  softness Ξ = {vesicle.softness:.4g} (d = {least:g} nm), "
+            f"  softness Ξ = {vesicle.softness:.4g} (d = {vesicle.min_height:.4g} nm), "
             f"triangle heights relax in τ_h = {vesicle.tau_heights:.4g} ps"
         )
-    if settings["MeanCurvatureModel"] is None or not rigidity:
+    if not bends:
         return lines
     lines.append(
         f"  slowest mode τ_2 = {vesicle.tau_2:.5g} ps, fastest {vesicle.tau_fastest:.4g} ps"
@@ -114,6 +103,29 @@ def _time_scales(cfg, membrane) -> list[str]:
             f"(√Ξ τ = {10 * bound:.3g} ps)"
         )
     return lines
+
+
+def _as_vesicle(cfg, membrane):
+    """A `Vesicle` for the time scales, whether heights repel, and whether the membrane bends."""
+    from ..config import VesicleMembrane
+    from ..vcm.membrane_forces import min_height
+    from ..vesicle import Vesicle
+
+    if isinstance(membrane, VesicleMembrane):
+        vesicle = membrane.vesicle
+        return vesicle, vesicle.min_height > 0 and vesicle.epsilon > 0, vesicle.rigidity > 0
+    settings = membrane.settings
+    least, rigidity = min_height(cfg, membrane), settings["MeanCurvatureCoeff"]
+    epsilon = cfg.general["EpsilonH"] * cfg.kT
+    vesicle = Vesicle(
+        membrane.mesh,
+        rigidity=rigidity,
+        softness=membrane.mesh.softness(least),
+        epsilon=epsilon,
+        mass=settings["NodeMass"],
+    )
+    bends = settings["MeanCurvatureModel"] is not None and rigidity != 0
+    return vesicle, least > 0 and epsilon > 0, bends
 
 
 def _energies(cfg) -> list[str]:
@@ -141,7 +153,7 @@ def _duration(cfg, platform: str | None) -> str:
     from ..vcm.build import DEFAULT_PLATFORM, prepare, unprepared_simulation
 
     try:
-        simulation = unprepared_simulation(cfg, platform or DEFAULT_PLATFORM)
+        simulation = unprepared_simulation(cfg, platform or cfg.platform or DEFAULT_PLATFORM)
         prepare(cfg, simulation.context)
         # The first step compiles kernels on a GPU.
         simulation.integrator.step(2)

@@ -24,12 +24,18 @@ __all__ = ["run"]
 @click.option(
     "--steps",
     type=click.IntRange(min=0),
-    help="Step, counted from the start, to end with. Default: SimulationTimeInPs / StepSizeInFs.",
+    help="Step, counted from the start, to end with. Default: what the configuration says.",
 )
 @click.option("--seed", type=click.IntRange(1, 2**31 - 1), help="Seed in place of the file's.")
 @click.option("--resume", is_flag=True, help="Go on with the run that the folder holds.")
-@click.option("--xtc/--no-xtc", default=True, help="Write an XTC trajectory.  [default: yes]")
-@click.option("--ply", is_flag=True, help="Write a PLY file per membrane and frame.")
+@click.option(
+    "--xtc/--no-xtc", default=None, help="Write an XTC trajectory. Default: as CONFIG says, or yes."
+)
+@click.option(
+    "--ply/--no-ply",
+    default=None,
+    help="Write a PLY file per membrane and frame. Default: as CONFIG says, or no.",
+)
 @click.option(
     "--checkpoint",
     "checkpoint_seconds",
@@ -40,7 +46,7 @@ __all__ = ["run"]
 )
 @reader_options
 def run(config, out, steps, seed, **options):
-    """Simulate what the VCM configuration file CONFIG says.
+    """Simulate what CONFIG says: a VCM configuration, or our own in TOML (name.toml).
 
     The run can be interrupted at any moment, by Ctrl-C or a kill, and goes on with --resume from
     its last checkpoint with nothing lost and nothing doubled.

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import secrets
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 import openmm
@@ -67,7 +69,14 @@ class Config:
         The interaction of each pair of membranes, lower triangular.
     seed : int
         Of all random numbers, above 0: the file's, or one drawn if that is 0.
+    platform : str or None
+        OpenMM platform for a run that is told no other; VCM's files name none.
+    writes : dict of bool
+        Whether a run that is not told writes "xtc" and "ply" files.
     """
+
+    platform: str | None = None
+    writes: Mapping[str, bool] = MappingProxyType({"xtc": True, "ply": False})
 
     def __init__(self, path, sections: list[Section], compatible: bool, ignore: bool, seed: int):
         self.path = Path(path)

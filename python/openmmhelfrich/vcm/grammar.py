@@ -151,7 +151,10 @@ def read_sections(path) -> list[Section]:
     if not path.is_file():
         raise FileNotFoundError(f"openmmhelfrich.vcm: there is no file {path}")
     if path.suffix.lower() == ".toml":
-        raise ConfigError(f"{path}:1: TOML files are not supported; give a VCM configuration")
+        raise ConfigError(
+            f"{path}:1: this is TOML, not a VCM configuration; config.read takes it, as do "
+            "the commands run and info"
+        )
     sections: list[Section] = []
     text = path.read_text(encoding="utf-8-sig", errors="replace")
     lines = text.splitlines()

@@ -20,7 +20,7 @@ from pathlib import Path
 import openmm
 
 from . import build
-from .config import Config, read
+from .config import Config
 from .outputs import Frame, Outputs, report_steps, take_frame
 
 __all__ = ["CHECKPOINT", "Run", "RunError"]
@@ -50,19 +50,19 @@ class Run:
     Parameters
     ----------
     config : str or Path
-        A VCM configuration file.
+        A VCM configuration file, or one of ours in TOML.
     folder : str or Path, optional
         Where outputs go. Default: a folder with the project's name in the present one.
     platform : str, optional
-        OpenMM platform. Default: that of the run to resume, or Reference.
+        OpenMM platform. Default: that of the run to resume, that of the file, or Reference.
     seed : int
         In place of the file's, if not 0.
     resume : bool
         Go on with the run that the folder holds. Without a checkpoint it starts at the beginning.
     vcm_compatible, ignore_unknown : bool
         As for `read`; a resumed run keeps its own.
-    xtc, ply : bool
-        As for `Outputs`; a resumed run keeps its own.
+    xtc, ply : bool, optional
+        As for `Outputs`; a resumed run keeps its own. Default: what the file says, or XTC only.
     checkpoint_seconds : float
         Wall time between checkpoints, s: what a kill can cost.
 
@@ -84,14 +84,19 @@ class Run:
         resume: bool = False,
         vcm_compatible: bool = False,
         ignore_unknown: bool = False,
-        xtc: bool = True,
-        ply: bool = False,
+        xtc: bool | None = None,
+        ply: bool | None = None,
         checkpoint_seconds: float = 10.0,
     ):
+        # Imported here, because configurations of ours build on those of VCM.
+        from ..config import read_any as read
+
         options = {"vcm_compatible": vcm_compatible, "ignore_unknown": ignore_unknown}
         self._checkpoint_seconds = checkpoint_seconds
-        self._options = {**options, "xtc": xtc, "ply": ply}
         cfg = read(config, seed=seed, **options)
+        asked = {"xtc": xtc, "ply": ply}
+        wanted = {name: given for name, given in asked.items() if given is not None}
+        self._options = {**options, **cfg.writes, **wanted}
         self.folder = Path(folder if folder is not None else cfg.name)
         saved = self._find(resume)
         if saved is not None:
@@ -109,7 +114,8 @@ class Run:
                 "a mesh has changed since; give another folder with --out"
             )
         try:
-            self.simulation = build.unprepared_simulation(cfg, platform or build.DEFAULT_PLATFORM)
+            platform = platform or cfg.platform or build.DEFAULT_PLATFORM
+            self.simulation = build.unprepared_simulation(cfg, platform)
         except openmm.OpenMMException as reason:
             raise RunError(f"OpenMM cannot start: {reason}") from None
         self.outputs = Outputs(cfg, self.folder, self._options["xtc"], self._options["ply"])
@@ -209,7 +215,7 @@ class Run:
 
     def _broken(self, reason: str) -> RunError:
         return RunError(
-            f"the simulation broke down: {reason}; try a smaller StepSizeInFs, which "
+            f"the simulation broke down: {reason}; try a smaller time step, which "
             "'openmm-helfrich info' compares with what is stable"
         )
 

@@ -1,0 +1,142 @@
+"""``openmm-helfrich bench``: how fast this machine makes steps."""
+
+from __future__ import annotations
+
+import math
+
+import click
+
+__all__ = ["bench"]
+
+# 10 n² + 2 vertices: N = 252, 1002, 4002, 16 002.
+_SIZES = (252, 1002, 4002, 16_002)
+# The integrators of `_benchmark`, which need not be imported to print the help.
+_INTEGRATORS = ("Verlet", "LangevinMiddle", "Brownian")
+
+
+def _check_size(context: click.Context, parameter: click.Parameter, sizes):
+    for size in sizes:
+        if not size >= 12 or 10 * math.isqrt(max(size - 2, 0) // 10) ** 2 + 2 != size:
+            near = max(1, round(math.sqrt(max(size - 2, 0) / 10)))
+            raise click.BadParameter(
+                f"no icosphere has {size} vertices; 10 n² + 2 is possible, such as "
+                f"{10 * near * near + 2}"
+            )
+    return sizes
+
+
+@click.command()
+@click.option(
+    "--platform",
+    "platforms",
+    multiple=True,
+    metavar="NAME",
+    help="Only this of OpenMM's platforms; may be repeated. Default: all that are installed.",
+)
+@click.option(
+    "--integrator",
+    type=click.Choice(_INTEGRATORS),
+    default="LangevinMiddle",
+    show_default=True,
+)
+@click.option(
+    "--size",
+    "sizes",
+    type=int,
+    multiple=True,
+    default=_SIZES,
+    show_default=True,
+    callback=_check_size,
+    help="Vertices, 10 n² + 2; may be repeated.",
+)
+@click.option(
+    "--seconds",
+    type=click.FloatRange(min=0, min_open=True),
+    default=0.2,
+    show_default=True,
+    help="Length of one run.",
+)
+@click.option("--repeats", type=click.IntRange(min=1), default=5, show_default=True)
+def bench(platforms, integrator, sizes, seconds, repeats):
+    """Measure steps per second of the paper's vesicle on this machine.
+
+    Every platform is raced against its own empty step, that of particles without forces, which is
+    what OpenMM takes for itself. The fastest of several runs counts. Takes some ten seconds for
+    each platform.
+    """
+    import openmm
+
+    from .. import _benchmark
+    from ..vesicle import Vesicle
+
+    found, failed = _benchmark.targets(_known(platforms))
+    for line in _head(integrator, seconds, repeats):
+        click.echo(line)
+    for name, reason in failed.items():
+        click.echo(f"platform {name} does not start: {reason}", err=True)
+    if not found:
+        raise click.ClickException("no platform to measure")
+    width = max(len(target.label) for target in found)
+    click.echo(f"\n{'N':>7s}  {'platform':<{width}s} {'steps/s':>10s} {'µs/step':>10s} "
+               f"{'empty, µs':>10s} {'ratio':>6s}")  # fmt: skip
+    for size in sizes:
+        vesicle = Vesicle(_benchmark.sphere(math.isqrt((size - 2) // 10)))
+        systems = {"ours": vesicle.system(), "empty": _benchmark.empty_system(vesicle)}
+        steppers = {}
+        for target in found:
+            for kind, system in systems.items():
+                try:
+                    context = _benchmark.start(system, vesicle, integrator, target)
+                    context.getIntegrator().step(1)
+                except openmm.OpenMMException as reason:
+                    raise click.ClickException(
+                        f"{target.label}, N = {size}: {reason}; leave the platform out with "
+                        "--platform"
+                    ) from None
+                steppers[kind, target.label] = _benchmark.Steps(context)
+        cost = _benchmark.fastest(steppers, repeats, seconds)
+        for (kind, label), stepper in steppers.items():
+            try:
+                stepper.check()
+            except FloatingPointError as reason:
+                raise click.ClickException(f"{label}, {kind}, N = {size}: {reason}") from None
+        for target in found:
+            ours, empty = cost["ours", target.label], cost["empty", target.label]
+            click.echo(f"{size:>7d}  {target.label:<{width}s} {1e6 / ours:>10.0f} {ours:>10.1f} "
+                       f"{empty:>10.1f} {ours / empty:>6.2f}")  # fmt: skip
+
+
+def _known(platforms) -> list[str] | None:
+    """The platforms asked for, as OpenMM calls them; None for all."""
+    import openmm
+
+    if not platforms:
+        return None
+    count = openmm.Platform.getNumPlatforms()
+    by_lower = {name.lower(): name for name in map(_platform_name, range(count))}
+    for name in platforms:
+        if name.lower() not in by_lower:
+            raise click.BadParameter(
+                f"no platform {name!r}; this OpenMM has {', '.join(by_lower.values())}",
+                param_hint="--platform",
+            )
+    return list(dict.fromkeys(by_lower[name.lower()] for name in platforms))
+
+
+def _platform_name(index: int) -> str:
+    import openmm
+
+    return openmm.Platform.getPlatform(index).getName()
+
+
+def _head(integrator: str, seconds: float, repeats: int) -> list[str]:
+    from .. import _benchmark
+
+    facts = ", ".join(f"{name}: {value}" for name, value in _benchmark.machine().items())
+    versions = ", ".join(f"{name} {value}" for name, value in _benchmark.versions().items())
+    return [
+        facts,
+        versions,
+        f"{integrator}, {_benchmark.TIME_STEP:g} ps, bending + area + volume + heights, best of "
+        f"{repeats} runs of {seconds:g} s",
+    ]

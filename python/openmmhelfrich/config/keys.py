@@ -1,0 +1,150 @@
+"""The one table of keys: what each is called, how it is read, its default and its meaning."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from ..forces import BendingForce, DihedralForce
+from .values import (
+    Reader,
+    boolean,
+    choice,
+    choices,
+    energy,
+    integer,
+    mode,
+    number,
+    scale,
+    text,
+    vector,
+)
+
+__all__ = ["KEYS", "REQUIRED", "Key", "keys_of"]
+
+#: The default of a key that must be given.
+REQUIRED = object()
+_SCHEMES = {
+    name: getattr(BendingForce, name)
+    for name in (
+        "Julicher",
+        "GompperKroll",
+        "GompperKrollBarycentric",
+        "JulicherVoronoi",
+        "Espriu",
+    )
+}
+_FORMS = {
+    name: getattr(DihedralForce, name)
+    for name in ("Quartic", "Cosine", "Exp", "SmoothExp", "SmoothExp46")
+}
+#: Text outputs, by VCM's name of each.
+_TEXTS = {
+    "psf": "PSF",
+    "xyz": "XYZ",
+    "pdb": "PDB",
+    "velocities": "VEL",
+    "forces": "FORCE",
+    "curvatures": "CURVE",
+}
+_INTEGRATORS = ("Verlet", "LangevinMiddle", "Langevin", "Brownian")
+_MAX_SEED = 2**31 - 1
+
+
+@dataclass(frozen=True)
+class Key:
+    """One key of the format.
+
+    table: the table that it belongs to; name; read: from the TOML value to what is meant; default:
+    what is meant without it, None for "as described", `REQUIRED` if it must be given; meaning: for
+    the documentation, with the unit.
+    """
+
+    table: str
+    name: str
+    read: Reader
+    default: Any
+    meaning: str
+
+
+KEYS: tuple[Key, ...] = (
+    Key("simulation", "name", text, None,
+        "Name of the output files, and of their folder. Default: that of the file."),
+    Key("simulation", "duration", number(least=0), REQUIRED, "How long to simulate, ps."),
+    Key("simulation", "seed", integer(0, _MAX_SEED), 0,
+        "Of all random numbers; 0 draws one, which is printed and kept."),
+    Key("simulation", "platform", text, None,
+        "OpenMM platform, unless --platform names another. Default: Reference."),
+    Key("simulation", "minimise", boolean, False, "Minimise the energy before the first step."),
+    Key("simulation", "thermal_velocities", boolean, True,
+        "Draw the first velocities at the temperature; otherwise they are zero."),
+    Key("integrator", "kind", choice(_INTEGRATORS), "LangevinMiddle",
+        "One of " + ", ".join(f"`{name}`" for name in _INTEGRATORS) + "."),
+    Key("integrator", "time_step", number(above=0), 0.2, "Δt, ps."),
+    Key("integrator", "temperature", number(above=0), 300.0,
+        "T, K, also that of \"… kT\" and of the first velocities."),
+    Key("integrator", "friction", number(least=0), 0.01, "γ, 1/ps; Verlet has none."),
+    Key("output", "interval", number(above=0), 100.0, "Time between frames, ps, in whole steps."),
+    Key("output", "xtc", boolean, True, "Write a trajectory `<name>.xtc`."),
+    Key("output", "ply", boolean, False, "Write a mesh per vesicle and frame."),
+    Key("output", "text", choices(_TEXTS), (),
+        "Text files: an array of " + ", ".join(f"`\"{name}\"`" for name in _TEXTS) + "."),
+    Key("vesicle", "name", text, None, "Label in file names and tables. Default: its number."),
+    Key("vesicle", "rigidity", energy, None, "Bending rigidity κ, kJ/mol. Default: 20 kBT, 300 K."),
+    Key("vesicle", "scheme", choice(_SCHEMES), None,
+        "Discretization of bending: " + ", ".join(f"`{name}`" for name in _SCHEMES)
+        + ". Default: `Julicher`."),
+    Key("vesicle", "spontaneous_curvature", number(), None,
+        "C0, 1/nm, positive to bulge outward. Default: 0."),
+    Key("vesicle", "unsigned_spontaneous_curvature", boolean, None,
+        "VCM's magnitude of the curvature in the linear term of C0. Default: false."),
+    Key("vesicle", "area_modulus", number(least=0), None, "kA, kJ/mol/nm². Default: 1.3."),
+    Key("vesicle", "volume_modulus", number(least=0), None, "kV, kJ/mol/nm³. Default: 0.04."),
+    Key("vesicle", "area", number(above=0), None, "A0, nm². Default: that of the mesh."),
+    Key("vesicle", "volume", number(above=0), None, "V0, nm³. Default: that of the mesh."),
+    Key("vesicle", "reduced_volume", number(above=0), None,
+        "V0 as a multiple of the volume of the sphere of area A0, in place of `volume`."),
+    Key("vesicle", "softness", number(least=0), None,
+        "Ξ, which fixes the least triangle height. Default: 0.037."),
+    Key("vesicle", "epsilon", energy, None,
+        "ε of the triangle heights, kJ/mol. Default: 4 kBT, 300 K."),
+    Key("vesicle", "mass", number(above=0), None, "Mass of every vertex, amu. Default: 50."),
+    Key("vesicle", "dihedral_stiffness", energy, None,
+        "K of a dihedral potential, kJ/mol. Default: 0, none."),
+    Key("vesicle", "dihedral_form", choice(_FORMS), None,
+        "Its form: " + ", ".join(f"`{name}`" for name in _FORMS) + ". Default: `Quartic`."),
+    Key("vesicle", "triangle_area_modulus", number(least=0), None,
+        "Modulus that keeps each triangle near its first area, kJ/mol/nm². Default: 0, none."),
+    Key("vesicle", "plaquette_stiffness", energy, None,
+        "Stiffness that keeps vertex areas equal, kJ/mol. Default: 0, none."),
+    Key("vesicle", "min_triangle_area", number(least=0), None,
+        "Triangle area below which triangles repel, nm². Default: 0, none."),
+    Key("vesicle.mesh", "file", text, None,
+        "A mesh file, beside the configuration: PLY, OBJ, STL, OFF, VTK, VTU, Gmsh."),
+    Key("vesicle.mesh", "icosphere", integer(1), None,
+        "In place of a file: a regular sphere, each side of the icosahedron in n parts, "
+        "N = 10 n² + 2."),
+    Key("vesicle.mesh", "random", integer(12), None,
+        "In place of a file: an irregular sphere of so many vertices."),
+    Key("vesicle.mesh", "radius", number(above=0), None,
+        "Radius of `icosphere` and `random`, nm; they need it."),
+    Key("vesicle.mesh", "seed", integer(0, _MAX_SEED), None, "Of `random`. Default: 0."),
+    Key("vesicle.mesh", "scale", scale, None, "Factor of the coordinates, or three of them."),
+    Key("vesicle.mesh", "deform", mode, None,
+        "r → r (1 + u Y_lm): `{ l = 2, m = 0, amplitude = 0.1 }`."),
+    Key("vesicle.mesh", "oblate", number(above=0), None,
+        "Flatten along z to this reduced volume, at constant area."),
+    Key("vesicle.mesh", "prolate", number(above=0), None,
+        "Stretch along z to this reduced volume, at constant area."),
+    Key("vesicle.mesh", "rotate", vector, None,
+        "Rotation vector about the origin, degrees: `[0, 0, 90]` is a quarter turn about z."),
+    Key("vesicle.mesh", "translate", vector, None, "Displacement, nm."),
+    Key("repulsion", "strength", energy, REQUIRED,
+        "s, kJ/mol, of s (1 − r/d)² between vertices of different vesicles."),
+    Key("repulsion", "distance", number(above=0), REQUIRED, "d, nm, beyond which there is none."),
+)  # fmt: skip
+
+
+def keys_of(table: str) -> dict[str, Key]:
+    """The keys of a table by name."""
+    return {key.name: key for key in KEYS if key.table == table}

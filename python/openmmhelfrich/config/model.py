@@ -1,0 +1,245 @@
+"""A configuration as it was read: vesicles, and the OpenMM objects made of them."""
+
+from __future__ import annotations
+
+import re
+import secrets
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import openmm
+
+from .. import vcm
+from ..vcm.grammar import GENERAL, MEMBRANE, ConfigError, nearest
+from ..vcm.parsers import Interval
+from ..vcm.settings import Settings
+from ..vesicle import Vesicle
+from .document import Document
+from .keys import keys_of
+from .meshes import start_mesh
+from .tables import Table
+
+__all__ = ["Configuration", "VesicleMembrane", "read", "read_any"]
+
+_TABLES = ("simulation", "integrator", "output", "vesicle", "repulsion")
+_MAX_SEED = 2**31 - 1
+# Group 31 is left to what a user adds.
+_NUM_GROUPS = 31
+
+
+@dataclass(frozen=True)
+class VesicleMembrane(vcm.Membrane):
+    """One vesicle of a configuration: a `vcm.Membrane`, and the `Vesicle` that it is."""
+
+    vesicle: Vesicle
+
+
+class Configuration(vcm.Config):
+    """What a TOML file asks for. `read` makes it.
+
+    It has the attributes and methods of `vcm.Config`: `positions`, `meshes`, `membranes`, `terms`,
+    `system()`, `topology()`, `integrator()`, `simulation(platform)`, `energies(context)`; `general`
+    has the values by VCM's names.
+    """
+
+    def __init__(self, document: Document, seed: int = 0):
+        self.path = document.path
+        self.vcm_compatible = False
+        for name in document.data:
+            if name not in _TABLES:
+                hint = nearest(name, _TABLES)
+                raise document.error((name,), f"there is no such table; {hint}")
+        simulation = Table(document, ("simulation",), "simulation")
+        integrator = Table(document, ("integrator",), "integrator")
+        output = Table(document, ("output",), "output")
+        self._step_size = integrator["time_step"]
+        if output["interval"] < self._step_size:
+            raise output.error(
+                "interval",
+                f"{output['interval']:g} ps is less than the time step of {self._step_size:g} ps",
+            )
+        self.general = _general(simulation, integrator, output, self.path.stem)
+        self.seed = seed or simulation["seed"] or secrets.randbelow(_MAX_SEED) + 1
+        self.platform = _platform(simulation)
+        self.writes = {"xtc": output["xtc"], "ply": output["ply"]}
+        self.membranes = _vesicles(document, self.kT)
+        self._repulsion = None
+        if "repulsion" in document.data:
+            self._repulsion = Table(document, ("repulsion",), "repulsion", self.kT)
+            if len(self.membranes) == 1:
+                raise self._repulsion.error(None, "it acts between vesicles, and there is one only")
+        # The potentials of each vesicle, by Vesicle's names.
+        self._kinds = [list(membrane.vesicle._forces(0)) for membrane in self.membranes]
+        self._terms: dict[str, int] = {}
+        # What cannot be built shall be refused when the file is read.
+        self.system()
+
+    @property
+    def step_size(self) -> float:
+        """Time step, ps."""
+        return self._step_size
+
+    @property
+    def velocity_shifts(self) -> np.ndarray:
+        """Zero for every particle, shape (num_particles, 3), nm/ps."""
+        return np.zeros((self.num_particles, 3))
+
+    @property
+    def terms(self) -> dict[str, int]:
+        """The potentials of the System by name, with the force group of each."""
+        return dict(self._terms)
+
+    def system(self) -> openmm.System:
+        """A new System: vertex i of a vesicle is particle `offset` + i.
+
+        Every potential is one force with a name, see `terms`. Each has its own force group as long
+        as these last; with more potentials, those of one kind share one.
+        """
+        result = openmm.System()
+        kinds = list(dict.fromkeys(kind for names in self._kinds for kind in names))
+        apart = sum(map(len, self._kinds)) < _NUM_GROUPS
+        self._terms, used = {}, 0
+        for membrane, names in zip(self.membranes, self._kinds, strict=True):
+            groups = [used + i if apart else kinds.index(kind) for i, kind in enumerate(names)]
+            used += len(names)
+            placement = membrane.vesicle.add_to(result, groups)
+            for kind, group in zip(names, groups, strict=True):
+                alone = len(self.membranes) == 1 or not apart
+                term = kind if alone else f"{kind} {membrane.label}"
+                placement.forces[kind].setName(term)
+                self._terms[term] = group
+        if self._repulsion is not None:
+            force = self._repulsive_force()
+            force.setForceGroup(max(self._terms.values()) + 1)
+            self._terms[force.getName()] = force.getForceGroup()
+            result.addForce(force)
+        return result
+
+    def _repulsive_force(self) -> openmm.Force:
+        """E = s (1 − r/d)² for r < d, between vertices of different vesicles."""
+        force = openmm.CustomNonbondedForce("strength*(1-r/contact)^2*step(contact-r)")
+        force.setName("repulsion")
+        force.addGlobalParameter("strength", self._repulsion["strength"])
+        force.addGlobalParameter("contact", self._repulsion["distance"])
+        force.setNonbondedMethod(openmm.CustomNonbondedForce.CutoffNonPeriodic)
+        force.setCutoffDistance(self._repulsion["distance"])
+        for _ in range(self.num_particles):
+            force.addParticle()
+        for number, first in enumerate(self.membranes):
+            for second in self.membranes[number + 1 :]:
+                force.addInteractionGroup(set(first.particles), set(second.particles))
+        return force
+
+
+def read(path, *, seed: int = 0) -> Configuration:
+    """Read a configuration in TOML; ``docs/config.md`` describes it.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file. Meshes are looked for beside it.
+    seed : int
+        In place of the file's, if not 0.
+
+    Returns
+    -------
+    Configuration
+
+    Raises
+    ------
+    FileNotFoundError
+        If the file is not there.
+    ConfigError
+        If it is not TOML, has an unknown key or a bad value, lacks a key that is needed, or names a
+        mesh that cannot be used. The message has file, line and key.
+    """
+    if not 0 <= seed <= _MAX_SEED:
+        raise ValueError(f"read: seed must be 0 to {_MAX_SEED}, got {seed}")
+    return Configuration(Document(path), seed)
+
+
+def read_any(path, vcm_compatible: bool = False, *, ignore_unknown: bool = False, seed: int = 0):
+    """Read a configuration of either kind: TOML if the name ends in ``.toml``, or else VCM's.
+
+    Arguments and errors are those of `vcm.read`; options that only VCM's have are refused with
+    TOML.
+    """
+    if Path(path).suffix.lower() != ".toml":
+        return vcm.read(path, vcm_compatible, ignore_unknown=ignore_unknown, seed=seed)
+    for name, given in (("vcm_compatible", vcm_compatible), ("ignore_unknown", ignore_unknown)):
+        if given:
+            raise ConfigError(f"{path}:1: {name} is for VCM's configurations, and this is TOML")
+    return read(path, seed=seed)
+
+
+def _general(simulation: Table, integrator: Table, output: Table, stem: str) -> dict:
+    """The settings that runs and outputs look at, by VCM's names and in VCM's units."""
+    name = simulation["name"] or stem
+    if not re.fullmatch(r"[^/\\\0]+", name) or name in (".", ".."):
+        raise simulation.error("name", f"expected a name for files, got {name!r}")
+    return {
+        **Settings(None, GENERAL),
+        "ProjectName": name,
+        "SimulationTimeInPs": simulation["duration"],
+        "StepSizeInFs": 1000 * integrator["time_step"],
+        "Integrator": integrator["kind"],
+        "FrictionIninvertPs": integrator["friction"],
+        "TemperatureinKelvin": integrator["temperature"],
+        "setVelocitiesToTemperature": simulation["thermal_velocities"],
+        "Minimise": simulation["minimise"],
+        "ReportIntervalInFs": Interval(fs=1000 * output["interval"]),
+        "TextOutputs": output["text"],
+        "BinOutputs": (),
+    }
+
+
+def _platform(simulation: Table) -> str | None:
+    """The platform that the file names, as OpenMM calls it."""
+    wanted = simulation["platform"]
+    if wanted is None:
+        return None
+    count = openmm.Platform.getNumPlatforms()
+    known = [openmm.Platform.getPlatform(i).getName() for i in range(count)]
+    by_lower = {name.lower(): name for name in known}
+    if wanted.lower() not in by_lower:
+        raise simulation.error(
+            "platform", f"no platform {wanted!r}; this OpenMM has {', '.join(known)}"
+        )
+    return by_lower[wanted.lower()]
+
+
+def _vesicles(document: Document, kT: float) -> tuple[VesicleMembrane, ...]:
+    """All vesicles, in the order of the file, which is that of their particles."""
+    given = document.data.get("vesicle")
+    if not isinstance(given, list) or not given:
+        raise document.error(("vesicle",), "a configuration needs one or more [[vesicle]] tables")
+    found: list[VesicleMembrane] = []
+    for number in range(len(given)):
+        place = ("vesicle", number)
+        table = Table(document, place, "vesicle", kT, tables=("mesh",))
+        if not table.given("mesh"):
+            raise table.error("mesh", "a vesicle needs a mesh; add [vesicle.mesh]")
+        mesh = start_mesh(
+            Table(document, (*place, "mesh"), "vesicle.mesh", kT), document.path.parent
+        )
+        label = table["name"] or str(number)
+        if re.search(r"[\s/\\,]", label):
+            raise table.error("name", f"expected a word without spaces or slashes, got {label!r}")
+        if label in [other.label for other in found]:
+            raise table.error("name", f"another vesicle is called {label!r}; names tell them apart")
+        offset = found[-1].particles.stop if found else 0
+        settings = Settings(None, MEMBRANE)
+        found.append(VesicleMembrane(label, settings, mesh, offset, 0, _vesicle(table, mesh)))
+    return tuple(found)
+
+
+def _vesicle(table: Table, mesh) -> Vesicle:
+    names = [name for name in keys_of("vesicle") if name != "name"]
+    if table.given("volume") and table.given("reduced_volume"):
+        raise table.error("reduced_volume", "give either volume or reduced_volume, not both")
+    given = {name: table[name] for name in names if table[name] is not None}
+    try:
+        return Vesicle(mesh, **given)
+    except (TypeError, ValueError) as reason:
+        raise table.error(None, str(reason)) from None

@@ -1,0 +1,165 @@
+"""From a value of a TOML file to what the simulation needs.
+
+A reader is a function of the value and of kB T, kJ/mol. It returns what is meant, or raises
+ValueError with what is wrong; the caller adds file, line and key.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+from ..vcm.grammar import nearest
+
+__all__ = [
+    "Reader",
+    "boolean",
+    "choice",
+    "choices",
+    "energy",
+    "integer",
+    "mode",
+    "number",
+    "scale",
+    "table",
+    "text",
+    "vector",
+]
+
+Reader = Callable[[Any, float], Any]
+
+
+def _finite(value: Any, what: str = "a number") -> float:
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise ValueError(f"expected {what}, got {value!r}")
+    try:
+        result = float(value)
+    except OverflowError:
+        result = math.inf
+    if not math.isfinite(result):
+        raise ValueError(f"expected a finite number, got {value}")
+    return result
+
+
+def _check_range(value: float, least: float | None, above: float | None) -> None:
+    if least is not None and value < least:
+        raise ValueError(f"must be {least:g} or more, got {value:g}")
+    if above is not None and value <= above:
+        raise ValueError(f"must be above {above:g}, got {value:g}")
+
+
+def number(least: float | None = None, above: float | None = None) -> Reader:
+    """A finite number in a range."""
+
+    def read(value, kT):
+        result = _finite(value)
+        _check_range(result, least, above)
+        return result
+
+    return read
+
+
+def energy(value, kT):
+    """A number in kJ/mol, or a string such as ``"20 kT"``; 0 or more."""
+    if isinstance(value, str):
+        found = re.fullmatch(r"\s*(\S+)\s*kT\s*", value)
+        try:
+            factor = float(found.group(1)) if found else math.nan
+        except ValueError:
+            factor = math.nan
+        if not math.isfinite(factor):
+            raise ValueError(
+                f'expected a number in kJ/mol or a string such as "20 kT", got {value!r}'
+            )
+        result = factor * kT
+    else:
+        result = _finite(value, 'a number in kJ/mol or a string such as "20 kT"')
+    _check_range(result, 0, None)
+    return result
+
+
+def integer(least: int, most: int | None = None) -> Reader:
+    """An integer in a range."""
+
+    def read(value, kT):
+        if isinstance(value, bool) or not isinstance(value, int):
+            raise ValueError(f"expected an integer, got {value!r}")
+        if value < least:
+            raise ValueError(f"must be {least} or more, got {value}")
+        if most is not None and value > most:
+            raise ValueError(f"must be {most} or less, got {value}")
+        return value
+
+    return read
+
+
+def boolean(value, kT):
+    """True or false."""
+    if not isinstance(value, bool):
+        raise ValueError(f"expected true or false, got {value!r}")
+    return value
+
+
+def text(value, kT):
+    """A string that is not empty."""
+    if not isinstance(value, str) or not value.strip():
+        raise ValueError(f"expected a string, got {value!r}")
+    return value
+
+
+def choice(meanings: Mapping[str, Any] | Iterable[str]) -> Reader:
+    """One of several strings, which may stand for something."""
+    known = meanings if isinstance(meanings, Mapping) else {name: name for name in meanings}
+
+    def read(value, kT):
+        if not isinstance(value, str):
+            raise ValueError(f"expected a string, one of {', '.join(known)}, got {value!r}")
+        if value not in known:
+            raise ValueError(f"there is no {value!r}; {nearest(value, known)}")
+        return known[value]
+
+    return read
+
+
+def choices(meanings: Mapping[str, Any]) -> Reader:
+    """An array of strings, each one of several."""
+    one = choice(meanings)
+
+    def read(value, kT):
+        if not isinstance(value, list):
+            raise ValueError(f"expected an array of strings, got {value!r}")
+        return tuple(one(item, kT) for item in value)
+
+    return read
+
+
+def vector(value, kT):
+    """Three finite numbers."""
+    if not isinstance(value, list) or len(value) != 3:
+        raise ValueError(f"expected three numbers [x, y, z], got {value!r}")
+    return tuple(_finite(component) for component in value)
+
+
+def scale(value, kT):
+    """A factor, or one for each axis; none of them 0."""
+    factors = vector(value, kT) if isinstance(value, list) else (_finite(value),)
+    if 0 in factors:
+        raise ValueError(f"a factor must not be 0, got {value!r}")
+    return factors if len(factors) == 3 else factors[0]
+
+
+def mode(value, kT):
+    """A deformation ``{ l = 2, m = 0, amplitude = 0.1 }``, as a tuple."""
+    if not isinstance(value, dict) or set(value) != {"l", "m", "amplitude"}:
+        raise ValueError(f"expected {{ l = …, m = …, amplitude = … }}, got {value!r}")
+    l = integer(0)(value["l"], kT)
+    return l, integer(-l, l)(value["m"], kT), _finite(value["amplitude"])
+
+
+def table(value, kT):
+    """A table, whose keys are read by themselves."""
+    if not isinstance(value, dict):
+        raise ValueError(f"expected a table, got {value!r}")
+    return value

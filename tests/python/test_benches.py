@@ -1,0 +1,107 @@
+"""The scripts of benches/: a tiny run of all of it, and the verdicts on made-up figures."""
+
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+BENCHES = Path(__file__).resolve().parents[2] / "benches"
+
+
+@pytest.fixture(scope="module")
+def scripts():
+    """The modules `race` and `checks`."""
+    sys.path.insert(0, str(BENCHES))
+    try:
+        import checks
+        import race
+    finally:
+        sys.path.remove(str(BENCHES))
+    return SimpleNamespace(race=race, checks=checks)
+
+
+def test_tiny_run(tmp_path):
+    output = tmp_path / "figures.md"
+    command = [
+        sys.executable, BENCHES / "steps.py", "--parts", 1, "--repeats", 1, "--seconds", 0.001,
+        "--platform", "Reference", "--jax-python", tmp_path / "none", "--output", output,
+    ]  # fmt: skip
+    said = subprocess.run(
+        list(map(str, command)), capture_output=True, text=True, check=True, timeout=300
+    )
+    text = output.read_text(encoding="utf-8")
+    assert text.replace("(figures.png)", "(benchmarks.png)") in said.stdout
+    assert "(figures.png)" in text
+    assert output.with_suffix(".png").read_bytes().startswith(b"\x89PNG")
+    for integrator in ("Verlet", "LangevinMiddle", "Brownian"):
+        part = text.partition(f"## {integrator}, µs per step")[2].partition("\n## ")[0]
+        rows = {
+            cells[1].strip(): cells[2].strip(" *")
+            for cells in (line.split("|") for line in part.splitlines())
+            if len(cells) > 3
+        }
+        assert float(rows["openmm-helfrich, Reference"]) > 0
+        assert float(rows["OpenMM's empty step, Reference"]) > 0
+        assert ("x, y, z string forces, Reference" in rows) == (integrator == "Verlet")
+    # What was not measured is said, not left out.
+    assert "jax-md, edges, N = 12: jax and jax-md are not installed" in text
+    assert "not measured: run with all sizes" in text
+    assert "| 5 steps " in text
+
+
+def rows_of(table):
+    """What is asked, as (measured, verdict)."""
+    cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in table[2:]]
+    return {row[0]: (row[2], row[3]) for row in cells}
+
+
+def test_verdicts(scripts):
+    row, results = scripts.race.Row, scripts.race.Results()
+    for n in (1002, 4002, 10_242, 998_562):
+        results.cost.update({
+            (row("empty", "Reference", "Verlet"), n): 10.0,
+            (row("empty", "Reference", "LangevinMiddle"), n): 60.0,
+            (row("ours", "Reference", "Verlet"), n): 40.0,
+            (row("ours", "Helfrich, 1 thread", "Verlet"), n): 20.0 * n / 1002,
+            (row("ours", "Reference", "LangevinMiddle"), n): 50.0 * n / 1002,
+            (row("ours", "Helfrich, 1 thread", "LangevinMiddle"), n): 30.0 * n / 1002,
+            (row("strings", "Reference", "Verlet"), n): 900.0,
+            (row("jax", "edges", "Verlet"), n): 500.0,
+        })  # fmt: skip
+    used = {"mesh": {"peak": 900.0}, "Context": {"peak": 1500.0}}, 998_562, "Reference"
+    cost = {
+        ("Julicher", "plain, 1 thread", 1002): 100.0,
+        ("Julicher", "fused, 1 thread", 1002): 20.0,
+        ("Espriu", "fused, 1 thread", 1002): 36.0,
+        ("Julicher", "plain, 1 thread", 4002): 400.0,
+        ("Julicher", "fused, 1 thread", 4002): 120.0,
+        ("Julicher", "fused, 2 threads", 4002): 48.0,
+    }
+    found = rows_of(scripts.checks.table(results, used, SimpleNamespace(cost=cost)))
+    verdicts = [
+        ("Verlet step / empty Verlet step on Reference, N = 1002", "2 (Helfrich", "yes"),
+        ("LangevinMiddle step on platform Helfrich / empty LangevinMiddle step on Reference, "
+         "N = 1002", "0.5 ", "yes"),
+        ("LangevinMiddle step on platform Helfrich / empty LangevinMiddle step on Reference, "
+         "N = 4002", "2 ", "NO"),
+        ("Verlet step of the fastest string forces or jax-md / ours, N = 1002", "25 (jax", "yes"),
+        ("Verlet step of the fastest string forces or jax-md / ours, N = 4002", "12.5 ", "NO"),
+        ("peak memory at N = 998562, GB", "1.57 ", "NO"),
+        ("LangevinMiddle: time per vertex at N = 998562 over that at 10242", "1 ", "yes"),
+        ("Jülicher forces, 1 thread / plain evaluation on one thread, N = 1002", "0.2 ", "yes"),
+        ("Jülicher forces, 1 thread / plain evaluation on one thread, N = 4002", "0.3 ", "NO"),
+        ("Jülicher forces, 2 threads / plain evaluation on one thread, N = 4002", "0.12 ", "yes"),
+        ("slowest other scheme / Jülicher, 1 thread, N = 1002", "1.8 (Espriu", "NO"),
+        ("slowest other scheme / Jülicher, 1 thread, N = 4002", "not measured", "–"),
+    ]  # fmt: skip
+    for what, measured, verdict in verdicts:
+        assert found[what][0].startswith(measured), what
+        assert found[what][1] == verdict, what
+
+
+def test_nothing_measured_is_no_success(scripts):
+    found = rows_of(scripts.checks.table(scripts.race.Results(), None, None))
+    assert len(found) == 13
+    assert {verdict for _, verdict in found.values()} == {"–"}
