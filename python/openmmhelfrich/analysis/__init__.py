@@ -8,11 +8,15 @@ paper, doi:10.1103/PhysRevE.108.015301.
 
 from . import theory
 from .curvature import mean_curvature
-from .harmonics import mode_amplitudes, real_harmonics, solid_angles
+from .harmonics import real_harmonics
+from .modes import mode_amplitudes
+from .solid_angles import solid_angles
 from .statistics import Spectrum, autocorrelation_time, spectrum
+from .trajectories import Trajectory
 
 __all__ = [
     "Spectrum",
+    "Trajectory",
     "autocorrelation_time",
     "mean_curvature",
     "mode_amplitudes",
