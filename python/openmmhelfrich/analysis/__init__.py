@@ -1,23 +1,47 @@
 """Measurements on membranes, and the theory to set beside them.
 
 `mode_amplitudes` expands a nearly spherical vesicle in spherical harmonics, `spectrum` averages the
-amplitudes with an error bar that knows about correlation in time, `mean_curvature` gives the local
-curvature of every vertex, and `theory` holds the formulae for nearly spherical vesicles of the
-paper, doi:10.1103/PhysRevE.108.015301.
+amplitudes with an error bar that knows about correlation in time, `mode_autocorrelation` has their
+dynamics, `density_modes` and `structure_factor` the order of the vertices, `shape` and
+`vertex_quantities` global and local measures, and `theory` holds the formulae for nearly spherical
+vesicles of the paper, doi:10.1103/PhysRevE.108.015301.
+
+Vertices are arrays of one frame or many, or whatever holds them: a `Mesh`, a State, Context or
+Simulation of OpenMM, a `Trajectory` or the path of one. Long trajectories are read and worked on in
+chunks.
 """
 
 from . import theory
+from .correlation import autocorrelation, autocorrelation_time, mode_autocorrelation
 from .curvature import mean_curvature
-from .harmonics import mode_amplitudes, real_harmonics, solid_angles
-from .statistics import Spectrum, autocorrelation_time, spectrum
+from .density import density_modes, structure_factor
+from .harmonics import real_harmonics
+from .modes import mode_amplitudes
+from .shape import Shape, area_excess, gyration_tensor, shape
+from .solid_angles import solid_angles
+from .statistics import Blocking, Estimate, Spectrum, blocking, mean_with_error, spectrum
+from .trajectories import Trajectory
 
 __all__ = [
+    "Blocking",
+    "Estimate",
+    "Shape",
     "Spectrum",
+    "Trajectory",
+    "area_excess",
+    "autocorrelation",
     "autocorrelation_time",
+    "blocking",
+    "density_modes",
+    "gyration_tensor",
     "mean_curvature",
+    "mean_with_error",
     "mode_amplitudes",
+    "mode_autocorrelation",
     "real_harmonics",
+    "shape",
     "solid_angles",
     "spectrum",
+    "structure_factor",
     "theory",
 ]
