@@ -53,7 +53,7 @@ class Figure:
         parser.add_argument(
             "--results",
             type=Path,
-            help="folder of stored results, pictures and numbers (default: out/paper/full or quick)",
+            help="folder of stored results, pictures, numbers (default: out/paper/full or quick)",
         )
         parser.add_argument(
             "--plot-only", action="store_true", help="draw and check again what is stored"
