@@ -13,8 +13,9 @@ chunks.
 
 from . import theory
 from .correlation import autocorrelation, autocorrelation_time, mode_autocorrelation
-from .curvature import mean_curvature
+from .curvature import VertexQuantities, mean_curvature, vertex_quantities
 from .density import density_modes, structure_factor
+from .elements import edge_lengths, triangle_areas, triangle_heights
 from .harmonics import real_harmonics
 from .modes import mode_amplitudes
 from .shape import Shape, area_excess, gyration_tensor, shape
@@ -28,11 +29,13 @@ __all__ = [
     "Shape",
     "Spectrum",
     "Trajectory",
+    "VertexQuantities",
     "area_excess",
     "autocorrelation",
     "autocorrelation_time",
     "blocking",
     "density_modes",
+    "edge_lengths",
     "gyration_tensor",
     "mean_curvature",
     "mean_with_error",
@@ -44,4 +47,7 @@ __all__ = [
     "spectrum",
     "structure_factor",
     "theory",
+    "triangle_areas",
+    "triangle_heights",
+    "vertex_quantities",
 ]
