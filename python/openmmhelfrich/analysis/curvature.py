@@ -18,7 +18,7 @@ SCHEMES = (
 
 
 class VertexQuantities(NamedTuple):
-    """What `vertex_quantities` returns; shape (num_vertices, …), or with an axis of frames before."""
+    """What `vertex_quantities` returns, shape (num_vertices, …) each; frames are an axis before."""
 
     barycentric_area: np.ndarray
     """a_B = Σ_t a_t / 3 (B12), nm²."""
