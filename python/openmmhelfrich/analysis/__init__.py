@@ -13,35 +13,58 @@ chunks.
 
 from . import theory
 from .correlation import autocorrelation, autocorrelation_time, mode_autocorrelation
-from .curvature import mean_curvature
+from .curvature import VertexQuantities, mean_curvature, vertex_quantities
 from .density import density_modes, structure_factor
+from .elements import edge_lengths, triangle_areas, triangle_heights
+from .fits import DampingFit, ElasticFit, fit_damping, fit_young
 from .harmonics import real_harmonics
+from .landscapes import Grid, landscape, plane_grid, sphere_grid
+from .lifetime import Lifetime, time_to_failure
 from .modes import mode_amplitudes
 from .shape import Shape, area_excess, gyration_tensor, shape
 from .solid_angles import solid_angles
 from .statistics import Blocking, Estimate, Spectrum, blocking, mean_with_error, spectrum
+from .tables import Modes, read_modes, read_table
 from .trajectories import Trajectory
 
 __all__ = [
     "Blocking",
+    "DampingFit",
+    "ElasticFit",
     "Estimate",
+    "Grid",
+    "Lifetime",
+    "Modes",
     "Shape",
     "Spectrum",
     "Trajectory",
+    "VertexQuantities",
     "area_excess",
     "autocorrelation",
     "autocorrelation_time",
     "blocking",
     "density_modes",
+    "edge_lengths",
+    "fit_damping",
+    "fit_young",
     "gyration_tensor",
+    "landscape",
     "mean_curvature",
     "mean_with_error",
     "mode_amplitudes",
     "mode_autocorrelation",
+    "plane_grid",
+    "read_modes",
+    "read_table",
     "real_harmonics",
     "shape",
     "solid_angles",
     "spectrum",
+    "sphere_grid",
     "structure_factor",
     "theory",
+    "time_to_failure",
+    "triangle_areas",
+    "triangle_heights",
+    "vertex_quantities",
 ]
