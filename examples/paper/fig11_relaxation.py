@@ -38,8 +38,9 @@ def relaxation(shape, reduced_volume, softness, subdivision, duration, samples, 
 def settling_time(times, energies, error):
     """The first time from which the energy, a mean over seeds, stays at its plateau.
 
-    The plateau is the mean of the last half. "Stays" means: means over windows of 0.1 τ_2 are within
-    three of their standard deviations along the plateau, or their standard error, from then on.
+    The plateau is the mean of the last half. "Stays" means: means over windows of 0.1 τ_2 are
+    within three of their standard deviations along the plateau, or of its standard error, from then
+    on.
     """
     width = max(1, round(0.1 / (times[1] - times[0])))
     windows = np.convolve(energies, np.ones(width) / width, mode="valid")
@@ -70,8 +71,8 @@ def main():
     count = 10 * points[0]["subdivision"] ** 2 + 2
     tau = results[0]["tau_2"]
     figure.parameters(
-        f"N = {count}, κ = 20 kBT, Jülicher, Ξ = 0.037, LangevinMiddle, γ = 0.01/ps, 300 K, Δt = 0.5 "
-        f"ps, {seeds} runs of {duration:g} τ_2 each, τ_2 = {tau:.0f} ps."
+        f"N = {count}, κ = 20 kBT, Jülicher, Ξ = 0.037, LangevinMiddle, γ = 0.01/ps, 300 K, "
+        f"Δt = 0.5 ps, {seeds} runs of {duration:g} τ_2 each, τ_2 = {tau:.0f} ps."
     )
     figure.reduced("Δt = 0.5 ps in place of 0.2 ps.")
     graph, axes = plt.subplots(1, len(volumes), figsize=(3.6 * len(volumes), 3.4), squeeze=False)
