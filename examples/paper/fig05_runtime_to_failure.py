@@ -43,14 +43,14 @@ def main():
 
     figure = Figure("fig05", "Fig. 5", "Runtime to failure of Newtonian dynamics", __doc__)
     duration = figure.choose(10.0, 2.0)
-    fractions = figure.choose([0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 1.0], [0.1, 1.0])
+    fractions = figure.choose([0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 1.0], [0.1, 1.0])
     points = grid(
         scheme=list(SCHEMES),
         softness=SOFTNESSES,
         fraction=fractions,
         subdivision=[10],
         duration=[duration],
-        seed=figure.choose([1, 2], [1]),
+        seed=[1],
     )
     results = figure.sweep(runtime, points, description="runs")
 
@@ -74,7 +74,7 @@ def main():
         + ", ".join(f"√Ξ τ = {units[xi]:.1f} ps at Ξ = {xi:g}" for xi in SOFTNESSES)
         + "."
     )
-    figure.reduced(f"Runs that live end after {duration:g} τ_2.")
+    figure.reduced(f"One run per point; those that live end after {duration:g} τ_2.")
     if not figure.quick:
         figure.check("√Ξ τ at Ξ = 0.037", units[0.037], 10.8, 0.1, unit=" ps")
     allowed = [fraction for fraction in fractions if fraction <= 0.1]
