@@ -70,7 +70,8 @@ def mode_amplitudes(vertices, triangles, lmax, quadrature="fit", centre="mass"):
     ValueError
         A wrong shape, an index out of range, a coordinate that is not finite, a negative lmax, one
         with more harmonics than vertices for the fit, another quadrature or centre, a mesh whose
-        volume is not positive, or one so far from a sphere that no centre has u_1m = 0.
+        volume is not positive or with a vertex at its centre of mass, or one so far from a sphere
+        that no centre has u_1m = 0.
 
     Notes
     -----
@@ -110,7 +111,7 @@ def mode_amplitudes(vertices, triangles, lmax, quadrature="fit", centre="mass"):
                 "fit them to; ask for fewer"
             )
         positions = frames - frames.mean(axis=1, keepdims=True)
-        _check_volume(positions, faces, first)
+        _check(positions, faces, first)
         if centre == "surface":
             positions = _centred(positions, faces, integrate, first)
         return integrate(positions, faces, lmax)[0]
@@ -136,7 +137,15 @@ def _centred(positions, faces, integrate, first):
     )
 
 
-def _check_volume(positions, faces, first):
+def _check(positions, faces, first):
+    """Refuse frames whose volume is not positive, or with a vertex where it has no direction."""
+    distance = np.linalg.norm(positions, axis=2)
+    if not distance.all():
+        frame, vertex = np.argwhere(distance == 0)[0]
+        raise ValueError(
+            f"vertices: vertex {vertex} of frame {first + frame} is at the centre of mass, where "
+            "it has no direction"
+        )
     volume = _volume(positions, faces)
     if not (volume > 0).all():
         frame = np.flatnonzero(~(volume > 0))[0]
