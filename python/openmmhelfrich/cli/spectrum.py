@@ -51,10 +51,8 @@ _MODES = (".csv", ".h5", ".hdf5")
 )
 @click.option(
     "--centre",
-    type=click.Choice(["mass", "surface"]),
-    default="mass",
-    show_default=True,
-    help="Where radii of a trajectory are measured from.",
+    type=click.Choice(["surface", "mass"]),
+    help="Where radii are measured from.  [default: surface for the fit, else mass]",
 )
 @click.option("--csv", "table_path", type=click.Path(path_type=Path), help="Write the table too.")
 @click.option("--plot", type=click.Path(path_type=Path), help="Draw it: .png, .pdf, .svg …")
