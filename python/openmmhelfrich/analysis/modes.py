@@ -97,12 +97,11 @@ def mode_amplitudes(vertices, triangles, lmax, quadrature="fit", centre=None):
     The paper's sum picks up the large amplitudes of small l in those of large l; flat triangles cut
     off crests; and modes above the range of the fit leak into its last few.
 
-    That is a statement about the vertices. In a simulation their amplitudes are larger than theory
-    has it, since a mesh resists bending less than a smooth membrane: of a mode l on an even mesh of
-    1002 vertices `BendingForce` has 0.97 of the energy for l = 4, 0.88 for l = 8 and 0.76 for
-    l = 12. The flat triangles, whose bending that energy is, have amplitudes smaller by about the
-    same share, so that ``"surface"`` is the closest to (A17) there: 0.9 to 1.0 up to l = 15 at
-    Ξ = 0.037, where ``"fit"`` has 1.3 at l = 8.
+    That is a statement about the vertices. In a run at Ξ = 0.037 and N = 1002 their ⟨|u_lm|²⟩ is 1.3
+    times (A17) at l = 8, by the fit as by the sum, and that of the flat triangles, by
+    ``"surface"``, 0.9 to 1.0 times up to l = 15. The discrete energy is one reason: of a mode on an
+    even mesh of 1002 vertices `BendingForce` has 0.97 of the energy of a smooth membrane for l = 4,
+    0.88 for l = 8 and 0.76 for l = 12. Say which quadrature a spectrum was measured with.
     """
     lmax = count_of("lmax", lmax)
     if quadrature not in _QUADRATURES:
