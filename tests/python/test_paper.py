@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
+from test_sweep import dask_cluster
 
 ROOT = Path(__file__).resolve().parents[2]
 PAPER = ROOT / "examples" / "paper"
@@ -31,8 +32,10 @@ def run(script, *arguments, check=True):
 def results(tmp_path_factory):
     """A folder of results of two figures, and what the scripts printed."""
     folder = tmp_path_factory.mktemp("paper")
-    # The first on a Dask cluster of this machine, the second in one process.
-    text = run("sm03_distributions.py", "--quick", "--results", folder, "--workers", 2).stdout
+    # The first on the workers of a Dask scheduler, the second in one process.
+    with dask_cluster(tmp_path_factory.mktemp("dask"), 2) as (address, _):
+        at = ("--scheduler", address)
+        text = run("sm03_distributions.py", "--quick", "--results", folder, *at).stdout
     text += run("fig04_deformation.py", "--quick", "--results", folder, "--workers", 0).stdout
     return folder, text
 
