@@ -74,7 +74,7 @@ def main():
     figure = Figure(
         "fig04", "Fig. 4", "Energies of a deformation u20 on four types of mesh", __doc__
     )
-    samples = figure.choose(5, 3)
+    samples = figure.choose(50, 3, 5)
     subdivision = figure.choose(30, 10)
     count = 10 * subdivision**2 + 2
     common = {"softness": SOFTNESS, "duration": DURATION}
@@ -91,7 +91,11 @@ def main():
         for kind in KINDS
     }
     # Samples by subdivision; those of the largest mesh are among the points above.
-    sizes = figure.choose({5: 50, 7: 50, 10: 50, 14: 20, 20: 10, 30: samples}, {5: 3, 10: samples})
+    sizes = figure.choose(
+        dict.fromkeys([5, 7, 10, 14, 20, 30], samples),
+        {5: 3, 10: samples},
+        {5: 50, 7: 50, 10: 50, 14: 20, 20: 10, 30: samples},
+    )
     ladder = [
         {"kind": "fluctuating random", "subdivision": size, "seed": seed, "amplitudes": [0.0]}
         | {"softness": softness, "duration": DURATION}
@@ -99,7 +103,7 @@ def main():
         for size, count in sizes.items()
         # At other softnesses a trend is enough, and the largest mesh takes long.
         for seed in range(count if softness == SOFTNESS else 5)
-        if size != subdivision
+        if size != subdivision and (softness == SOFTNESS or size <= 10)
     ]
     rungs = figure.sweep(deformation, ladder, description="bias")
     ladder += points
@@ -111,11 +115,12 @@ def main():
         f"Fluctuating meshes: runs of {DURATION:g} τ_h at Ξ = {SOFTNESS:g} with U_A, U_V and U_h, "
         "then put back on the sphere."
     )
-    figure.reduced(
-        f"{samples} samples of N = {count} in place of 50 (bias: "
-        + ", ".join(f"{number} of N = {10 * size**2 + 2}" for size, number in sizes.items())
-        + ")."
-    )
+    if figure.size == "medium":
+        figure.reduced(
+            f"{samples} samples of N = {count} in place of 50 (bias: "
+            + ", ".join(f"{number} of N = {10 * size**2 + 2}" for size, number in sizes.items())
+            + ")."
+        )
     u = np.array(AMPLITUDES)
     # Meshes of 1002 vertices are a few per cent below the continuum.
     few = figure.choose(0.05, 0.1)
@@ -190,7 +195,7 @@ def main():
 
     for softness in OTHER_SOFTNESSES:
         shares = []
-        for size in (each for each in sizes if each != subdivision):
+        for size in (each for each in sizes if each <= 10 and each != subdivision):
             each = _round_energies(ladder, rungs, size, softness)[:, 0] / (8 * np.pi * RIGIDITY)
             shares.append(f"N = {10 * size**2 + 2}: {100 * (each.mean() - 1):.1f} %")
         figure.note(f"Bias of Jülicher (J) at Ξ = {softness:g}: {', '.join(shares)}.")

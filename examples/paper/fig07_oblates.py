@@ -70,12 +70,14 @@ def main():
     import openmmhelfrich as helfrich
 
     figure = Figure("fig07", "Fig. 7, SM 8", "Vesicles of reduced volume 1 to 0.1", __doc__)
-    volumes = figure.choose([1.0, 0.8, 0.6, 0.4, 0.2, 0.1], [1.0, 0.6, 0.3])
+    volumes = figure.choose(
+        np.arange(10, 0, -1) / 10, [1.0, 0.6, 0.3], [1.0, 0.8, 0.6, 0.4, 0.2, 0.1]
+    )
     softnesses = figure.choose([0.037, 0.15, 0.33, 0.59], [0.037, 0.59])
-    duration = figure.choose(50_000.0, 10_000.0)
+    duration = figure.choose(100_000.0, 10_000.0, 10_000.0)
     common = {
         "duration": [duration],
-        "time_step": [1.0],
+        "time_step": [figure.choose(0.2, 1.0, 0.5)],
         "subdivision": [figure.choose(10, 5)],
         "seed": [1],
     }
@@ -88,11 +90,14 @@ def main():
     count = 10 * common["subdivision"][0] ** 2 + 2
     figure.parameters(
         f"N = {count}, κ = 50 kJ/mol, GKB, kA and kV of the paper, LangevinMiddle, γ = 0.01/ps, "
-        f"300 K, {duration / 1000:g} ns, of which a fifth is the ramp of d, Δt = 1 ps."
+        f"300 K, {duration / 1000:g} ns, of which a fifth is the ramp of d, "
+        f"Δt = {common['time_step'][0]:g} ps."
     )
-    figure.reduced(
-        "One run per point, six reduced volumes, 50 ns in place of 100 ns and Δt = 1 ps of 0.2 ps."
-    )
+    if figure.size == "medium":
+        figure.reduced(
+            "One run per point, six reduced volumes, 10 ns in place of 100 ns, Δt = 0.5 ps in place "
+            "of 0.2 ps."
+        )
 
     stable = [key for key, result in table.items() if not result["failed"]]
     soft = [key for key in table if key[1] <= 0.15]
