@@ -10,7 +10,7 @@ from _paper import SCHEMES, Figure
 from openmmhelfrich.sweep import grid
 
 SOFTNESSES = (0.59, 0.037)
-MEDIUM = [0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 1.0]
+MEDIUM = [0.1, 0.2, 0.5, 1.0]
 BARYCENTRIC = ("Julicher", "GompperKrollBarycentric")
 
 

@@ -95,8 +95,7 @@ def main():
     )
     if figure.size == "medium":
         figure.reduced(
-            "One run per point, six reduced volumes, 10 ns in place of 100 ns, Δt = 0.5 ps in place "
-            "of 0.2 ps."
+            "Six reduced volumes, 10 ns in place of 100 ns, Δt = 0.5 ps in place of 0.2 ps."
         )
 
     stable = [key for key, result in table.items() if not result["failed"]]
