@@ -137,6 +137,10 @@ def main():
             for volume in volumes
         )
         figure.note(f"⟨E_b⟩ at Ξ = {softness:g}, kJ/mol: {bending}.")
+    figure.note(
+        "Nothing keeps distant parts of a membrane apart, so that at small ν opposite sides touch "
+        "and pass through each other."
+    )
     for key, result in table.items():
         if result["failed"]:
             figure.note(f"ν = {key[0]:g}, Ξ = {key[1]:g} failed: {result['failed'][:120]}")
@@ -163,7 +167,7 @@ def main():
                 mesh = helfrich.Mesh(
                     table[volume, softness]["shape"], table[volume, softness]["triangles"]
                 )
-                panels.append((f"ν {volume:g}  Ξ {softness:g}", along_axes(mesh), None))
+                panels.append((f"ν = {volume:g}, Ξ = {softness:g}", along_axes(mesh), None))
                 views.append(view)
     path = figure.picture(
         "", f"Last shapes at Ξ = {softest:g} (above) and {hard:g} (below), whole and cut in halves."

@@ -21,9 +21,10 @@ The figures of Farnudi, Ejtehadi and Everaers, *Dynamics of fluid bilayer vesicl
 robust curvature energy discretization*, Phys. Rev. E **108**, 015301 (2023),
 [doi:10.1103/PhysRevE.108.015301](https://doi.org/10.1103/PhysRevE.108.015301), computed anew with
 this library. `examples/paper/` has a script for each; `--quick` makes a small version in seconds to
-minutes, `make paper` all of these. This page is written by `examples/paper/report.py` from the
-numbers of the scripts. Times are those of one processor core, on a busy machine up to twice those
-of an idle one.
+minutes, `make paper` all of these. Where a section below says "reduced", it was made with
+`--medium`; without either option a script has the size of the paper. This page is written by
+`examples/paper/report.py` from the numbers of the scripts. Times are those of one processor core,
+on a busy machine, where they are up to twice those of an idle one.
 """
 
 
