@@ -127,7 +127,7 @@ class Figure:
     def check(self, what, measured, expected, tolerance, error=None, unit=""):
         """Check |measured − expected| ≤ tolerance, and return whether it holds."""
         passed = bool(abs(measured - expected) <= tolerance)
-        uncertainty = "" if error is None else f" ± {error:.2g}"
+        uncertainty = "" if error is None or np.isnan(error) else f" ± {error:.2g}"
         self.claim(
             what,
             f"{measured:.4g}{uncertainty}{unit}",
