@@ -135,13 +135,8 @@ def main():
         for column, (name, expected) in enumerate(theory.items()):
             at = AMPLITUDES.index(0.1)
             each = energies[kind][:, at, column] / expected[at]
-            figure.check(
-                f"{kind}: {name} / theory at u = 0.1",
-                each.mean(),
-                1,
-                few,
-                each.std(),
-            )
+            value, error = mean_and_error(each)
+            figure.check(f"{kind}: {name} / theory at u = 0.1", value, 1, few, error)
             slope = np.polyfit(np.log(u[small]), np.log(mean[small, column]), 1)[0]
             figure.check(f"{kind}: slope of {name}, u = 0.05 … 0.2", slope, 4, 0.1)
     below = u < 0.5
