@@ -1,7 +1,91 @@
-"""Vertices and triangles as the functions of this package take them."""
+"""Vertices and triangles as the functions of this package take them, frames in chunks."""
+
+import os
 
 import numpy as np
+import openmm
+import openmm.app
 from openmm import unit
+
+# Frames are worked on in chunks of about this many numbers, which bounds the memory and stays
+# close to the processor.
+_CHUNK = 1 << 20
+
+
+def positions_in(source):
+    """Positions of a Mesh, State, Context or Simulation; anything else as it is.
+
+    Raises
+    ------
+    ValueError
+        The State has no positions.
+    """
+    if hasattr(source, "vertices") and hasattr(source, "triangles"):
+        return source.vertices
+    if isinstance(source, openmm.app.Simulation):
+        source = source.context
+    if isinstance(source, openmm.Context):
+        source = source.getState(getPositions=True)
+    if isinstance(source, openmm.State):
+        try:
+            return source.getPositions(asNumpy=True)
+        except (openmm.OpenMMException, TypeError):
+            raise ValueError(
+                "vertices: the State has no positions; take it with getState(getPositions=True)"
+            ) from None
+    return source
+
+
+def over_frames(work, vertices, triangles=None, cost=None):
+    """Call a function of frames on everything that holds frames, chunk by chunk.
+
+    Parameters
+    ----------
+    work : callable
+        work(frames, faces, first) of frames of shape (num_frames, num_vertices, 3) and the index of
+        the first of them. It returns an array, or a tuple of arrays, whose first axis is that of
+        the frames.
+    vertices
+        What `frames_of` takes, or a path or `Trajectory`, whose chunks are read as they are needed.
+    triangles : array_like of int or Mesh, optional
+        Without, `faces` is None.
+    cost : callable, optional
+        cost(num_vertices, num_triangles), about how many numbers a frame needs in memory. Default:
+        30 for each vertex.
+
+    Returns
+    -------
+    ndarray or tuple of ndarray
+        The results of all frames, without their axis if one frame came without it.
+    """
+    from .trajectories import Trajectory
+
+    if isinstance(vertices, (str, os.PathLike)):
+        vertices = Trajectory(vertices)
+    single = False
+    if isinstance(vertices, Trajectory):
+        num_vertices, chunks = vertices.num_vertices, vertices.chunks
+    else:
+        frames, single = frames_of(vertices)
+        num_vertices = frames.shape[1]
+
+        def chunks(size):
+            return (frames[first : first + size] for first in range(0, len(frames), size))
+
+    faces = None if triangles is None else triangles_of(triangles, num_vertices)
+    num_faces = 0 if faces is None else len(faces)
+    numbers = 30 * num_vertices if cost is None else cost(num_vertices, num_faces)
+    first, parts = 0, []
+    for part in chunks(max(1, _CHUNK // max(1, numbers))):
+        parts.append(work(frames_of(part)[0], faces, first))
+        first += len(part)
+    if not parts:
+        raise ValueError("vertices: there are no frames")
+    if not isinstance(parts[0], tuple):
+        joined = np.concatenate(parts)
+        return joined[0] if single else joined
+    joined = tuple(np.concatenate(column) for column in zip(*parts, strict=True))
+    return tuple(column[0] for column in joined) if single else joined
 
 
 def frames_of(vertices) -> tuple[np.ndarray, bool]:
@@ -9,8 +93,9 @@ def frames_of(vertices) -> tuple[np.ndarray, bool]:
 
     Parameters
     ----------
-    vertices : array_like or Quantity
-        Shape (num_vertices, 3) for one frame or (num_frames, num_vertices, 3), nm.
+    vertices : array_like, Quantity, Mesh, State, Context or Simulation
+        Shape (num_vertices, 3) for one frame or (num_frames, num_vertices, 3), nm; of an object of
+        OpenMM, the positions of all its particles.
 
     Returns
     -------
@@ -26,6 +111,7 @@ def frames_of(vertices) -> tuple[np.ndarray, bool]:
     ValueError
         The shape is another one, or a coordinate is not finite.
     """
+    vertices = positions_in(vertices)
     if unit.is_quantity(vertices):
         if not vertices.unit.is_compatible(unit.nanometer):
             raise TypeError(f"vertices: need a length, got {vertices.unit}")
@@ -51,6 +137,8 @@ def frames_of(vertices) -> tuple[np.ndarray, bool]:
 def triangles_of(triangles, num_vertices: int) -> np.ndarray:
     """Triangles as an integer array of shape (num_triangles, 3) whose indices are vertices.
 
+    A `Mesh` may stand for its triangles.
+
     Raises
     ------
     TypeError
@@ -58,7 +146,7 @@ def triangles_of(triangles, num_vertices: int) -> np.ndarray:
     ValueError
         The shape is another one, or an index is outside of 0 … num_vertices − 1.
     """
-    array = np.asarray(triangles)
+    array = np.asarray(getattr(triangles, "triangles", triangles))
     if not np.issubdtype(array.dtype, np.integer):
         raise TypeError(f"triangles: need integers, got {array.dtype}")
     if array.ndim != 2 or array.shape[1] != 3 or len(array) == 0:

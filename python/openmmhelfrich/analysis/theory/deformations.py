@@ -1,0 +1,88 @@
+"""Energies of a sphere with one mode, r = r0 (1 + u Y_20), at given targets of the sphere."""
+
+import numpy as np
+
+from ._checks import check_not_negative, check_positive, plain
+
+
+def area_energy(amplitude, modulus, radius):
+    """Energy of the area term of a sphere deformed by u_20, E_A = (2/π) kA u⁴ r0² (34).
+
+    ½ kA (A − A0)² / A0 with A0 = 4π r0² and A − A0 = 4 u² r0² to leading order.
+
+    Parameters
+    ----------
+    amplitude : float or array_like
+        u_20.
+    modulus : float
+        kA, kJ/mol/nm².
+    radius : float
+        r0, nm.
+
+    Returns
+    -------
+    float or ndarray
+        E_A, kJ/mol, with an error of higher order in u.
+
+    Raises
+    ------
+    ValueError
+        A negative modulus, or a radius that is not positive.
+    """
+    check_not_negative("modulus", modulus)
+    check_positive("radius", radius)
+    return plain(2 / np.pi * modulus * np.asarray(amplitude, dtype=float) ** 4 * radius**2)
+
+
+def volume_energy(amplitude, modulus, radius):
+    """Energy of the volume term of a sphere deformed by u_20, E_V = (3/8π) kV u⁴ r0³ (36).
+
+    ½ kV (V − V0)² / V0 with V0 = 4π r0³ / 3 and V − V0 = u² r0³ to leading order.
+
+    Parameters
+    ----------
+    amplitude : float or array_like
+        u_20.
+    modulus : float
+        kV, kJ/mol/nm³.
+    radius : float
+        r0, nm.
+
+    Returns
+    -------
+    float or ndarray
+        E_V, kJ/mol, with an error of higher order in u.
+
+    Raises
+    ------
+    ValueError
+        A negative modulus, or a radius that is not positive.
+    """
+    check_not_negative("modulus", modulus)
+    check_positive("radius", radius)
+    u = np.asarray(amplitude, dtype=float)
+    return plain(3 / (8 * np.pi) * modulus * u**4 * radius**3)
+
+
+def bending_energy(amplitude, rigidity):
+    """Bending energy of a sphere deformed by u_20, E_b = 8πκ + 12 κ u² (38).
+
+    Parameters
+    ----------
+    amplitude : float or array_like
+        u_20.
+    rigidity : float
+        κ, kJ/mol.
+
+    Returns
+    -------
+    float or ndarray
+        E_b, kJ/mol, with an error of higher order in u. `mode_energy` has any set of modes.
+
+    Raises
+    ------
+    ValueError
+        A negative rigidity.
+    """
+    check_not_negative("rigidity", rigidity)
+    return plain(rigidity * (8 * np.pi + 12 * np.asarray(amplitude, dtype=float) ** 2))
