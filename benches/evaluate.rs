@@ -5,9 +5,9 @@
 //! folder and prints the ratios.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use openmm_helfrich::evaluator::CpuEvaluator;
+use openmm_helfrich::evaluator::{CpuEvaluator, InstructionSet, ReferenceEvaluator};
 use openmm_helfrich::mesh::Topology;
-use openmm_helfrich::potentials::{Contribution, Term};
+use openmm_helfrich::potentials::Term;
 use std::collections::HashMap;
 use std::f64::consts::PI;
 use std::hint::black_box;
@@ -31,17 +31,46 @@ struct Contender {
     make: fn(Arc<Topology>) -> Evaluate,
 }
 
-/// All ways to evaluate. The plain one is the readable reference, to which ratios refer.
-const CONTENDERS: [Contender; 2] = [
+/// All ways to evaluate. The plain one is the readable reference, to which ratios refer; AVX2 and one number at
+/// a time are what other processors get.
+const CONTENDERS: [Contender; 6] = [
     Contender { name: "plain, 1 thread", threads: 1, make: plain },
     Contender { name: "plain, 2 threads", threads: 2, make: plain },
+    Contender {
+        name: "lanes, 1 thread",
+        threads: 1,
+        make: |mesh| lanes(mesh, InstructionSet::Best, 1),
+    },
+    Contender {
+        name: "lanes, 2 threads",
+        threads: 2,
+        make: |mesh| lanes(mesh, InstructionSet::Best, 2),
+    },
+    Contender {
+        name: "lanes of AVX2, 1 thread",
+        threads: 1,
+        make: |mesh| lanes(mesh, InstructionSet::Avx2, 1),
+    },
+    Contender {
+        name: "no lanes, 1 thread",
+        threads: 1,
+        make: |mesh| lanes(mesh, InstructionSet::Scalar, 1),
+    },
 ];
 
 fn plain(topology: Arc<Topology>) -> Evaluate {
-    let mut evaluator = CpuEvaluator::new(topology);
+    let mut evaluator = ReferenceEvaluator::new(topology);
     Box::new(move |terms, positions, forces| {
-        let mut contributions = [Contribution::default(); 4];
-        evaluator.evaluate(terms.iter(), positions, &mut contributions, Some(forces)).unwrap();
+        let terms: Vec<_> = terms.iter().collect();
+        evaluator.evaluate(&terms, positions, &mut [], Some(forces)).unwrap();
+    })
+}
+
+fn lanes(topology: Arc<Topology>, set: InstructionSet, threads: usize) -> Evaluate {
+    let mut evaluator = CpuEvaluator::with(topology, set, threads);
+    Box::new(move |terms, positions, forces| {
+        let terms: Vec<_> = terms.iter().collect();
+        evaluator.evaluate(&terms, positions, &mut [], Some(forces)).unwrap();
     })
 }
 
