@@ -47,6 +47,14 @@ const IDLE_SPIN: Duration = Duration::from_micros(50);
 /// How often a waiting member looks before it sleeps: some 40 µs.
 const PATIENCE: u32 = 2000;
 
+/// As many threads as the environment variable OPENMM_CPU_THREADS says, which OpenMM's CPU platform follows too,
+/// or else as there are processors for this process.
+pub fn default_threads() -> usize {
+    let wanted = std::env::var("OPENMM_CPU_THREADS").ok().and_then(|value| value.parse().ok());
+    let processors = || thread::available_parallelism().map_or(1, usize::from);
+    wanted.filter(|&threads| threads > 0).unwrap_or_else(processors)
+}
+
 /// The number of the run that ends all runs.
 const STOP: u64 = u64::MAX;
 

@@ -4,6 +4,7 @@ use super::simd::{Level, SimdEvaluator};
 use crate::error::Result;
 use crate::mesh::Topology;
 use crate::potentials::{Contribution, Term};
+use crate::team::default_threads;
 use std::sync::Arc;
 
 /// What the processor computes with.
@@ -54,8 +55,7 @@ impl CpuEvaluator {
 
     /// Let so many threads share the work, 0 for as many as there are; fewer if the system has no more.
     pub fn set_threads(&mut self, threads: usize) {
-        let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-        let threads = if threads == 0 { cores() } else { threads };
+        let threads = if threads == 0 { default_threads() } else { threads };
         let small = self.simd.num_vertices() < PARALLEL_VERTICES;
         self.simd.set_threads(if small { 1 } else { threads });
     }

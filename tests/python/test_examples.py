@@ -156,8 +156,7 @@ def test_integrators():
 
 def test_bench():
     text = run(ROOT / "benches" / "steps.py", "--quick").stdout
-    assert "ratio" in text
-    assert "N^" in text
+    assert "asked" in text and "measured" in text
 
 
 def test_bench_of_empty_steps():

@@ -239,7 +239,9 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: 
                 }
                 if LEVEL >= NORMALS {
                     let n = [nx, ny, nz];
-                    let side_squared = at_end + at_next;
+                    // From the side itself, for it may be much shorter than the arms.
+                    let side = minus(next.e, arm.e);
+                    let side_squared = dot(side, side);
                     let (own_angle, end_angle) = unsafe {
                         let offsets = places.add(BLOCK * step);
                         (
