@@ -12,7 +12,7 @@ PIP = $(VENV)/bin/python -m pip --disable-pip-version-check -q
 
 # What pip builds; the Python files of the package are used in place.
 SOURCES := Cargo.toml Cargo.lock build.rs setup.py python/forces.i \
-           $(wildcard src/*.rs src/*/*.rs shaders/* $(foreach any,wrappers/* wrappers/*/* wrappers/*/*/*,$(any)/*))
+           $(wildcard src/*.rs src/*/*.rs src/*/*/*.rs shaders/* shaders/*/* $(foreach any,wrappers/* wrappers/*/* wrappers/*/*/*,$(any)/*))
 CPP := $(wildcard $(foreach any,wrappers/* wrappers/*/* wrappers/*/*/* tests/cpp examples,\
            $(any)/*.h $(any)/*.c $(any)/*.cpp))
 PY := $(wildcard setup.py python tests examples benches)
