@@ -1,8 +1,10 @@
 //! Evaluators own the buffers and run the passes over a mesh; they know no physics.
 
+mod chosen;
 mod cpu;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 mod passes;
 
+pub use chosen::{ChosenEvaluator, LEAST_VERTICES_FOR_GPU};
 pub use cpu::CpuEvaluator;

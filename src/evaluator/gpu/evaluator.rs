@@ -70,9 +70,9 @@ impl GpuEvaluator {
         Ok(Self { topology, device, precision, lattice, frame, buffers, stopwatch: None })
     }
 
-    /// The name of the adapter.
-    pub fn adapter(&self) -> &str {
-        &self.device.adapter.name
+    /// The name of the adapter and its driver.
+    pub fn adapter(&self) -> (&str, &str) {
+        (&self.device.adapter.name, &self.device.adapter.driver)
     }
 
     /// The numbers that it computes with.

@@ -7,6 +7,7 @@
 
 pub mod adapters;
 mod buffers;
+pub mod calibration;
 pub mod device;
 mod evaluator;
 pub mod faults;
