@@ -233,8 +233,9 @@ impl ChosenEvaluator {
 fn warn_once(error: &Error) {
     static SAID: std::sync::Once = std::sync::Once::new();
     SAID.call_once(|| {
-        eprintln!(
-            "openmm-helfrich: the processor takes over for the GPU, which has failed: {error}"
-        );
+        // What could be done about it is after the semicolon, and it has been done.
+        let message = error.to_string();
+        let reason = message.split("; ").next().unwrap_or_default();
+        eprintln!("openmm-helfrich: {reason}; the processor takes over");
     });
 }

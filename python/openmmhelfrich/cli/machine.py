@@ -1,4 +1,4 @@
-"""What ``openmm-helfrich info`` says of the machine: GPUs, and what the backend "auto" would choose."""
+"""What ``openmm-helfrich info`` says of the machine: GPUs, and what "auto" would choose."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def machine() -> list[str]:
 
 
 def _timings() -> list[str]:
-    """The measurements behind the choice; those of standard sizes are made now if there are none."""
+    """The measurements behind the choice, made now where there are none yet."""
     from .. import backend
 
     _measure()

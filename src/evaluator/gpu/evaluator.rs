@@ -152,7 +152,9 @@ impl GpuEvaluator {
             uploaded
         })?;
         let computed = self.read(scale, terms, first, bytes, contributions, forces);
-        self.buffers.readback.unmap();
+        if computed.is_ok() {
+            self.buffers.readback.unmap();
+        }
         if let Some(stopwatch) = &mut self.stopwatch {
             stopwatch.last.upload = uploaded - start;
             stopwatch.last.readback = uploaded.elapsed().saturating_sub(stopwatch.last.kernel);
