@@ -49,7 +49,7 @@ impl Membrane {
     }
 
     /// Evaluate terms together. Positions (nm) and forces (kJ/mol/nm) are those of all particles of the
-    /// System, x y z of one after the other; forces are added.
+    /// System, x y z of one after the other; forces are added. Without contributions no energies are summed.
     ///
     /// # Errors
     /// Those of [`ChosenEvaluator::evaluate`], and a parameter outside its domain, as a Context parameter
@@ -63,9 +63,10 @@ impl Membrane {
     ) -> Result<()> {
         let length = 3 * self.num_particles;
         let fits = forces.as_ref().is_none_or(|forces| forces.len() == length);
-        if positions.len() != length || !fits || contributions.len() != terms.len() {
+        let counts = contributions.is_empty() || contributions.len() == terms.len();
+        if positions.len() != length || !fits || !counts {
             return Err(Error::Contract(format!(
-                "needs positions and forces of {} particles and one contribution a term",
+                "needs positions and forces of {} particles and one contribution a term, or none",
                 self.num_particles
             )));
         }

@@ -7,6 +7,7 @@ use crate::backend::{self, Choice, Kind};
 use crate::error::{Error, Result};
 use crate::mesh::Topology;
 use crate::potentials::{Contribution, Term};
+use smallvec::SmallVec;
 use std::sync::Arc;
 
 /// Below so many vertices no GPU is looked for: starting one takes longer than many evaluations of such a mesh,
@@ -102,7 +103,8 @@ impl ChosenEvaluator {
         backend::count_evaluation(false);
         let topology = &self.topology;
         let cpu = self.cpu.get_or_insert_with(|| CpuEvaluator::new(topology.clone()));
-        cpu.evaluate(terms.iter(), positions, contributions, forces)
+        let terms: SmallVec<[&Term; 8]> = terms.iter().collect();
+        cpu.evaluate(&terms, positions, contributions, forces)
     }
 }
 

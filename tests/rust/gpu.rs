@@ -41,7 +41,8 @@ fn on_processor(mesh: &Mesh, terms: &[Term]) -> Found {
     let mut evaluator = CpuEvaluator::new(topology(mesh));
     let mut contributions = vec![Contribution::default(); terms.len()];
     let mut forces = vec![0.0; mesh.0.len()];
-    evaluator.evaluate(terms.iter(), &mesh.0, &mut contributions, Some(&mut forces)).unwrap();
+    let borrowed: Vec<_> = terms.iter().collect();
+    evaluator.evaluate(&borrowed, &mesh.0, &mut contributions, Some(&mut forces)).unwrap();
     (contributions, forces)
 }
 
