@@ -100,3 +100,72 @@ fn every_potential_is_that_of_the_processor() {
         }
     }
 }
+
+#[test]
+fn terms_together_are_those_alone() {
+    for (adapter, precision) in targets() {
+        let mesh = spheroid(7, 8, &mut random(2));
+        let mut evaluator = GpuEvaluator::new(topology(&mesh), Some(adapter), precision).unwrap();
+        let terms = all_terms();
+        let found = on_device(&mut evaluator, &mesh, &terms);
+        let errors = errors(&found, &on_processor(&mesh, &terms));
+        assert!(errors.into_iter().all(|error| error < tolerance(precision)), "{errors:?}");
+        // The same bits again, after something else, and of the energies without the forces.
+        on_device(&mut evaluator, &mesh, &terms[..1]);
+        assert_eq!(on_device(&mut evaluator, &mesh, &terms), found);
+        let mut energies = vec![Contribution::default(); terms.len()];
+        assert_eq!(evaluator.evaluate(&terms, &mesh.0, &mut energies, None), Ok(true));
+        assert_eq!(energies, found.0);
+    }
+}
+
+#[test]
+fn values_of_single_elements_are_followed() {
+    for (adapter, precision) in targets() {
+        let mesh = spheroid(6, 9, &mut random(3));
+        let topology = topology(&mesh);
+        let mut evaluator = GpuEvaluator::new(topology.clone(), Some(adapter), precision).unwrap();
+        let mut noise = random(4);
+        for _ in 0..3 {
+            let rigidities: Vec<f64> =
+                (0..topology.num_vertices()).map(|_| 2.0 + noise()).collect();
+            let targets: Vec<f64> =
+                (0..topology.triangles.len()).map(|_| 8.0 + 2.0 * noise()).collect();
+            let mut bending = Term::new("BendingForce", 1, &[1.0, 0.1]).unwrap();
+            bending.fields[0] = &rigidities;
+            let mut area = Term::new("TriangleAreaForce", 0, &[1.0, 8.0]).unwrap();
+            area.fields[1] = &targets;
+            for terms in [vec![bending, area], vec![area, bending], vec![area]] {
+                let mut terms = terms;
+                terms.iter_mut().for_each(|term| term.wants_derivatives = true);
+                let found = on_device(&mut evaluator, &mesh, &terms);
+                let errors = errors(&found, &on_processor(&mesh, &terms));
+                assert!(errors.into_iter().all(|error| error < tolerance(precision)), "{errors:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_the_device_cannot_say_is_left_to_the_processor() {
+    for (adapter, precision) in targets() {
+        let mesh = spheroid(5, 7, &mut random(7));
+        let mut evaluator = GpuEvaluator::new(topology(&mesh), Some(adapter), precision).unwrap();
+        let terms = all_terms();
+        let mut found = vec![Contribution::default(); terms.len()];
+        let mut lost = mesh.0.clone();
+        lost[3 * 11 + 1] = f64::INFINITY;
+        let huge: Vec<f64> = mesh.0.iter().map(|x| x * 1e200).collect();
+        let mut flat = mesh.0.clone();
+        for (corner, x) in mesh.1[4].into_iter().zip([1.0, 2.0, 4.0]) {
+            flat[3 * corner as usize..][..3].fill(x);
+        }
+        let mut forces = vec![1.0; mesh.0.len()];
+        for positions in [lost, huge, flat] {
+            let done = evaluator.evaluate(&terms, &positions, &mut found, Some(&mut forces));
+            assert_eq!(done, Ok(false));
+            assert!(forces.iter().all(|force| *force == 1.0));
+        }
+        on_device(&mut evaluator, &mesh, &terms);
+    }
+}
