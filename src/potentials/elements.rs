@@ -128,7 +128,11 @@ pub trait VertexFormula {
 /// A run of triangles to apply a formula to.
 pub enum Triangles<'a> {
     /// One by one; `first` is the index of the first in the mesh.
-    Plain { first: usize, geometry: &'a [TriangleGeometry], partials: &'a mut [TrianglePartials] },
+    Plain {
+        first: usize,
+        geometry: &'a [TriangleGeometry],
+        partials: &'a mut [TrianglePartials],
+    },
     /// In lanes; the tile starts with the triangles of these indices.
     Lanes { arch: Arch, ids: &'a [u32], tile: &'a mut TriangleTile },
 }
@@ -221,8 +225,7 @@ impl Edges<'_> {
                 }
             }
             Self::Lanes(block) => {
-                let known =
-                    block.bends.as_flattened().iter().zip(block.lengths_squared.as_flattened());
+                let known = block.bends.as_flattened().iter().zip(block.lengths_squared.as_flattened());
                 let moments = block.moments.as_flattened_mut();
                 for (index, ((bend, length_squared), moment)) in known.zip(moments).enumerate() {
                     let length = length_squared.sqrt();

@@ -209,7 +209,9 @@ fn every_instruction_set_agrees_with_the_reference() {
         let mut check = |terms: &[&Term]| {
             let mut expected = vec![Contribution::default(); terms.len()];
             let mut expected_forces = vec![0.0; mesh.0.len()];
-            reference.evaluate(terms, &mesh.0, &mut expected, Some(&mut expected_forces)).unwrap();
+            reference
+                .evaluate(terms, &mesh.0, &mut expected, Some(&mut expected_forces))
+                .unwrap();
             let largest = expected_forces.iter().fold(0.0, |m: f64, f| m.max(f.abs()));
             let near = |a: f64, b: f64, scale: f64| (a - b).abs() <= 1e-12 * scale;
             for set in [InstructionSet::Best, InstructionSet::Avx2, InstructionSet::Scalar] {

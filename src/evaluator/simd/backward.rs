@@ -83,8 +83,7 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const VECTORS
             };
             if VECTORS {
                 centre.vector = Lane::gather4(simd, arrays.vector_slopes.at(4 * first), offsets);
-                centre.umbrella =
-                    Lane::gather3(simd, arrays.umbrella_slopes.at(4 * first), offsets);
+                centre.umbrella = Lane::gather3(simd, arrays.umbrella_slopes.at(4 * first), offsets);
             }
             centre
         }
@@ -99,7 +98,8 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const VECTORS
         unsafe {
             let e = minus(Lane::gather3(simd, arrays.positions.at(0), offsets), centre.position);
             let length_squared = dot(e, e);
-            let [by_curvature, by_area] = Lane::gather2::<2>(simd, arrays.slopes.at(0), offsets);
+            let [by_curvature, by_area] =
+                Lane::gather2::<2>(simd, arrays.slopes.at(0), offsets);
             let mut arm = Arm {
                 e,
                 length_squared,
@@ -116,7 +116,8 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const VECTORS
                 arm.g = minus([gx, gy, gz], [x, y, z]);
                 arm.voronoi = own + voronoi;
                 arm.umbrella = Lane::gather3(simd, arrays.umbrella_slopes.at(0), offsets);
-                arm.by_cotangent = (arm.voronoi * length_squared) * 0.125 - dot(arm.g, e) * 0.5;
+                arm.by_cotangent =
+                    (arm.voronoi * length_squared) * 0.125 - dot(arm.g, e) * 0.5;
             }
             arm
         }

@@ -167,8 +167,7 @@ mod x86 {
         #[inline(always)]
         unsafe fn gather4(self, base: *const f64, offsets: *const u32) -> [Self::f64s; 4] {
             // SAFETY: the caller's records are there.
-            let [low, high] =
-                unsafe { [0, 2].map(|k| columns(self, halves::<1>(self, base, offsets, k))) };
+            let [low, high] = unsafe { [0, 2].map(|k| columns(self, halves::<1>(self, base, offsets, k))) };
             [cast!(low[0]), cast!(low[1]), cast!(high[0]), cast!(high[1])]
         }
 

@@ -103,7 +103,8 @@ impl SimdEvaluator {
         contributions: &mut [Contribution],
         forces: Option<&mut [f64]>,
     ) -> Result<()> {
-        let needs = terms.iter().fold(Needs::empty(), |all, term| all | term.potential.needs(term));
+        let needs =
+            terms.iter().fold(Needs::empty(), |all, term| all | term.potential.needs(term));
         self.make_room(needs, terms.len());
         let sweep = Sweep {
             arch: self.arch,

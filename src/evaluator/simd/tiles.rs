@@ -217,10 +217,8 @@ impl<F: TriangleFormula> WithLanes for InLanes<'_, TriangleTile, F> {
         let mut sum = Accumulated::new(simd);
         for index in (0..ids.len()).step_by(Lane::<S>::COUNT) {
             let load = |column: &Column| column.load(simd, index);
-            let triangle = Triangle {
-                twice_area: load(&tile.twice_area),
-                dots: tile.dots.each_ref().map(load),
-            };
+            let triangle =
+                Triangle { twice_area: load(&tile.twice_area), dots: tile.dots.each_ref().map(load) };
             let mut slopes = TriangleSlopes {
                 area: load(&tile.by_area),
                 length_squared: tile.by_length_squared.each_ref().map(load),
