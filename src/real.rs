@@ -103,6 +103,9 @@ impl Real for f64 {
     }
 }
 
+// No closures below, nor in the passes of the fast evaluator: the compiler may leave a closure a function of its
+// own, without the instruction set of its surroundings, and lanes then travel through memory.
+
 /// The scalar product of two vectors.
 #[inline(always)]
 pub fn dot<R: Real>(a: [R; 3], b: [R; 3]) -> R {
@@ -125,8 +128,34 @@ pub fn minus<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
+/// The sum of two vectors.
+#[inline(always)]
+pub fn plus<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+/// A vector times a number.
+#[inline(always)]
+pub fn scaled<R: Real>(vector: [R; 3], factor: R) -> [R; 3] {
+    [vector[0] * factor, vector[1] * factor, vector[2] * factor]
+}
+
 /// `sum` + `factor` · `vector`.
 #[inline(always)]
 pub fn plus_scaled<R: Real>(sum: [R; 3], factor: R, vector: [R; 3]) -> [R; 3] {
-    [0, 1, 2].map(|k| factor.mul_add(vector[k], sum[k]))
+    [
+        factor.mul_add(vector[0], sum[0]),
+        factor.mul_add(vector[1], sum[1]),
+        factor.mul_add(vector[2], sum[2]),
+    ]
+}
+
+/// `sum` − `factor` · `vector`.
+#[inline(always)]
+pub fn minus_scaled<R: Real>(sum: [R; 3], factor: R, vector: [R; 3]) -> [R; 3] {
+    [
+        factor.neg_mul_add(vector[0], sum[0]),
+        factor.neg_mul_add(vector[1], sum[1]),
+        factor.neg_mul_add(vector[2], sum[2]),
+    ]
 }

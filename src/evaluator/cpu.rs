@@ -1,11 +1,9 @@
-//! The evaluator on the processor: the fast one, and the reference for what it does not know.
+//! The evaluator on the processor, and the choice of what it computes with.
 
-use super::reference::ReferenceEvaluator;
-use super::simd::SimdEvaluator;
+use super::simd::{Level, SimdEvaluator};
 use crate::error::Result;
 use crate::mesh::Topology;
-use crate::potentials::{Contribution, Needs, Term};
-use pulp::Arch;
+use crate::potentials::{Contribution, Term};
 use std::sync::Arc;
 
 /// What the processor computes with.
@@ -27,21 +25,16 @@ const PARALLEL_VERTICES: usize = 2000;
 /// Work is O(N), nothing is allocated once the buffers exist, and the bits of the result do not depend on the
 /// number of threads. They do depend on the instruction set, by rounding.
 pub struct CpuEvaluator {
-    topology: Arc<Topology>,
     simd: SimdEvaluator,
-    /// For terms with normals of vertices; made when first needed.
-    reference: Option<Box<ReferenceEvaluator>>,
 }
 
 impl InstructionSet {
-    fn arch(self) -> Arch {
+    fn level(self) -> Level {
         match self {
-            Self::Best => Arch::new(),
+            Self::Best => Level::best(),
             #[cfg(target_arch = "x86_64")]
-            Self::Avx2 => pulp::x86::V3::try_new().map_or(Arch::Scalar, Arch::V3),
-            #[cfg(not(target_arch = "x86_64"))]
-            Self::Avx2 => Arch::Scalar,
-            Self::Scalar => Arch::Scalar,
+            Self::Avx2 => pulp::x86::V3::try_new().map_or(Level::Scalar, Level::Avx2),
+            _ => Level::Scalar,
         }
     }
 }
@@ -56,8 +49,7 @@ impl CpuEvaluator {
 
     /// The same with a certain instruction set and number of threads.
     pub fn with(topology: Arc<Topology>, set: InstructionSet, threads: usize) -> Self {
-        let simd = SimdEvaluator::new(topology.clone(), set.arch(), threads);
-        Self { topology, simd, reference: None }
+        Self { simd: SimdEvaluator::new(topology, set.level(), threads) }
     }
 
     /// Let so many threads share the work, or fewer if the system has no more.
@@ -80,13 +72,6 @@ impl CpuEvaluator {
         contributions: &mut [Contribution],
         forces: Option<&mut [f64]>,
     ) -> Result<()> {
-        let normals = |term: &&Term| term.potential.needs(term).contains(Needs::NORMALS);
-        if terms.iter().any(normals) {
-            let reference = self
-                .reference
-                .get_or_insert_with(|| Box::new(ReferenceEvaluator::new(self.topology.clone())));
-            return reference.evaluate(terms, positions, contributions, forces);
-        }
         self.simd.evaluate(terms, positions, contributions, forces)
     }
 }

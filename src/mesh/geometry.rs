@@ -77,19 +77,27 @@ pub fn arctan_over_argument<R: Real>(z: R) -> R {
         -0.017_805_397_205_419_446,
     ];
     // Estrin's scheme: the pairs do not wait for each other, as the steps of Horner's would.
-    let pair = |k: usize| z.mul_add(z.of(C[k + 1]), z.of(C[k]));
     let z2 = z * z;
     let z4 = z2 * z2;
-    let four = |k: usize| z2.mul_add(pair(k + 2), pair(k));
-    z4.mul_add(z4.mul_add(four(8), four(4)), four(0))
+    let low = four(z, z2, [C[0], C[1], C[2], C[3]]);
+    let middle = four(z, z2, [C[4], C[5], C[6], C[7]]);
+    let high = four(z, z2, [C[8], C[9], C[10], C[11]]);
+    z4.mul_add(z4.mul_add(high, middle), low)
+}
+
+/// A polynomial of third degree.
+#[inline(always)]
+fn four<R: Real>(z: R, z2: R, c: [f64; 4]) -> R {
+    let (low, high) = (z.mul_add(z.of(c[1]), z.of(c[0])), z.mul_add(z.of(c[3]), z.of(c[2])));
+    z2.mul_add(high, low)
 }
 
 impl EdgeGeometry {
     /// From the start and end of the edge, a point of the right triangle off the edge, and the
     /// geometry of the left and right triangles.
     ///
-    /// With n₁, n₂ the normals, tan(φ/2) = l D / (n₁·n₂ + |n₁||n₂|), where D, six times the volume
-    /// of the tetrahedron that the two triangles span, carries the sign of φ.
+    /// With n₁, n₂ the normals, tan φ = l D / n₁·n₂, where D, six times the volume of the tetrahedron that
+    /// the two triangles span, carries the sign of φ.
     #[inline]
     pub fn new(
         start: &Vec3,
@@ -100,16 +108,9 @@ impl EdgeGeometry {
     ) -> Self {
         let length_squared = (end - start).norm_squared();
         let cosine = left.normal.dot(&right.normal);
-        let norms = left.twice_area * right.twice_area;
         let determinant = left.normal.dot(&(start - right_tip));
-        let slope = determinant / (cosine + norms);
-        let z = length_squared * slope * slope;
-        let bend = if z <= POLYNOMIAL_RANGE {
-            2.0 * slope * arctan_over_argument(z)
-        } else {
-            let length = length_squared.sqrt();
-            (length * determinant).atan2(cosine) / length
-        };
+        let length = length_squared.sqrt();
+        let bend = (length * determinant).atan2(cosine) / length;
         Self { length_squared, bend }
     }
 }

@@ -19,7 +19,7 @@ use super::{
     Contribution, Domain, Element, Needs, Parameter, Place, Potential, Sums, Term, Vertex,
     VertexFormula, Vertices,
 };
-use crate::real::{Real, dot, plus_scaled};
+use crate::real::{Real, dot, plus, plus_scaled, scaled};
 use std::ffi::CStr;
 
 /// Curvature elasticity.
@@ -90,8 +90,11 @@ impl Potential for Bending {
         if numerator == Numerator::Julicher {
             needs |= Needs::CURVATURES;
         }
-        if numerator != Numerator::Julicher || area == Area::Voronoi {
+        if area == Area::Voronoi {
             needs |= Needs::VECTORS;
+        }
+        if numerator != Numerator::Julicher {
+            needs |= Needs::VECTORS | Needs::CURVATURE_VECTORS;
         }
         let signed = term.switches & UNSIGNED == 0;
         if numerator != Numerator::Julicher && signed {
@@ -140,10 +143,16 @@ struct Curvature<const NUMERATOR: u8, const VORONOI: bool> {
 }
 
 impl<const NUMERATOR: u8, const VORONOI: bool> VertexFormula for Curvature<NUMERATOR, VORONOI> {
+    const USES: Needs = match (Self::IS_SCALAR, VORONOI) {
+        (true, false) => Needs::CURVATURES,
+        (true, true) => Needs::CURVATURES.union(Needs::VECTORS),
+        (false, _) => Needs::VECTORS.union(Needs::CURVATURE_VECTORS).union(Needs::NORMALS),
+    };
+
     #[inline(always)]
     fn apply<R: Real>(&self, place: Place, vertex: &Vertex<R>, slopes: &mut Vertex<R>) -> Sums<R> {
         let area = if VORONOI { vertex.voronoi_area } else { vertex.area };
-        let [rigidity, spontaneous] = [RIGIDITY, SPONTANEOUS].map(|p| place.value(p, area));
+        let (rigidity, spontaneous) = (place.value(RIGIDITY, area), place.value(SPONTANEOUS, area));
         let (square, linear) = self.measure(vertex);
         let per_area = area.of(1.0) / area;
         let density = square * per_area;
@@ -218,7 +227,7 @@ impl<const NUMERATOR: u8, const VORONOI: bool> Curvature<NUMERATOR, VORONOI> {
             let direction = if self.unsigned { vector } else { vertex.normal_sum };
             let length = dot(direction, direction).sqrt();
             let inverse = (zero.of(1.0) / length).or_else(length.above(zero), zero);
-            let unit = direction.map(|component| component * inverse);
+            let unit = scaled(direction, inverse);
             slope = plus_scaled(slope, by_linear, unit);
             if !self.unsigned {
                 let across = plus_scaled(vector, zero - dot(unit, vector), unit);
@@ -227,7 +236,7 @@ impl<const NUMERATOR: u8, const VORONOI: bool> Curvature<NUMERATOR, VORONOI> {
         }
         let cotangent = NUMERATOR == Numerator::Cotangent as u8;
         let slot = if cotangent { &mut slopes.cotangent } else { &mut slopes.umbrella };
-        *slot = plus_scaled(*slot, zero.of(1.0), slope);
+        *slot = plus(*slot, slope);
     }
 }
 

@@ -11,9 +11,7 @@
 //!
 //! (B5): doi:10.1103/PhysRevE.108.015301.
 
-use super::{
-    Contribution, Domain, EdgeFormula, Edges, Needs, Parameter, Potential, Sums, Term,
-};
+use super::{Contribution, Domain, EdgeFormula, Edges, Needs, Parameter, Potential, Sums, Term};
 use std::ffi::CStr;
 
 /// Stiffness of hinges, which depends on the mesh as curvature elasticity does not.

@@ -3,14 +3,13 @@
 //!
 //! A formula is generic over [`Real`], so it is written once for both.
 
-use super::{Contribution, Term};
-use crate::evaluator::simd::{BLOCK, EdgeBlock, TriangleTile, VertexTile};
+use super::{Contribution, Needs, Term};
+use crate::evaluator::simd::{BLOCK, EdgeBlock, Level, TriangleTile, VertexTile};
 use crate::mesh::geometry::{
     EdgeGeometry, EdgePartials, TriangleGeometry, TrianglePartials, VertexGeometry, VertexPartials,
 };
 use crate::mesh::vertex_vectors::VertexVectors;
 use crate::real::Real;
-use pulp::Arch;
 
 /// The most scalars of a potential that lives on elements.
 const SCALARS: usize = 2;
@@ -103,6 +102,12 @@ impl Place<'_> {
 
 /// A formula for the energy of a triangle; adds to the slopes.
 pub trait TriangleFormula {
+    /// Whether the energy and its derivatives vanish, in all lanes: the formula is not applied then.
+    #[inline(always)]
+    fn vanishes<R: Real>(&self, _: &Triangle<R>) -> bool {
+        false
+    }
+
     /// Apply it.
     fn apply<R: Real>(
         &self,
@@ -121,44 +126,76 @@ pub trait EdgeFormula {
 
 /// A formula for the energy of a vertex; adds to the slopes.
 pub trait VertexFormula {
+    /// What it uses beyond the area: curvatures, vectors (which brings the Voronoi area), normals.
+    const USES: Needs;
+
     /// Apply it.
     fn apply<R: Real>(&self, place: Place, vertex: &Vertex<R>, slopes: &mut Vertex<R>) -> Sums<R>;
 }
 
 /// A run of triangles to apply a formula to.
 pub enum Triangles<'a> {
-    /// One by one; `first` is the index of the first in the mesh.
+    /// One by one.
     Plain {
+        /// Index of the first in the mesh.
         first: usize,
+        /// The triangles.
         geometry: &'a [TriangleGeometry],
+        /// To be added to.
         partials: &'a mut [TrianglePartials],
     },
-    /// In lanes; the tile starts with the triangles of these indices.
-    Lanes { arch: Arch, ids: &'a [u32], tile: &'a mut TriangleTile },
+    /// In lanes.
+    Lanes {
+        /// What the processor has.
+        level: Level,
+        /// Indices in the mesh of the triangles that the tile starts with.
+        ids: &'a [u32],
+        /// The triangles, and the slopes to be added to.
+        tile: &'a mut TriangleTile,
+    },
 }
 
 /// A run of edges to apply a formula to.
 pub enum Edges<'a> {
     /// Each edge once.
-    Plain { geometry: &'a [EdgeGeometry], partials: &'a mut [EdgePartials] },
+    Plain {
+        /// The edges.
+        geometry: &'a [EdgeGeometry],
+        /// To be added to.
+        partials: &'a mut [EdgePartials],
+    },
     /// Each edge from both of its ends.
     Lanes(EdgeBlock<'a>),
 }
 
 /// A run of vertices to apply a formula to.
 pub enum Vertices<'a> {
-    /// One by one; `first` is the index of the first in the mesh, which has `total` of them. Vectors and
-    /// their partials are empty unless the potential wants them.
+    /// One by one.
     Plain {
+        /// Index of the first in the mesh.
         first: usize,
+        /// How many vertices the mesh has.
         total: usize,
+        /// Areas and curvatures.
         scalars: &'a [VertexGeometry],
+        /// Curvature vectors and normals; empty unless the potential wants them.
         vectors: &'a [VertexVectors],
+        /// To be added to.
         scalar_partials: &'a mut [VertexPartials],
+        /// To be added to; empty unless the potential wants them.
         vector_partials: &'a mut [VertexVectors],
     },
-    /// In lanes; the tile starts with the vertices of these indices.
-    Lanes { arch: Arch, total: usize, ids: &'a [u32], tile: &'a mut VertexTile },
+    /// In lanes.
+    Lanes {
+        /// What the processor has.
+        level: Level,
+        /// How many vertices the mesh has.
+        total: usize,
+        /// Indices in the mesh of the vertices that the tile starts with.
+        ids: &'a [u32],
+        /// The vertices, and the slopes to be added to.
+        tile: &'a mut VertexTile,
+    },
 }
 
 impl From<Sums<f64>> for Contribution {
@@ -198,6 +235,9 @@ impl Triangles<'_> {
                 for (index, (known, partial)) in geometry.iter().zip(partials).enumerate() {
                     let ids = &[(first + index) as u32];
                     let triangle = Triangle { twice_area: known.twice_area, dots: known.dots };
+                    if formula.vanishes(&triangle) {
+                        continue;
+                    }
                     let TrianglePartials { area, length_squared } = *partial;
                     let mut slopes = TriangleSlopes { area, length_squared };
                     sum.add(formula.apply(Place { term, ids }, &triangle, &mut slopes));
@@ -206,7 +246,7 @@ impl Triangles<'_> {
                 }
                 sum
             }
-            Self::Lanes { arch, ids, tile } => tile.apply(arch, term, ids, formula),
+            Self::Lanes { level, ids, tile } => tile.apply(level, term, ids, formula),
         };
         sum.without_hidden(term)
     }
@@ -225,7 +265,8 @@ impl Edges<'_> {
                 }
             }
             Self::Lanes(block) => {
-                let known = block.bends.as_flattened().iter().zip(block.lengths_squared.as_flattened());
+                let known =
+                    block.bends.as_flattened().iter().zip(block.lengths_squared.as_flattened());
                 let moments = block.moments.as_flattened_mut();
                 for (index, ((bend, length_squared), moment)) in known.zip(moments).enumerate() {
                     let length = length_squared.sqrt();
@@ -285,7 +326,7 @@ impl Vertices<'_> {
                 }
                 sum
             }
-            Self::Lanes { arch, ids, tile, .. } => tile.apply(arch, term, ids, formula),
+            Self::Lanes { level, ids, tile, .. } => tile.apply(level, term, ids, formula),
         };
         sum.without_hidden(term)
     }

@@ -51,10 +51,12 @@ bitflags! {
         const VERTICES = 8;
         /// Wants Jülicher's curvature of the vertices.
         const CURVATURES = 16;
-        /// Wants the vectors and Voronoi areas of the vertices.
+        /// Wants the Voronoi areas of the vertices.
         const VECTORS = 32;
         /// Wants the normals of the vertices, too.
         const NORMALS = 64;
+        /// Wants the curvature vectors of the vertices, too.
+        const CURVATURE_VECTORS = 128;
     }
 }
 

@@ -44,6 +44,8 @@ struct Plaquette {
 }
 
 impl VertexFormula for Plaquette {
+    const USES: Needs = Needs::empty();
+
     #[inline(always)]
     fn apply<R: Real>(&self, _: Place, vertex: &Vertex<R>, slopes: &mut Vertex<R>) -> Sums<R> {
         let strain = vertex.area * self.scale - 1.0;

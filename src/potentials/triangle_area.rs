@@ -44,7 +44,7 @@ impl TriangleFormula for Spring {
         slopes: &mut TriangleSlopes<R>,
     ) -> Sums<R> {
         let area = triangle.area();
-        let [modulus, target] = [0, 1].map(|parameter| place.value(parameter, area));
+        let (modulus, target) = (place.value(0, area), place.value(1, area));
         let (sums, slope) = relative_spring(modulus, target, area);
         slopes.area = slopes.area + slope;
         sums

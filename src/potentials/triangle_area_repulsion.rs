@@ -72,8 +72,7 @@ mod tests {
                 TriangleGeometry { normal: Vec3::zeros(), twice_area: 2.0 * area, dots: [1.0; 3] };
             let term = Term::new("TriangleAreaRepulsionForce", 0, &[min_area, epsilon]).unwrap();
             let mut partials = [TrianglePartials::default()];
-            let run =
-                Triangles::Plain { first: 0, geometry: &[triangle], partials: &mut partials };
+            let run = Triangles::Plain { first: 0, geometry: &[triangle], partials: &mut partials };
             (TriangleAreaRepulsion.triangles(&term, run), partials[0].area)
         };
         let (a, m, e): (f64, f64, f64) = (1.1, 1.0, 2.0);

@@ -41,6 +41,15 @@ struct Heights {
 }
 
 impl TriangleFormula for Heights {
+    /// Most triangles are far from any repulsion; to see that takes no division.
+    #[inline(always)]
+    fn vanishes<R: Real>(&self, triangle: &Triangle<R>) -> bool {
+        let four_areas = triangle.twice_area * triangle.twice_area;
+        let [a, b, c] = sides(triangle);
+        let reach = a.max(b).max(c) * (self.min_height * self.min_height);
+        !reach.any(reach.above(four_areas * std::f64::consts::FRAC_1_SQRT_2))
+    }
+
     /// With h = 2a/l and x = (d/h)⁴ = (d l / 2a)⁴ the energy of a height is ε (x − ½)², for x > ½.
     #[inline(always)]
     fn apply<R: Real>(
@@ -51,17 +60,13 @@ impl TriangleFormula for Heights {
     ) -> Sums<R> {
         let &Self { min_height, epsilon } = self;
         let four_areas = triangle.twice_area * triangle.twice_area;
-        let (zero, threshold) = (four_areas.zero(), four_areas.of(std::f64::consts::FRAC_1_SQRT_2));
-        let sides: [R; 3] = std::array::from_fn(|k| triangle.length_squared(k));
-        let longest = sides[0].max(sides[1]).max(sides[2]);
-        // Most triangles are far from any repulsion; to see that takes no division.
+        let zero = four_areas.zero();
+        let sides = sides(triangle);
         let squared = min_height * min_height;
-        if !zero.any((longest * squared).above(threshold * four_areas)) {
-            return Sums { energy: zero, by_parameter: [zero; 2] };
-        }
         let scale = zero.of(squared) / four_areas;
         let (mut squares, mut slope_sum) = (zero, zero);
-        for (side, length_squared) in sides.into_iter().enumerate() {
+        for side in 0..3 {
+            let length_squared = sides[side];
             let ratio_squared = scale * length_squared;
             let x = ratio_squared * ratio_squared;
             let (square, by_x) = repulsion(x);
@@ -75,6 +80,12 @@ impl TriangleFormula for Heights {
         let by_height = slope_sum * (4.0 * epsilon / min_height);
         Sums { energy: squares * epsilon, by_parameter: [by_height, squares] }
     }
+}
+
+/// The squares of the sides.
+#[inline(always)]
+fn sides<R: Real>(triangle: &Triangle<R>) -> [R; 3] {
+    [triangle.length_squared(0), triangle.length_squared(1), triangle.length_squared(2)]
 }
 
 #[cfg(test)]

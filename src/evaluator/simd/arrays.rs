@@ -6,6 +6,7 @@ use std::cell::UnsafeCell;
 /// Two cache lines, since processors fetch lines in pairs.
 #[derive(Clone, Copy)]
 #[repr(align(128))]
+#[expect(dead_code, reason = "the numbers are reached by pointers")]
 struct Line([f64; 16]);
 
 /// Numbers that several threads fill, each thread its own places.
@@ -52,18 +53,24 @@ pub struct Arrays {
     /// Tensions along sides 2, 0, 1 and 2 again of each triangle, from potentials of triangles, kJ/mol/nm²;
     /// so the sides that meet at corner k are at k and k + 1. Empty until needed.
     pub tensions: Numbers,
+    /// Angles at corners 0, 1, 2 of each triangle, and nothing; empty until needed.
+    pub angles: Numbers,
+    /// The same beginning with corner 1.
+    pub next_angles: Numbers,
     /// φ / l for each step and lane.
     pub bends: Numbers,
     /// l² for each step and lane; empty until needed.
     pub lengths_squared: Numbers,
     /// Bending moments per length for each step and lane, from potentials of angles; empty until needed.
     pub moments: Numbers,
-    /// ∂E/∂J and ∂E/∂a_B of each vertex.
+    /// ½ ∂E/∂J and ⅙ ∂E/∂a_B of each vertex, so that the last pass need not multiply.
     pub slopes: Numbers,
     /// ∂E/∂S and ∂E/∂a_V of each vertex; empty until needed.
     pub vector_slopes: Numbers,
     /// ∂E/∂U, with Espriu's vector U, and nothing; empty until needed.
     pub umbrella_slopes: Numbers,
+    /// ∂E/∂(sum of normals), and nothing; empty until needed.
+    pub normal_slopes: Numbers,
 }
 
 impl Arrays {
@@ -73,12 +80,15 @@ impl Arrays {
             positions: Numbers::new(4 * layout.vertex_ids.len()),
             normals: Numbers::new(4 * (layout.triangle_ids.len() + 1)),
             tensions: Numbers::new(0),
+            angles: Numbers::new(0),
+            next_angles: Numbers::new(0),
             bends: Numbers::new(0),
             lengths_squared: Numbers::new(0),
             moments: Numbers::new(0),
             slopes: Numbers::new(2 * layout.vertex_ids.len()),
             vector_slopes: Numbers::new(0),
             umbrella_slopes: Numbers::new(0),
+            normal_slopes: Numbers::new(0),
         }
     }
 }

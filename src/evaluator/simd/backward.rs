@@ -1,12 +1,12 @@
 //! The last pass: round the rings again, from slopes to forces.
 
 use super::arrays::Arrays;
-use super::forward::CONSECUTIVE;
+use super::forward::{CONSECUTIVE, NORMALS, VECTORS, VORONOI};
 use super::lanes::{BLOCK, Lane, Records, WithLanes};
 use super::layout::Layout;
 use crate::mesh::geometry::TotalPartials;
 use crate::mesh::vertex_vectors::COT_60;
-use crate::real::{Real, dot, minus, plus_scaled};
+use crate::real::{Real, cross, dot, minus, minus_scaled, plus, plus_scaled, scaled};
 
 /// Where the forces of all particles are, x y z of one after the other.
 #[derive(Clone, Copy)]
@@ -16,8 +16,8 @@ pub struct Forces(pub *mut f64);
 unsafe impl Sync for Forces {}
 
 /// Forces on a tile of vertices: with `BENDS` those of Jülicher's curvature, with `MOMENTS` those of
-/// dihedral angles, with `TENSIONS` those of triangles' areas and sides, with `VECTORS` those of Voronoi
-/// areas and curvature vectors; those of the total area and volume and of vertex areas in any case.
+/// dihedral angles, with `TENSIONS` those of triangles' areas and sides, with `LEVEL` those of [`VORONOI`]
+/// areas, [`VECTORS`] and [`NORMALS`]; those of the total area and volume and of vertex areas in any case.
 ///
 /// The force on vertex i is Σ_k [ T_k (r_k − r_i) − p_k N_k ] over its ring, with tensions T along edges and
 /// pressures p of triangles as in [`crate::mesh::geometry::corner_forces`], which is this formula by triangle.
@@ -28,7 +28,7 @@ pub struct Backward<
     const BENDS: bool,
     const MOMENTS: bool,
     const TENSIONS: bool,
-    const VECTORS: bool,
+    const LEVEL: u8,
 > {
     pub layout: &'a Layout,
     pub arrays: &'a Arrays,
@@ -43,7 +43,7 @@ struct Arm<S: Records> {
     /// r_j − r_i.
     e: [Lane<S>; 3],
     length_squared: Lane<S>,
-    /// ∂E/∂J and ∂E/∂a_B of the neighbour.
+    /// ½ ∂E/∂J and ⅙ ∂E/∂a_B of the neighbour.
     by_curvature: Lane<S>,
     by_area: Lane<S>,
     /// ∂E/∂S_i − ∂E/∂S_j.
@@ -52,6 +52,8 @@ struct Arm<S: Records> {
     voronoi: Lane<S>,
     /// ∂E/∂U_j.
     umbrella: [Lane<S>; 3],
+    /// ∂E/∂(sum of normals) of the neighbour.
+    normal: [Lane<S>; 3],
     /// ½ (g_i − g_j)·(r_i − r_j) + ⅛ (v_i + v_j) l², what the edge's cotangents are multiplied with.
     by_cotangent: Lane<S>,
 }
@@ -62,10 +64,11 @@ struct Centre<S: Records> {
     slopes: [Lane<S>; 2],
     vector: [Lane<S>; 4],
     umbrella: [Lane<S>; 3],
+    normal: [Lane<S>; 3],
 }
 
-impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const VECTORS: bool>
-    Backward<'_, BENDS, MOMENTS, TENSIONS, VECTORS>
+impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: u8>
+    Backward<'_, BENDS, MOMENTS, TENSIONS, LEVEL>
 {
     /// # Safety
     /// `first` is the first lane of a register within the vertices.
@@ -80,10 +83,17 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const VECTORS
                 slopes: Lane::gather2::<2>(simd, arrays.slopes.at(2 * first), offsets),
                 vector: [zero; 4],
                 umbrella: [zero; 3],
+                normal: [zero; 3],
             };
-            if VECTORS {
+            if LEVEL >= VORONOI {
                 centre.vector = Lane::gather4(simd, arrays.vector_slopes.at(4 * first), offsets);
-                centre.umbrella = Lane::gather3(simd, arrays.umbrella_slopes.at(4 * first), offsets);
+            }
+            if LEVEL >= VECTORS {
+                centre.umbrella =
+                    Lane::gather3(simd, arrays.umbrella_slopes.at(4 * first), offsets);
+            }
+            if LEVEL >= NORMALS {
+                centre.normal = Lane::gather3(simd, arrays.normal_slopes.at(4 * first), offsets);
             }
             centre
         }
@@ -98,8 +108,7 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const VECTORS
         unsafe {
             let e = minus(Lane::gather3(simd, arrays.positions.at(0), offsets), centre.position);
             let length_squared = dot(e, e);
-            let [by_curvature, by_area] =
-                Lane::gather2::<2>(simd, arrays.slopes.at(0), offsets);
+            let [by_curvature, by_area] = Lane::gather2::<2>(simd, arrays.slopes.at(0), offsets);
             let mut arm = Arm {
                 e,
                 length_squared,
@@ -108,24 +117,41 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const VECTORS
                 g: [zero; 3],
                 voronoi: zero,
                 umbrella: [zero; 3],
+                normal: [zero; 3],
                 by_cotangent: zero,
             };
-            if VECTORS {
+            if LEVEL >= VORONOI {
                 let [x, y, z, voronoi] = Lane::gather4(simd, arrays.vector_slopes.at(0), offsets);
                 let [gx, gy, gz, own] = centre.vector;
-                arm.g = minus([gx, gy, gz], [x, y, z]);
                 arm.voronoi = own + voronoi;
-                arm.umbrella = Lane::gather3(simd, arrays.umbrella_slopes.at(0), offsets);
-                arm.by_cotangent =
-                    (arm.voronoi * length_squared) * 0.125 - dot(arm.g, e) * 0.5;
+                arm.by_cotangent = (arm.voronoi * length_squared) * 0.125;
+                if LEVEL >= VECTORS {
+                    arm.g = minus([gx, gy, gz], [x, y, z]);
+                    arm.umbrella = Lane::gather3(simd, arrays.umbrella_slopes.at(0), offsets);
+                    arm.by_cotangent = dot(arm.g, e).neg_mul_add(zero.of(0.5), arm.by_cotangent);
+                }
+            }
+            if LEVEL >= NORMALS {
+                arm.normal = Lane::gather3(simd, arrays.normal_slopes.at(0), offsets);
             }
             arm
         }
     }
+
+    /// The bending moment per length of an arm.
+    ///
+    /// # Safety
+    /// `index` is that of a step and lane.
+    #[inline(always)]
+    unsafe fn moment<S: Records>(&self, centre: &Centre<S>, arm: &Arm<S>, index: usize) -> Lane<S> {
+        // SAFETY: there are moments for each step and lane.
+        let own = unsafe { Lane::load(centre.position[0].simd(), self.arrays.moments.at(index)) };
+        centre.slopes[0] + arm.by_curvature + own
+    }
 }
 
-impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const VECTORS: bool> WithLanes
-    for Backward<'_, BENDS, MOMENTS, TENSIONS, VECTORS>
+impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: u8> WithLanes
+    for Backward<'_, BENDS, MOMENTS, TENSIONS, LEVEL>
 {
     type Output = ();
 
@@ -133,7 +159,7 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const VECTORS
     fn with_lanes<S: Records>(self, simd: S) {
         let (layout, arrays) = (self.layout, self.arrays);
         let zero = Lane::splat(simd, 0.0);
-        let by_total_area = zero.of(self.totals.area);
+        let by_total_area = zero.of(0.5 * self.totals.area);
         let by_volume = zero.of(self.totals.volume / 6.0);
         let vertices = layout.vertex_tile(self.index);
         for first in vertices.clone().step_by(Lane::<S>::COUNT) {
@@ -141,23 +167,24 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const VECTORS
             let steps = layout.steps[block] as usize..layout.steps[block + 1] as usize - 1;
             // SAFETY: here and below, all offsets of the layout are within the arrays that they are for.
             let centre = unsafe { self.centre(simd, first) };
-            let neighbours = |step: usize| layout.neighbours[step].as_ptr().wrapping_add(lane);
+            let neighbours = layout.neighbours.as_ptr().cast::<u32>().wrapping_add(lane);
+            let places = layout.places.as_ptr().cast::<u32>().wrapping_add(lane);
             let [own_curvature, own_area] = centre.slopes;
-            let constant_area = own_area.mul_add(zero.of(1.0 / 3.0), by_total_area);
+            let constant_area = own_area + by_total_area;
             let mut force = [zero; 3];
             // The tension along the present arm from the triangle before it.
             let mut tension = zero;
-            let mut arm = unsafe { self.arm(simd, neighbours(steps.start), &centre) };
-            let moment = |arm: &Arm<S>, step: usize| {
-                let own = unsafe { Lane::load(simd, arrays.moments.at(step * BLOCK + lane)) };
-                (own_curvature + arm.by_curvature).mul_add(zero.of(0.5), own)
+            let mut arm = unsafe { self.arm(simd, neighbours.add(BLOCK * steps.start), &centre) };
+            let mut own_moment = if MOMENTS {
+                unsafe { self.moment(&centre, &arm, steps.start * BLOCK + lane) }
+            } else {
+                zero
             };
-            let mut own_moment = if MOMENTS { moment(&arm, steps.start) } else { zero };
             for step in steps {
-                let next = unsafe { self.arm(simd, neighbours(step + 1), &centre) };
+                let next = unsafe { self.arm(simd, neighbours.add(BLOCK * (step + 1)), &centre) };
                 let [nx, ny, nz, twice_area] = unsafe {
-                    let offsets = layout.triangles[step].as_ptr().add(lane);
-                    Lane::gather4(simd, arrays.normals.at(0), offsets)
+                    let offsets = places.add(BLOCK * step);
+                    Lane::gather4_within(simd, arrays.normals.at(0), offsets)
                 };
                 let exists = twice_area.above(zero);
                 let inverse = (zero.of(1.0) / twice_area).or_else(exists, zero);
@@ -166,53 +193,94 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const VECTORS
                 let at_end = arm.length_squared - at_centre;
                 let at_next = next.length_squared - at_centre;
 
-                // ∂E/∂(area of the triangle)
-                let mut by_area =
-                    (arm.by_area + next.by_area).mul_add(zero.of(1.0 / 3.0), constant_area);
+                // ½ ∂E/∂(area of the triangle)
+                let mut by_area = arm.by_area + next.by_area + constant_area;
                 let (mut along, mut along_next) = (tension, zero);
                 if TENSIONS {
                     let [before, after] = unsafe {
-                        let offsets = layout.places[step].as_ptr().add(lane);
+                        let offsets = places.add(BLOCK * step);
                         Lane::gather2::<1>(simd, arrays.tensions.at(0), offsets)
                     };
                     along = along + after;
                     along_next = before;
                 }
-                if VECTORS {
+                let mut pressure = by_volume * twice_area;
+                if LEVEL >= VORONOI {
                     // The side opposite the vertex, from this arm's end to the next.
-                    let apart = dot(minus(next.g, arm.g), minus(arm.e, next.e));
                     let side_squared = at_end + at_next;
-                    let voronoi = arm.voronoi + next.voronoi - centre.vector[3] - centre.vector[3];
-                    let facing = apart.mul_add(zero.of(0.5), voronoi * side_squared * 0.125);
+                    let voronoi =
+                        (arm.voronoi - centre.vector[3]) + (next.voronoi - centre.vector[3]);
+                    let mut facing = voronoi * side_squared * 0.125;
+                    if LEVEL >= VECTORS {
+                        let apart = dot(minus(next.g, arm.g), minus(arm.e, next.e));
+                        facing = apart.mul_add(zero.of(0.5), facing);
+                    }
                     let (cot_end, cot_next) = (at_end * inverse, at_next * inverse);
                     // The cotangents' own derivatives, with respect to the sides and to the area.
                     let (here, there) = (arm.by_cotangent, next.by_cotangent);
-                    along = along + inverse * (facing + there - here);
-                    along_next = along_next + inverse * (here + facing - there);
-                    let weighted = here * at_next + there * at_end + facing * at_centre;
-                    by_area = by_area - inverse * inverse * weighted * 2.0;
+                    along = inverse.mul_add(facing + there - here, along);
+                    along_next = inverse.mul_add(here + facing - there, along_next);
+                    let weighted = here.mul_add(at_next, there.mul_add(at_end, facing * at_centre));
+                    by_area = (inverse * inverse).neg_mul_add(weighted, by_area);
                     // The explicit squared sides of Voronoi's area.
-                    along = along + arm.voronoi * cot_next * 0.25;
-                    along_next = along_next + next.voronoi * cot_end * 0.25;
-                    // The explicit r_i − r_j of the vectors.
-                    let half = zero.of(-0.5);
-                    force = plus_scaled(force, cot_next * half, arm.g);
-                    force = plus_scaled(force, cot_end * half, next.g);
-                    let share = zero.of(-0.5 * COT_60).or_else(exists, zero);
-                    let umbrella = [0, 1, 2].map(|k| {
-                        centre.umbrella[k] + centre.umbrella[k] - arm.umbrella[k] - next.umbrella[k]
-                    });
-                    force = plus_scaled(force, share, umbrella);
+                    along = (arm.voronoi * 0.25).mul_add(cot_next, along);
+                    along_next = (next.voronoi * 0.25).mul_add(cot_end, along_next);
+                    if LEVEL >= VECTORS {
+                        // The explicit r_i − r_j of the vectors.
+                        force = plus_scaled(force, cot_next * -0.5, arm.g);
+                        force = plus_scaled(force, cot_end * -0.5, next.g);
+                        let share = zero.of(-0.5 * COT_60).or_else(exists, zero);
+                        let umbrella = plus(
+                            minus(centre.umbrella, arm.umbrella),
+                            minus(centre.umbrella, next.umbrella),
+                        );
+                        force = plus_scaled(force, share, umbrella);
+                    }
                 }
-                let stress = by_area * inverse * 0.5;
+                if LEVEL >= NORMALS {
+                    let n = [nx, ny, nz];
+                    let side_squared = at_end + at_next;
+                    let (own_angle, end_angle) = unsafe {
+                        let offsets = places.add(BLOCK * step);
+                        (
+                            Lane::gather1(simd, arrays.angles.at(0), offsets),
+                            Lane::gather1(simd, arrays.next_angles.at(0), offsets),
+                        )
+                    };
+                    let next_angle = zero.of(std::f64::consts::PI) - own_angle - end_angle;
+                    // The angle at a corner is that of (d, |N|), and d² + |N|² is the product of the squared
+                    // sides at it.
+                    let own = dot(centre.normal, n) / (arm.length_squared * next.length_squared);
+                    // Past the end of a ring that side has no length.
+                    let inverse_side = (zero.of(1.0) / side_squared).or_else(exists, zero);
+                    let end = dot(arm.normal, n) * inverse_side / arm.length_squared;
+                    let far = dot(next.normal, n) * inverse_side / next.length_squared;
+                    along = twice_area.mul_add(far - own - end, along);
+                    along_next = twice_area.mul_add(end - own - far, along_next);
+                    let turned = own.mul_add(at_centre, end.mul_add(at_end, far * at_next));
+                    by_area = by_area + turned;
+                    // A unit normal turns only: its gradient at a corner, times a constant vector, is along it.
+                    let weighted = plus_scaled(
+                        plus_scaled(scaled(centre.normal, own_angle), end_angle, arm.normal),
+                        next_angle,
+                        next.normal,
+                    );
+                    let torque = dot(n, cross(minus(arm.e, next.e), weighted));
+                    pressure = inverse.mul_add(torque, pressure);
+                }
+                let stress = by_area * inverse;
                 along = stress.mul_add(at_next, along);
                 along_next = stress.mul_add(at_end, along_next);
 
-                let mut pressure = by_volume * twice_area;
                 // Past the end of a ring the moments repeat the first.
-                let next_moment = if MOMENTS { moment(&next, step + 1) } else { zero };
+                let next_moment = if MOMENTS {
+                    unsafe { self.moment(&centre, &next, (step + 1) * BLOCK + lane) }
+                } else {
+                    zero
+                };
                 if MOMENTS {
-                    let facing = (arm.by_curvature + next.by_curvature) * 0.5
+                    let facing = arm.by_curvature
+                        + next.by_curvature
                         + unsafe {
                             let offsets = layout.opposite()[step].as_ptr().add(lane);
                             Lane::gather1(simd, arrays.moments.at(0), offsets)
@@ -220,18 +288,18 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const VECTORS
                     let turn = at_end * (own_moment - facing) + at_next * (next_moment - facing);
                     pressure = inverse.mul_add(turn, pressure);
                 } else if BENDS {
-                    let turn = at_end * (own_curvature - next.by_curvature)
-                        + at_next * (own_curvature - arm.by_curvature);
-                    pressure = (inverse * 0.5).mul_add(turn, pressure);
+                    let turn = at_next.mul_add(
+                        own_curvature - arm.by_curvature,
+                        at_end * (own_curvature - next.by_curvature),
+                    );
+                    pressure = inverse.mul_add(turn, pressure);
                 }
                 if BENDS {
                     let bend = unsafe { Lane::load(simd, arrays.bends.at(step * BLOCK + lane)) };
-                    let mean = (own_curvature + arm.by_curvature) * 0.5;
-                    along = bend.mul_add(mean, along);
+                    along = bend.mul_add(own_curvature + arm.by_curvature, along);
                 }
                 force = plus_scaled(force, along, arm.e);
-                let normal = [nx, ny, nz];
-                force = [0, 1, 2].map(|k| pressure.neg_mul_add(normal[k], force[k]));
+                force = minus_scaled(force, pressure, [nx, ny, nz]);
                 tension = along_next;
                 arm = next;
                 own_moment = next_moment;

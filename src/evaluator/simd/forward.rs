@@ -4,172 +4,253 @@
 use super::arrays::Arrays;
 use super::lanes::{BLOCK, Lane, Records, WithLanes};
 use super::layout::{Layout, TILE};
-use super::tiles::{Column, VertexTile};
-use crate::mesh::geometry::arctan_over_argument;
+use super::tiles::{VertexTile, load3};
+use crate::mesh::geometry::{Vec3, arctan_over_argument};
 use crate::mesh::vertex_vectors::COT_60;
-use crate::real::{Real, cross, dot, minus, plus_scaled};
+use crate::real::{Real, cross, dot, minus, plus, plus_scaled};
+
+/// Voronoi areas.
+pub const VORONOI: u8 = 1;
+/// Voronoi areas and the vectors of Gompper and Kroll and of Espriu.
+pub const VECTORS: u8 = 2;
+/// All that and normals.
+pub const NORMALS: u8 = 3;
 
 /// Areas and curvatures of a tile of vertices: with `BENDS` the dihedral angles of the edges and
-/// Jülicher's curvature, with `LENGTHS` also the edges' lengths, with `VECTORS` Voronoi areas and the
-/// vectors of Gompper and Kroll and of Espriu.
+/// Jülicher's curvature, with `LEVEL` above 0 [`VORONOI`] areas, [`VECTORS`] and [`NORMALS`].
 ///
-/// Reads positions and normals; writes bends and lengths of the tile's steps, as the only one.
-pub struct Forward<'a, const BENDS: bool, const LENGTHS: bool, const VECTORS: bool> {
+/// Reads positions, normals and angles; writes bends and lengths of the tile's steps, as the only one.
+pub struct Forward<'a, const BENDS: bool, const LEVEL: u8> {
     pub layout: &'a Layout,
     pub arrays: &'a Arrays,
     pub index: usize,
+    /// Whether the edges' lengths are wanted.
+    pub lengths: bool,
     pub tile: &'a mut VertexTile,
 }
 
 /// Offsets of records that follow each other.
 pub static CONSECUTIVE: [u32; BLOCK] = [0, 4, 8, 12, 16, 20, 24, 28];
 
-/// φ / l of an edge from its vector e and the unit normals n, m on its left and right.
-///
-/// With sin φ = e·(n × m) / l and cos φ = n·m, tan(φ/2) = sin φ / (1 + cos φ), and up to 45° the angle is a
-/// polynomial in it. Beyond, where edges of membranes rarely are, each lane asks atan2. Beyond the end of a
-/// ring, where `twice_area` is zero, so are the normals and the angle.
-#[inline(always)]
-fn bend<S: Records>(
-    e: [Lane<S>; 3],
-    length_squared: Lane<S>,
-    n: [Lane<S>; 3],
-    m: [Lane<S>; 3],
-    twice_area: Lane<S>,
-) -> Lane<S> {
-    let determinant = dot(e, cross(n, m));
-    let cosine = dot(n, m);
-    // tan(φ/2) / l
-    let slope = determinant / (length_squared * (cosine + 1.0));
-    let z = length_squared * (slope * slope);
-    let small = (slope + slope) * arctan_over_argument(z);
-    let limit = cosine.of(std::f64::consts::FRAC_1_SQRT_2);
-    if !cosine.any(limit.above(cosine)) {
-        return small;
-    }
-    let large = limit.above(cosine.or_else(twice_area.above(cosine.zero()), cosine.of(1.0)));
-    if !cosine.any(large) {
-        return small;
-    }
-    let exact = determinant.map3(cosine, length_squared, |determinant, cosine, length_squared| {
-        let length = length_squared.sqrt();
-        (determinant / length).atan2(cosine) / length
-    });
-    exact.or_else(large, small)
-}
+/// cos 45°: up to there the angle is a polynomial in the tangent of its half.
+const POLYNOMIAL_LIMIT: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-impl<const BENDS: bool, const LENGTHS: bool, const VECTORS: bool> WithLanes
-    for Forward<'_, BENDS, LENGTHS, VECTORS>
-{
+impl<const BENDS: bool, const LEVEL: u8> WithLanes for Forward<'_, BENDS, LEVEL> {
     type Output = ();
 
     #[inline(always)]
     fn with_lanes<S: Records>(self, simd: S) {
-        let Self { layout, arrays, index: tile_index, tile } = self;
+        let Self { layout, arrays, index: tile_index, lengths: lengths_wanted, tile } = self;
+        // A row for each step of the longest ring, used up before the next ring begins.
+        let ring = tile.ring.as_mut_ptr();
         let zero = Lane::splat(simd, 0.0);
         let (positions, normals) = (arrays.positions.at(0), arrays.normals.at(0));
         for first in layout.vertex_tile(tile_index).step_by(Lane::<S>::COUNT) {
             let (block, lane) = (first / BLOCK, first % BLOCK);
             let steps = layout.steps[block] as usize..layout.steps[block + 1] as usize - 1;
-            // SAFETY: all offsets of the layout are within positions and normals, and the positions have whole
-            // blocks of vertices.
+            let neighbours = layout.neighbours.as_ptr().cast::<u32>().wrapping_add(lane);
+            let places = layout.places.as_ptr().cast::<u32>().wrapping_add(lane);
+            // SAFETY: here and below, all offsets of the layout are within the arrays that they are for, and those
+            // of vertices have whole blocks.
             let here = unsafe {
                 Lane::gather3(simd, arrays.positions.at(4 * first), CONSECUTIVE.as_ptr())
             };
-            let arm = |step: usize| unsafe {
-                let offsets = layout.neighbours[step].as_ptr().add(lane);
-                minus(Lane::gather3(simd, positions, offsets), here)
+            let (last, last_arm, mut e) = unsafe {
+                let before = layout.neighbours_before[block].as_ptr().add(lane);
+                (
+                    Lane::gather4(simd, normals, layout.before[block].as_ptr().add(lane)),
+                    minus(Lane::gather3(simd, positions, before), here),
+                    minus(
+                        Lane::gather3(simd, positions, neighbours.add(BLOCK * steps.start)),
+                        here,
+                    ),
+                )
             };
-            let [nx, ny, nz] =
-                unsafe { Lane::gather3(simd, normals, layout.before[block].as_ptr().add(lane)) };
-            let mut last = [nx, ny, nz];
-            let (mut area, mut voronoi, mut curvature) = (zero, zero, zero);
-            let (mut cotangent, mut umbrella) = ([zero; 3], [zero; 3]);
-            let mut e = arm(steps.start);
+            let (mut last_normal, mut last_twice, mut last_arm) =
+                ([last[0], last[1], last[2]], last[3], last_arm);
             let mut length_squared = dot(e, e);
-            for step in steps {
-                // SAFETY: as above.
-                let [nx, ny, nz, twice_area] = unsafe {
-                    Lane::gather4(simd, normals, layout.triangles[step].as_ptr().add(lane))
-                };
+            let (mut area, mut voronoi) = (zero, zero);
+            let (mut cotangent, mut umbrella, mut normal_sum) = ([zero; 3], [zero; 3], [zero; 3]);
+            let mut flattest = zero.of(1.0);
+            for step in steps.clone() {
+                let [nx, ny, nz, twice_area] =
+                    unsafe { Lane::gather4_within(simd, normals, places.add(BLOCK * step)) };
                 let n = [nx, ny, nz];
                 area = area + twice_area;
+                let exists = twice_area.above(zero);
                 if BENDS {
-                    let bend = bend(e, length_squared, n, last, twice_area);
-                    curvature = length_squared.mul_add(bend, curvature);
-                    last = n;
-                    // SAFETY: bends and lengths have a place for each step and lane.
+                    // With the triangles on the left and right, tan(φ/2) / l = −N·d / (N·M + |N||M|), where d leads
+                    // from this vertex to the neighbour before; both sides are divided by |N||M| here.
+                    let cosine = dot(n, last_normal);
+                    let depth = dot(n, last_arm);
+                    let slope = (zero - depth) / last_twice.mul_add(cosine, last_twice);
+                    flattest = flattest.min(cosine.or_else(exists, zero.of(1.0)));
                     unsafe {
-                        bend.store(arrays.bends.at(step * BLOCK + lane));
-                        if LENGTHS {
-                            length_squared.store(arrays.lengths_squared.at(step * BLOCK + lane));
-                        }
+                        let [slopes, lengths] = &mut *ring.add(step - steps.start);
+                        slope.store(slopes.as_mut_ptr());
+                        length_squared.store(lengths.as_mut_ptr());
                     }
+                    last_normal = n;
+                    last_twice = twice_area.or_else(exists, zero.of(1.0));
+                    last_arm = e;
                 }
-                let next = arm(step + 1);
+                let next = unsafe {
+                    minus(Lane::gather3(simd, positions, neighbours.add(BLOCK * (step + 1))), here)
+                };
                 let next_squared = dot(next, next);
-                if VECTORS {
-                    let exists = twice_area.above(zero);
+                if LEVEL >= VORONOI {
                     let inverse = (zero.of(1.0) / twice_area).or_else(exists, zero);
                     let product = dot(e, next);
                     // Each side's square times the scalar product at the far end of the other.
                     let weighted = length_squared * (next_squared - product)
                         + next_squared * (length_squared - product);
                     voronoi = inverse.mul_add(weighted, voronoi);
-                    let facing = minus(next, e);
-                    let turned = cross(n, facing);
-                    cotangent = [0, 1, 2].map(|k| cotangent[k] + turned[k]);
+                }
+                if LEVEL >= VECTORS {
+                    cotangent = plus(cotangent, cross(n, minus(next, e)));
                     let share = zero.of(-0.5 * COT_60).or_else(exists, zero);
-                    umbrella = plus_scaled(umbrella, share, [0, 1, 2].map(|k| e[k] + next[k]));
+                    umbrella = plus_scaled(umbrella, share, plus(e, next));
+                }
+                if LEVEL >= NORMALS {
+                    let angle = unsafe {
+                        Lane::gather1(simd, arrays.angles.at(0), places.add(BLOCK * step))
+                    };
+                    normal_sum = plus_scaled(normal_sum, angle, n);
                 }
                 e = next;
                 length_squared = next_squared;
             }
-            let index = first % TILE;
             let known = &mut tile.known;
+            let index = first % TILE;
             known.area.store(index, area * (1.0 / 6.0));
             if BENDS {
+                // A loop of its own, since the processor then works at many steps at once.
+                let mut curvature = zero;
+                for step in steps.clone() {
+                    let at = step * BLOCK + lane;
+                    unsafe {
+                        let [slopes, lengths] = &*ring.add(step - steps.start);
+                        let slope = Lane::load(simd, slopes.as_ptr());
+                        let length_squared = Lane::load(simd, lengths.as_ptr());
+                        if lengths_wanted {
+                            length_squared.store(arrays.lengths_squared.at(at));
+                        }
+                        let angle_part = arctan_over_argument(length_squared * (slope * slope));
+                        let bend = (slope + slope) * angle_part;
+                        bend.store(arrays.bends.at(at));
+                        curvature = length_squared.mul_add(bend, curvature);
+                    }
+                }
+                if zero.any(zero.of(POLYNOMIAL_LIMIT).above(flattest)) {
+                    let ring = Ring { layout, arrays, block, lane };
+                    curvature = unsafe { ring.careful(simd) };
+                }
                 known.curvature.store(index, curvature * 0.5);
             }
-            if VECTORS {
+            if LEVEL >= VORONOI {
                 known.voronoi_area.store(index, voronoi * 0.125);
-                for k in 0..3 {
+            }
+            for k in 0..3 {
+                if LEVEL >= VECTORS {
                     known.cotangent[k].store(index, cotangent[k] * 0.5);
                     known.umbrella[k].store(index, umbrella[k]);
+                }
+                if LEVEL >= NORMALS {
+                    known.normal_sum[k].store(index, normal_sum[k]);
                 }
             }
         }
     }
 }
 
+/// The rings of some lanes, of which at least one has an edge that is bent by more than 45°, as edges of
+/// membranes rarely are.
+struct Ring<'a> {
+    layout: &'a Layout,
+    arrays: &'a Arrays,
+    block: usize,
+    lane: usize,
+}
+
+impl Ring<'_> {
+    /// Correct the bends of such edges, lane by lane with atan2, so that it does not matter which lanes go
+    /// together; returns the sum of l φ.
+    ///
+    /// # Safety
+    /// The pass before has filled positions, normals and bends.
+    #[cold]
+    #[inline(never)]
+    unsafe fn careful<S: Records>(&self, simd: S) -> Lane<S> {
+        let (layout, arrays, lane) = (self.layout, self.arrays, self.lane);
+        let vertex = self.block * BLOCK + lane;
+        let steps = layout.steps[self.block] as usize..layout.steps[self.block + 1] as usize - 1;
+        let record = |numbers: &super::arrays::Numbers, offset: u32| {
+            // SAFETY: offsets of the layout are within their arrays.
+            let at = |k: usize| unsafe { *numbers.at(offset as usize + k) };
+            Vec3::new(at(0), at(1), at(2))
+        };
+        let mut sums = [0.0; BLOCK];
+        for other in 0..Lane::<S>::COUNT {
+            let here = record(&arrays.positions, 4 * (vertex + other) as u32);
+            let mut last = record(&arrays.normals, layout.before[self.block][lane + other]);
+            for step in steps.clone() {
+                let e = record(&arrays.positions, layout.neighbours[step][lane + other]) - here;
+                let n = record(&arrays.normals, layout.places[step][lane + other] & !3);
+                let length_squared = e.norm_squared();
+                // SAFETY: there are bends for each step and lane.
+                let bend = unsafe { &mut *arrays.bends.at(step * BLOCK + lane + other) };
+                let cosine = n.dot(&last);
+                // Where a ring has ended, the normals are zero, and so is the bend.
+                if cosine < POLYNOMIAL_LIMIT && n.norm_squared() > 0.0 {
+                    let length = length_squared.sqrt();
+                    *bend = (e.dot(&n.cross(&last)) / length).atan2(cosine) / length;
+                }
+                sums[other] += length_squared * *bend;
+                last = n;
+            }
+        }
+        // SAFETY: no instruction set has more lanes than a block.
+        unsafe { Lane::load(simd, sums.as_ptr()) }
+    }
+}
+
 /// The slopes of a tile of vertices, from its columns to records that the neighbours will gather.
 ///
 /// Writes the records of the tile, as the only one, while nobody reads them.
-pub struct Slopes<'a, const VECTORS: bool> {
+pub struct Slopes<'a, const LEVEL: u8> {
     pub layout: &'a Layout,
     pub arrays: &'a Arrays,
     pub index: usize,
     pub tile: &'a VertexTile,
 }
 
-impl<const VECTORS: bool> WithLanes for Slopes<'_, VECTORS> {
+impl<const LEVEL: u8> WithLanes for Slopes<'_, LEVEL> {
     type Output = ();
 
     #[inline(always)]
     fn with_lanes<S: Records>(self, simd: S) {
         let slopes = &self.tile.slopes;
         for first in self.layout.vertex_tile(self.index).step_by(Lane::<S>::COUNT) {
-            let load = |column: &Column| column.load(simd, first % TILE);
+            let index = first % TILE;
             // SAFETY: the records of vertices have whole blocks.
             unsafe {
-                let pair = [load(&slopes.curvature), load(&slopes.area)];
+                let curvature = slopes.curvature.load(simd, index) * 0.5;
+                let pair = [curvature, slopes.area.load(simd, index) * (1.0 / 6.0)];
                 Lane::store2(self.arrays.slopes.at(2 * first), pair);
-                if VECTORS {
-                    let [x, y, z] = slopes.cotangent.each_ref().map(load);
-                    let voronoi = load(&slopes.voronoi_area);
+                if LEVEL >= VORONOI {
+                    let voronoi = slopes.voronoi_area.load(simd, index);
+                    let mut vector = [Lane::splat(simd, 0.0); 3];
+                    if LEVEL >= VECTORS {
+                        vector = load3(simd, &slopes.cotangent, index);
+                        let [x, y, z] = load3(simd, &slopes.umbrella, index);
+                        Lane::store4(self.arrays.umbrella_slopes.at(4 * first), [x, y, z, z]);
+                    }
+                    let [x, y, z] = vector;
                     Lane::store4(self.arrays.vector_slopes.at(4 * first), [x, y, z, voronoi]);
-                    let [x, y, z] = slopes.umbrella.each_ref().map(load);
-                    Lane::store4(self.arrays.umbrella_slopes.at(4 * first), [x, y, z, voronoi]);
+                }
+                if LEVEL >= NORMALS {
+                    let [x, y, z] = load3(simd, &slopes.normal_sum, index);
+                    Lane::store4(self.arrays.normal_slopes.at(4 * first), [x, y, z, z]);
                 }
             }
         }

@@ -5,6 +5,7 @@
 //! and to transpose them into lanes.
 
 use crate::real::Real;
+use pulp::bytemuck::cast;
 use pulp::{Arch, Scalar, Simd};
 use std::ops::{Add, Div, Mul, Sub};
 
@@ -22,17 +23,31 @@ pub trait Records: Simd {
     /// `offsets` has as many entries as there are lanes, and four numbers follow `base` at each.
     #[inline(always)]
     unsafe fn gather3(self, base: *const f64, offsets: *const u32) -> [Self::f64s; 3] {
-        let [a, b, c, _] = unsafe { self.gather4(base, offsets) };
+        let [a, b, c, _] = unsafe { self.gather4::<false>(base, offsets) };
         [a, b, c]
     }
 
-    /// A record of four numbers for each lane.
+    /// A record of four numbers for each lane. With `WITHIN`, offsets may point into a record instead of to its
+    /// beginning.
     ///
     /// # Safety
     /// As [`Records::gather3`].
     #[inline(always)]
-    unsafe fn gather4(self, base: *const f64, offsets: *const u32) -> [Self::f64s; 4] {
-        unsafe { gather::<Self, 4, 1>(self, base, offsets) }
+    unsafe fn gather4<const WITHIN: bool>(
+        self,
+        base: *const f64,
+        offsets: *const u32,
+    ) -> [Self::f64s; 4] {
+        unsafe {
+            if WITHIN {
+                let mut starts = [0; BLOCK];
+                for (lane, start) in starts[..Self::F64_LANES].iter_mut().enumerate() {
+                    *start = *offsets.add(lane) & !3;
+                }
+                return gather::<Self, 4, 1>(self, base, starts.as_ptr());
+            }
+            gather::<Self, 4, 1>(self, base, offsets)
+        }
     }
 
     /// Two numbers for each lane, at its offset divided by `BY`.
@@ -124,24 +139,35 @@ mod x86 {
     use pulp::x86::{V3, V4};
     use std::arch::x86_64::{__m256d, __m512d};
 
-    /// Numbers `k` and `k + 1` of the records of lanes 0 and 2, and of lanes 1 and 3.
+    /// Two numbers of the records of two lanes.
     #[inline(always)]
-    unsafe fn halves<const BY: u32>(
+    unsafe fn pair<const BY: u32, const KEEP: u32>(
+        simd: V3,
+        base: *const f64,
+        low: *const u32,
+        high: *const u32,
+    ) -> __m256d {
+        // SAFETY: the caller's records are there.
+        unsafe {
+            let low = simd.sse2._mm_loadu_pd(base.add(((*low & KEEP) / BY) as usize));
+            let high = simd.sse2._mm_loadu_pd(base.add(((*high & KEEP) / BY) as usize));
+            simd.avx._mm256_insertf128_pd::<1>(simd.avx._mm256_castpd128_pd256(low), high)
+        }
+    }
+
+    /// Two numbers of the records of lanes 0 and 2, and of lanes 1 and 3.
+    #[inline(always)]
+    unsafe fn halves<const BY: u32, const KEEP: u32>(
         simd: V3,
         base: *const f64,
         offsets: *const u32,
-        k: usize,
     ) -> [__m256d; 2] {
         // SAFETY: the caller's records are there.
         unsafe {
-            let half = |lane: usize| {
-                simd.sse2._mm_loadu_pd(base.add((*offsets.add(lane) / BY) as usize + k))
-            };
-            let pair = |low: usize, high: usize| {
-                let low = simd.avx._mm256_castpd128_pd256(half(low));
-                simd.avx._mm256_insertf128_pd::<1>(low, half(high))
-            };
-            [pair(0, 2), pair(1, 3)]
+            [
+                pair::<BY, KEEP>(simd, base, offsets, offsets.add(2)),
+                pair::<BY, KEEP>(simd, base, offsets.add(1), offsets.add(3)),
+            ]
         }
     }
 
@@ -159,16 +185,34 @@ mod x86 {
         #[inline(always)]
         unsafe fn gather3(self, base: *const f64, offsets: *const u32) -> [Self::f64s; 3] {
             // SAFETY: the caller's records are there.
-            let [low, high] = unsafe { [0, 2].map(|k| halves::<1>(self, base, offsets, k)) };
+            let (low, high) = unsafe {
+                (
+                    halves::<1, { u32::MAX }>(self, base, offsets),
+                    halves::<1, { u32::MAX }>(self, base.add(2), offsets),
+                )
+            };
             let [a, b] = columns(self, low);
             [cast!(a), cast!(b), cast!(self.avx._mm256_unpacklo_pd(high[0], high[1]))]
         }
 
         #[inline(always)]
-        unsafe fn gather4(self, base: *const f64, offsets: *const u32) -> [Self::f64s; 4] {
+        unsafe fn gather4<const WITHIN: bool>(
+            self,
+            base: *const f64,
+            offsets: *const u32,
+        ) -> [Self::f64s; 4] {
             // SAFETY: the caller's records are there.
-            let [low, high] = unsafe { [0, 2].map(|k| columns(self, halves::<1>(self, base, offsets, k))) };
-            [cast!(low[0]), cast!(low[1]), cast!(high[0]), cast!(high[1])]
+            let (low, high) = unsafe {
+                if WITHIN {
+                    let low = halves::<1, { !3 }>(self, base, offsets);
+                    (low, halves::<1, { !3 }>(self, base.add(2), offsets))
+                } else {
+                    let low = halves::<1, { u32::MAX }>(self, base, offsets);
+                    (low, halves::<1, { u32::MAX }>(self, base.add(2), offsets))
+                }
+            };
+            let ([a, b], [c, d]) = (columns(self, low), columns(self, high));
+            [cast!(a), cast!(b), cast!(c), cast!(d)]
         }
 
         #[inline(always)]
@@ -178,7 +222,7 @@ mod x86 {
             offsets: *const u32,
         ) -> [Self::f64s; 2] {
             // SAFETY: the caller's records are there.
-            let [a, b] = columns(self, unsafe { halves::<BY>(self, base, offsets, 0) });
+            let [a, b] = columns(self, unsafe { halves::<BY, { u32::MAX }>(self, base, offsets) });
             [cast!(a), cast!(b)]
         }
 
@@ -196,9 +240,12 @@ mod x86 {
                 avx._mm256_permute2f128_pd::<0x31>(even[0], even[1]),
                 avx._mm256_permute2f128_pd::<0x31>(odd[0], odd[1]),
             ];
-            for (k, row) in rows.into_iter().enumerate() {
-                // SAFETY: the caller's room is there.
-                unsafe { avx._mm256_storeu_pd(to.add(4 * k), row) };
+            // SAFETY: the caller's room is there.
+            unsafe {
+                avx._mm256_storeu_pd(to, rows[0]);
+                avx._mm256_storeu_pd(to.add(4), rows[1]);
+                avx._mm256_storeu_pd(to.add(8), rows[2]);
+                avx._mm256_storeu_pd(to.add(12), rows[3]);
             }
         }
 
@@ -215,27 +262,22 @@ mod x86 {
         }
     }
 
+    type Four = <V3 as pulp::Simd>::f64s;
+    type Eight = <V4 as pulp::Simd>::f64s;
+
     /// Two registers of four lanes as one of eight.
     #[inline(always)]
-    fn joined<const K: usize>(
-        simd: V4,
-        low: [<V3 as pulp::Simd>::f64s; K],
-        high: [<V3 as pulp::Simd>::f64s; K],
-    ) -> [<V4 as pulp::Simd>::f64s; K] {
-        std::array::from_fn(|k| {
-            let low: __m512d = simd.avx512f._mm512_castpd256_pd512(cast!(low[k]));
-            cast!(simd.avx512f._mm512_insertf64x4::<1>(low, cast!(high[k])))
-        })
+    fn join(simd: V4, low: Four, high: Four) -> Eight {
+        let low: __m512d = simd.avx512f._mm512_castpd256_pd512(cast!(low));
+        cast!(simd.avx512f._mm512_insertf64x4::<1>(low, cast!(high)))
     }
 
     #[inline(always)]
-    fn split<const K: usize>(
-        columns: [<V4 as pulp::Simd>::f64s; K],
-    ) -> [[<V3 as pulp::Simd>::f64s; K]; 2] {
-        let halves = columns.map(|column| -> [<V3 as pulp::Simd>::f64s; 2] { cast!(column) });
-        [0, 1].map(|half| halves.map(|pair| pair[half]))
+    fn split(eight: Eight) -> [Four; 2] {
+        cast!(eight)
     }
 
+    // Each is two of four lanes.
     impl Records for V4 {
         #[inline(always)]
         fn any(self, mask: Self::m64s) -> bool {
@@ -245,15 +287,28 @@ mod x86 {
         #[inline(always)]
         unsafe fn gather3(self, base: *const f64, offsets: *const u32) -> [Self::f64s; 3] {
             // SAFETY: as the caller says.
-            let [low, high] = unsafe { [0, 4].map(|k| (*self).gather3(base, offsets.add(k))) };
-            joined(self, low, high)
+            let (low, high) =
+                unsafe { ((*self).gather3(base, offsets), (*self).gather3(base, offsets.add(4))) };
+            [join(self, low[0], high[0]), join(self, low[1], high[1]), join(self, low[2], high[2])]
         }
 
         #[inline(always)]
-        unsafe fn gather4(self, base: *const f64, offsets: *const u32) -> [Self::f64s; 4] {
+        unsafe fn gather4<const WITHIN: bool>(
+            self,
+            base: *const f64,
+            offsets: *const u32,
+        ) -> [Self::f64s; 4] {
             // SAFETY: as the caller says.
-            let [low, high] = unsafe { [0, 4].map(|k| (*self).gather4(base, offsets.add(k))) };
-            joined(self, low, high)
+            let (low, high) = unsafe {
+                let low = (*self).gather4::<WITHIN>(base, offsets);
+                (low, (*self).gather4::<WITHIN>(base, offsets.add(4)))
+            };
+            [
+                join(self, low[0], high[0]),
+                join(self, low[1], high[1]),
+                join(self, low[2], high[2]),
+                join(self, low[3], high[3]),
+            ]
         }
 
         #[inline(always)]
@@ -263,24 +318,29 @@ mod x86 {
             offsets: *const u32,
         ) -> [Self::f64s; 2] {
             // SAFETY: as the caller says.
-            let [low, high] =
-                unsafe { [0, 4].map(|k| (*self).gather2::<BY>(base, offsets.add(k))) };
-            joined(self, low, high)
+            let (low, high) = unsafe {
+                ((*self).gather2::<BY>(base, offsets), (*self).gather2::<BY>(base, offsets.add(4)))
+            };
+            [join(self, low[0], high[0]), join(self, low[1], high[1])]
         }
 
         #[inline(always)]
-        unsafe fn store4(self, to: *mut f64, columns: [Self::f64s; 4]) {
-            for (half, columns) in split(columns).into_iter().enumerate() {
-                // SAFETY: as the caller says.
-                unsafe { (*self).store4(to.add(16 * half), columns) };
+        unsafe fn store4(self, to: *mut f64, [a, b, c, d]: [Self::f64s; 4]) {
+            let (a, b, c, d) = (split(a), split(b), split(c), split(d));
+            // SAFETY: as the caller says.
+            unsafe {
+                (*self).store4(to, [a[0], b[0], c[0], d[0]]);
+                (*self).store4(to.add(16), [a[1], b[1], c[1], d[1]]);
             }
         }
 
         #[inline(always)]
-        unsafe fn store2(self, to: *mut f64, columns: [Self::f64s; 2]) {
-            for (half, columns) in split(columns).into_iter().enumerate() {
-                // SAFETY: as the caller says.
-                unsafe { (*self).store2(to.add(8 * half), columns) };
+        unsafe fn store2(self, to: *mut f64, [a, b]: [Self::f64s; 2]) {
+            let (a, b) = (split(a), split(b));
+            // SAFETY: as the caller says.
+            unsafe {
+                (*self).store2(to, [a[0], b[0]]);
+                (*self).store2(to.add(8), [a[1], b[1]]);
             }
         }
     }
@@ -306,17 +366,48 @@ impl<S: Records, Op: WithLanes> pulp::NullaryFnOnce for Vectorized<S, Op> {
     }
 }
 
+/// An instruction set that the processor has.
+#[derive(Debug, Clone, Copy)]
+pub enum Level {
+    /// One number at a time.
+    Scalar,
+    /// AVX2 with fused multiplication and addition: four at a time.
+    #[cfg(target_arch = "x86_64")]
+    Avx2(pulp::x86::V3),
+    /// AVX-512: eight at a time.
+    #[cfg(target_arch = "x86_64")]
+    Avx512(pulp::x86::V4),
+    /// NEON: two at a time.
+    #[cfg(target_arch = "aarch64")]
+    Neon(pulp::aarch64::Neon),
+}
+
+impl Level {
+    /// The best that this processor has.
+    pub fn best() -> Self {
+        match Arch::new() {
+            #[cfg(target_arch = "x86_64")]
+            Arch::V4(simd) => Self::Avx512(simd),
+            #[cfg(target_arch = "x86_64")]
+            Arch::V3(simd) => Self::Avx2(simd),
+            #[cfg(target_arch = "aarch64")]
+            Arch::Neon(simd) => Self::Neon(simd),
+            _ => Self::Scalar,
+        }
+    }
+}
+
 /// Do something with the lanes of an instruction set.
 #[inline]
-pub fn dispatch<Op: WithLanes>(arch: Arch, op: Op) -> Op::Output {
-    match arch {
+pub fn dispatch<Op: WithLanes>(level: Level, op: Op) -> Op::Output {
+    match level {
         #[cfg(target_arch = "x86_64")]
-        Arch::V4(simd) => simd.vectorize(Vectorized(simd, op)),
+        Level::Avx512(simd) => simd.vectorize(Vectorized(simd, op)),
         #[cfg(target_arch = "x86_64")]
-        Arch::V3(simd) => simd.vectorize(Vectorized(simd, op)),
+        Level::Avx2(simd) => simd.vectorize(Vectorized(simd, op)),
         #[cfg(target_arch = "aarch64")]
-        Arch::Neon(simd) => simd.vectorize(Vectorized(simd, op)),
-        _ => op.with_lanes(Scalar),
+        Level::Neon(simd) => simd.vectorize(Vectorized(simd, op)),
+        Level::Scalar => op.with_lanes(Scalar),
     }
 }
 
@@ -335,6 +426,12 @@ impl<S: Records> Lane<S> {
     #[inline(always)]
     pub fn splat(simd: S, value: f64) -> Self {
         Self { simd, value: simd.splat_f64s(value) }
+    }
+
+    /// The instruction set.
+    #[inline(always)]
+    pub fn simd(self) -> S {
+        self.simd
     }
 
     /// From consecutive places in memory.
@@ -378,7 +475,8 @@ impl<S: Records> Lane<S> {
         offsets: *const u32,
     ) -> [Self; 2] {
         // SAFETY: as the caller says.
-        unsafe { simd.gather2::<BY>(base, offsets) }.map(|value| Self { simd, value })
+        let [a, b] = unsafe { simd.gather2::<BY>(base, offsets) };
+        [Self { simd, value: a }, Self { simd, value: b }]
     }
 
     /// [`Records::gather3`].
@@ -388,7 +486,8 @@ impl<S: Records> Lane<S> {
     #[inline(always)]
     pub unsafe fn gather3(simd: S, base: *const f64, offsets: *const u32) -> [Self; 3] {
         // SAFETY: as the caller says.
-        unsafe { simd.gather3(base, offsets) }.map(|value| Self { simd, value })
+        let [a, b, c] = unsafe { simd.gather3(base, offsets) };
+        [Self { simd, value: a }, Self { simd, value: b }, Self { simd, value: c }]
     }
 
     /// [`Records::gather4`].
@@ -398,7 +497,27 @@ impl<S: Records> Lane<S> {
     #[inline(always)]
     pub unsafe fn gather4(simd: S, base: *const f64, offsets: *const u32) -> [Self; 4] {
         // SAFETY: as the caller says.
-        unsafe { simd.gather4(base, offsets) }.map(|value| Self { simd, value })
+        Self::four(simd, unsafe { simd.gather4::<false>(base, offsets) })
+    }
+
+    /// [`Records::gather4`] with offsets that may point into a record.
+    ///
+    /// # Safety
+    /// As there.
+    #[inline(always)]
+    pub unsafe fn gather4_within(simd: S, base: *const f64, offsets: *const u32) -> [Self; 4] {
+        // SAFETY: as the caller says.
+        Self::four(simd, unsafe { simd.gather4::<true>(base, offsets) })
+    }
+
+    #[inline(always)]
+    fn four(simd: S, [a, b, c, d]: [S::f64s; 4]) -> [Self; 4] {
+        [
+            Self { simd, value: a },
+            Self { simd, value: b },
+            Self { simd, value: c },
+            Self { simd, value: d },
+        ]
     }
 
     /// [`Records::store4`].
@@ -406,9 +525,9 @@ impl<S: Records> Lane<S> {
     /// # Safety
     /// As there.
     #[inline(always)]
-    pub unsafe fn store4(to: *mut f64, columns: [Self; 4]) {
+    pub unsafe fn store4(to: *mut f64, [a, b, c, d]: [Self; 4]) {
         // SAFETY: as the caller says.
-        unsafe { columns[0].simd.store4(to, columns.map(|column| column.value)) };
+        unsafe { a.simd.store4(to, [a.value, b.value, c.value, d.value]) };
     }
 
     /// [`Records::store2`].
@@ -416,15 +535,24 @@ impl<S: Records> Lane<S> {
     /// # Safety
     /// As there.
     #[inline(always)]
-    pub unsafe fn store2(to: *mut f64, columns: [Self; 2]) {
+    pub unsafe fn store2(to: *mut f64, [a, b]: [Self; 2]) {
         // SAFETY: as the caller says.
-        unsafe { columns[0].simd.store2(to, columns.map(|column| column.value)) };
+        unsafe { a.simd.store2(to, [a.value, b.value]) };
     }
 
     /// The sum over the lanes.
     #[inline(always)]
     pub fn sum(self) -> f64 {
         self.simd.reduce_sum_f64s(self.value)
+    }
+
+    /// The sum of the first `count` lanes, at most all.
+    #[inline(always)]
+    pub fn sum_of_first(self, count: usize) -> f64 {
+        let mut lanes = [0.0; BLOCK];
+        // SAFETY: no instruction set has more lanes than a block.
+        unsafe { self.store(lanes.as_mut_ptr()) };
+        lanes[..count.min(Self::COUNT)].iter().sum()
     }
 
     /// The smallest of the lanes; NaN counts as none.
@@ -442,12 +570,15 @@ impl<S: Records> Lane<S> {
             b.store(b_lanes.as_mut_ptr());
             c.store(c_lanes.as_mut_ptr());
         }
-        let mut lane = 0;
-        self.map(|a| {
-            let value = function(a, b_lanes[lane], c_lanes[lane]);
-            lane += 1;
-            value
-        })
+        let mut value = self.value;
+        for lane in 0..S::F64_LANES {
+            // SAFETY: a register is an array of its lanes.
+            unsafe {
+                let place = std::ptr::from_mut(&mut value).cast::<f64>().add(lane);
+                *place = function(*place, b_lanes[lane], c_lanes[lane]);
+            }
+        }
+        Self { value, ..self }
     }
 
     /// The smaller of two.
@@ -522,7 +653,8 @@ impl<S: Records> Real for Lane<S> {
 
     #[inline(always)]
     fn or_else(self, mask: Self::Mask, other: Self) -> Self {
-        Self { value: self.simd.select_f64s(mask, self.value, other.value), ..self }
+        let (value, other) = (cast(self.value), cast(other.value));
+        Self { value: cast(self.simd.select_u64s(mask, value, other)), ..self }
     }
 
     #[inline(always)]

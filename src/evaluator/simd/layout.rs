@@ -13,7 +13,7 @@ use std::sync::OnceLock;
 /// Elements that are handled together: what a tile needs between passes stays in the nearest cache. Sums
 /// are formed within tiles and then over tiles in order, whatever the number of threads, so this number is
 /// part of what decides the last bits.
-pub const TILE: usize = 64;
+pub const TILE: usize = 128;
 
 /// The renumbered mesh. All offsets count numbers, not records.
 ///
@@ -38,12 +38,15 @@ pub struct Layout {
     pub steps: Vec<u32>,
     /// For each step and lane, the offset of the neighbour's position.
     pub neighbours: Vec<[u32; BLOCK]>,
-    /// For each step and lane, the offset of the triangle's record of four numbers.
-    pub triangles: Vec<[u32; BLOCK]>,
-    /// The same plus the vertex' place (0, 1 or 2) in the triangle.
+    /// For each step and lane, the offset of the triangle's record of four numbers, plus the vertex' place (0, 1
+    /// or 2) in the triangle.
     pub places: Vec<[u32; BLOCK]>,
+    /// The most steps that a block of vertices has.
+    pub longest: usize,
     /// For each block of vertices and each lane, the triangle before the first: the last of the ring.
     pub before: Vec<[u32; BLOCK]>,
+    /// The neighbour before the first.
+    pub neighbours_before: Vec<[u32; BLOCK]>,
     /// How many triangles must be known before a tile of vertices can be handled.
     pub frontier: Vec<u32>,
     opposite: OnceLock<Vec<[u32; BLOCK]>>,
@@ -134,25 +137,16 @@ impl Layout {
             corners: Vec::new(),
             steps: Vec::new(),
             neighbours: Vec::new(),
-            triangles: Vec::new(),
+            longest: 0,
             places: Vec::new(),
             before: Vec::new(),
+            neighbours_before: Vec::new(),
             frontier: Vec::new(),
             opposite: OnceLock::new(),
         };
         let triangle_number = layout.number_triangles(topology, &number);
         layout.lay_rings(topology, &number, &triangle_number);
         layout
-    }
-
-    /// Blocks of vertices.
-    pub fn vertex_blocks(&self) -> usize {
-        self.vertex_ids.len() / BLOCK
-    }
-
-    /// Blocks of triangles.
-    pub fn triangle_blocks(&self) -> usize {
-        self.corners.len()
     }
 
     /// The vertices of a tile.
@@ -228,16 +222,15 @@ impl Layout {
                     let corner = corner(lane).unwrap_or(rings[lane][0]);
                     4 * number[neighbour(topology, corner) as usize]
                 }));
-                let triangle = |corner: usize| 4 * triangle_number[corner / 3];
-                self.triangles
-                    .push(std::array::from_fn(|lane| corner(lane).map_or(nothing, triangle)));
-                self.places.push(std::array::from_fn(|lane| {
-                    corner(lane).map_or(nothing, |corner| triangle(corner) + (corner % 3) as u32)
-                }));
+                let place = |corner: usize| 4 * triangle_number[corner / 3] + (corner % 3) as u32;
+                self.places.push(std::array::from_fn(|lane| corner(lane).map_or(nothing, place)));
             }
             self.steps.push(self.neighbours.len() as u32);
-            self.before.push(std::array::from_fn(|lane| {
-                4 * triangle_number[rings[lane][rings[lane].len() - 1] / 3]
+            self.longest = self.longest.max(longest + 1);
+            let last = |lane: usize| rings[lane][rings[lane].len() - 1];
+            self.before.push(std::array::from_fn(|lane| 4 * triangle_number[last(lane) / 3]));
+            self.neighbours_before.push(std::array::from_fn(|lane| {
+                4 * number[neighbour(topology, last(lane)) as usize]
             }));
         }
     }
@@ -282,7 +275,7 @@ mod tests {
         let mut triangles = layout.triangle_ids[..20].to_vec();
         triangles.sort_unstable();
         assert_eq!(triangles, (0..20).collect::<Vec<_>>());
-        assert_eq!((layout.vertex_blocks(), layout.triangle_blocks()), (2, 3));
+        assert_eq!(layout.corners.len(), 3);
         assert_eq!(layout.steps, [0, 6, 12]);
     }
 
@@ -296,7 +289,7 @@ mod tests {
             let steps = layout.steps[block] as usize..layout.steps[block + 1] as usize - 1;
             assert_eq!(layout.neighbours[steps.start][lane], layout.neighbours[steps.end][lane]);
             for step in steps {
-                let triangle = layout.triangles[step][lane] as usize / 4;
+                let triangle = layout.places[step][lane] as usize / 4;
                 let place = layout.places[step][lane] as usize % 4;
                 let corners =
                     layout.corners[triangle / BLOCK].map(|lanes| lanes[triangle % BLOCK] as usize);

@@ -18,7 +18,7 @@ mod layout;
 mod tiles;
 mod triangles;
 
-pub use lanes::BLOCK;
+pub use lanes::{BLOCK, Level};
 pub use layout::Layout;
 pub use tiles::{EdgeBlock, TriangleTile, VertexTile};
 
@@ -30,16 +30,18 @@ use crate::potentials::{Contribution, Edges, Needs, Term, Triangles, Vertices};
 use crate::team::{Member, Parts, Team};
 use arrays::Arrays;
 use backward::{Backward, Forces};
+use forward::{NORMALS, VECTORS, VORONOI};
 use lanes::dispatch;
 use layout::TILE;
-use pulp::Arch;
 use std::sync::Arc;
-use tiles::Column;
 use triangles::TriangleSums;
+
+/// Below twice this area, nm², a triangle has none: its reciprocal and products of it are no numbers any more.
+const SMALLEST_AREA: f64 = 1e-140;
 
 /// Evaluates terms on one mesh in lanes, on one thread or several.
 pub struct SimdEvaluator {
-    arch: Arch,
+    level: Level,
     topology: Arc<Topology>,
     layout: Layout,
     arrays: Arrays,
@@ -60,21 +62,20 @@ struct Scratch {
 
 /// An evaluation as all its threads see it.
 struct Sweep<'a, 't> {
-    arch: Arch,
+    level: Level,
     layout: &'a Layout,
     arrays: &'a Arrays,
     terms: &'a [&'t Term<'t>],
     needs: Needs,
     positions: &'a [f64],
-    wants_energy: bool,
 }
 
 impl SimdEvaluator {
-    /// Buffers for a mesh. `arch` is the instruction set to use, which the processor must have.
-    pub fn new(topology: Arc<Topology>, arch: Arch, threads: usize) -> Self {
+    /// Buffers for a mesh. `level` is the instruction set to use, which the processor must have.
+    pub fn new(topology: Arc<Topology>, level: Level, threads: usize) -> Self {
         let layout = Layout::new(&topology);
         let mut evaluator = Self {
-            arch,
+            level,
             arrays: Arrays::new(&layout),
             triangle_sums: vec![TriangleSums::default(); layout.triangle_tiles()],
             contributions: Vec::new(),
@@ -91,11 +92,13 @@ impl SimdEvaluator {
     /// Let so many threads share the work, or as many as the system has left.
     pub fn set_threads(&mut self, threads: usize) {
         self.team = Team::new(threads).unwrap_or_else(|_| alone());
-        let scratch = || Scratch { triangles: TriangleTile::EMPTY, vertices: VertexTile::EMPTY };
+        let steps = self.layout.longest;
+        let scratch =
+            || Scratch { triangles: TriangleTile::EMPTY, vertices: VertexTile::new(steps) };
         self.scratch.resize_with(self.team.size(), scratch);
     }
 
-    /// As [`super::CpuEvaluator::evaluate`], without terms that want normals of vertices.
+    /// As [`super::CpuEvaluator::evaluate`].
     pub fn evaluate(
         &mut self,
         terms: &[&Term],
@@ -103,17 +106,15 @@ impl SimdEvaluator {
         contributions: &mut [Contribution],
         forces: Option<&mut [f64]>,
     ) -> Result<()> {
-        let needs =
-            terms.iter().fold(Needs::empty(), |all, term| all | term.potential.needs(term));
+        let needs = terms.iter().fold(Needs::empty(), |all, term| all | term.potential.needs(term));
         self.make_room(needs, terms.len());
         let sweep = Sweep {
-            arch: self.arch,
+            level: self.level,
             layout: &self.layout,
             arrays: &self.arrays,
             terms,
             needs,
             positions,
-            wants_energy: !contributions.is_empty(),
         };
         let sums = Parts::new(&mut self.triangle_sums);
         let parts = Parts::new(&mut self.contributions);
@@ -123,7 +124,7 @@ impl SimdEvaluator {
             let scratch = unsafe { scratch.part(member.index()..member.index() + 1) };
             sweep.forward(&member, &mut scratch[0], &sums, &parts);
         });
-        let totals = self.totals().ok_or_else(|| culprit(&self.topology, positions))?;
+        let (totals, silent) = self.totals().ok_or_else(|| culprit(&self.topology, positions))?;
         let mut total_partials = TotalPartials::default();
         let mut ignored = Contribution::default();
         for (k, term) in terms.iter().enumerate() {
@@ -142,11 +143,12 @@ impl SimdEvaluator {
             check_energies(terms, contributions)?;
         }
         if let Some(forces) = forces {
-            let (layout, arrays, arch) = (&self.layout, &self.arrays, self.arch);
+            let (layout, arrays, level) = (&self.layout, &self.arrays, self.level);
+            let needs = if silent { needs - Needs::TRIANGLES } else { needs };
             let (totals, forces) = (&total_partials, Forces(forces.as_mut_ptr()));
             self.team.run(|member| {
                 for index in member.share(layout.vertex_tiles()) {
-                    backward(arch, needs, layout, arrays, totals, index, forces);
+                    backward(level, needs, layout, arrays, totals, index, forces);
                 }
             });
         }
@@ -171,7 +173,14 @@ impl SimdEvaluator {
         }
         if needs.contains(Needs::VECTORS) {
             arrays.vector_slopes.require(4 * vertices, 0.0);
+        }
+        if needs.contains(Needs::CURVATURE_VECTORS) {
             arrays.umbrella_slopes.require(4 * vertices, 0.0);
+        }
+        if needs.contains(Needs::NORMALS) {
+            arrays.normal_slopes.require(4 * vertices, 0.0);
+            arrays.angles.require(4 * (triangles + 1), 0.0);
+            arrays.next_angles.require(4 * (triangles + 1), 0.0);
         }
         if self.has_slopes && !needs.contains(Needs::VERTICES) {
             for index in 0..2 * vertices {
@@ -184,15 +193,15 @@ impl SimdEvaluator {
         self.contributions.resize(tiles * terms, Contribution::default());
     }
 
-    /// Area and volume, unless the mesh has no geometry.
-    fn totals(&self) -> Option<Totals> {
+    /// Area and volume, and whether no potential of triangles acts; unless the mesh has no geometry.
+    fn totals(&self) -> Option<(Totals, bool)> {
         let mut sum = TriangleSums::default();
         for part in &self.triangle_sums {
             sum += *part;
         }
-        let TriangleSums { twice_area, six_volumes, smallest } = sum;
-        (smallest > 0.0 && twice_area.is_finite())
-            .then(|| Totals { area: 0.5 * twice_area, volume: six_volumes / 6.0 })
+        let TriangleSums { twice_area, six_volumes, smallest, silent } = sum;
+        let totals = Totals { area: 0.5 * twice_area, volume: six_volumes / 6.0 };
+        (smallest > SMALLEST_AREA && twice_area.is_finite()).then_some((totals, silent))
     }
 }
 
@@ -217,7 +226,9 @@ impl Sweep<'_, '_> {
         let triangles = |tile: usize, scratch: &mut Scratch| {
             // SAFETY: as above.
             let sum = unsafe { sums.part(tile..tile + 1) };
-            sum[0] = self.triangle_tile(tile, &mut scratch.triangles, parts(tile..tile + 1));
+            let silent = sum[0].silent;
+            let parts = parts(tile..tile + 1);
+            sum[0] = self.triangle_tile(tile, &mut scratch.triangles, silent, parts);
         };
         let vertices = |tile: usize, scratch: &mut Scratch| {
             let here = of_triangles + tile;
@@ -246,64 +257,82 @@ impl Sweep<'_, '_> {
     /// Positions relative to the first vertex, so that a mesh far from the origin loses no digits.
     fn gather_positions(&self, member: &Member) {
         let particles = &self.layout.particles;
-        let of = |particle: u32| &self.positions[3 * particle as usize..][..3];
-        let origin = of(particles[0]);
-        for vertex in member.share(particles.len()) {
-            let position = of(particles[vertex]);
-            let record = self.arrays.positions.at(4 * vertex);
-            for k in 0..3 {
-                // SAFETY: each member writes the vertices of its share.
-                unsafe { *record.add(k) = position[k] - origin[k] };
-            }
+        let (all, _) = self.positions.as_chunks::<3>();
+        let [x, y, z] = all[particles[0] as usize];
+        let share = member.share(particles.len());
+        let records = self.arrays.positions.at(4 * share.start).cast::<[f64; 4]>();
+        for (index, &particle) in particles[share].iter().enumerate() {
+            let position = all[particle as usize];
+            // SAFETY: each member writes the vertices of its share.
+            unsafe {
+                *records.add(index) = [position[0] - x, position[1] - y, position[2] - z, 0.0]
+            };
         }
     }
 
-    /// Geometry and potentials of a tile of triangles.
+    /// Geometry and potentials of a tile of triangles; `silent` says whether its tensions are zero.
     fn triangle_tile(
         &self,
         index: usize,
         tile: &mut TriangleTile,
+        silent: bool,
         contributions: &mut [Contribution],
     ) -> TriangleSums {
-        let (layout, arrays, arch) = (self.layout, self.arrays, self.arch);
+        let (layout, arrays, level) = (self.layout, self.arrays, self.level);
         contributions.fill(Contribution::default());
-        if !self.needs.contains(Needs::TRIANGLES) {
-            return dispatch(arch, triangles::Forward::<false> { layout, arrays, index, tile });
+        let potentials = self.needs.contains(Needs::TRIANGLES);
+        macro_rules! forward {
+            ($potentials:literal $angles:literal) => {{
+                type Pass<'a> = triangles::Forward<'a, $potentials, $angles>;
+                dispatch(level, Pass { layout, arrays, index, tile })
+            }};
         }
-        let sums = dispatch(arch, triangles::Forward::<true> { layout, arrays, index, tile });
-        tile.by_area = Column::ZERO;
-        tile.by_length_squared = [Column::ZERO; 3];
+        let sums = match (potentials, self.needs.contains(Needs::NORMALS)) {
+            (false, false) => forward!(false false),
+            (false, true) => forward!(false true),
+            (true, false) => forward!(true false),
+            (true, true) => forward!(true true),
+        };
+        if !potentials {
+            return TriangleSums { silent, ..sums };
+        }
+        tile.silent = true;
         let ids = &layout.triangle_ids[layout.triangle_tile(index)];
         for (term, contribution) in self.terms.iter().zip(contributions) {
             if term.potential.needs(term).contains(Needs::TRIANGLES) {
-                let run = Triangles::Lanes { arch, ids, tile };
+                let run = Triangles::Lanes { level, ids, tile };
                 *contribution = term.potential.triangles(term, run);
             }
         }
-        dispatch(arch, triangles::Tensions { layout, arrays, index, tile });
-        sums
+        // Zeros that follow zeros need not be written.
+        if !(silent && tile.silent) {
+            dispatch(level, triangles::Tensions { layout, arrays, index, tile });
+        }
+        TriangleSums { silent: tile.silent, ..sums }
     }
 
     /// Geometry and potentials of a tile of vertices and of the edges at them.
     fn vertex_tile(&self, index: usize, tile: &mut VertexTile, contributions: &mut [Contribution]) {
-        let (layout, arrays, arch, needs) = (self.layout, self.arrays, self.arch, self.needs);
+        let (layout, arrays, level, needs) = (self.layout, self.arrays, self.level, self.needs);
         contributions.fill(Contribution::default());
         let bends = needs.intersects(Needs::EDGES | Needs::CURVATURES);
-        let (lengths, vectors) = (needs.contains(Needs::EDGES), needs.contains(Needs::VECTORS));
+        let lengths = needs.contains(Needs::EDGES);
         macro_rules! forward {
-            ($bends:literal $lengths:literal $vectors:literal) => {{
-                type Pass<'a> = forward::Forward<'a, $bends, $lengths, $vectors>;
-                dispatch(arch, Pass { layout, arrays, index, tile })
+            ($bends:literal $vectors:expr) => {{
+                type Pass<'a> = forward::Forward<'a, $bends, { $vectors }>;
+                dispatch(level, Pass { layout, arrays, index, lengths, tile })
             }};
         }
-        match (bends, lengths, vectors) {
-            (false, _, false) if !needs.contains(Needs::VERTICES) => return,
-            (false, _, false) => forward!(false false false),
-            (false, _, true) => forward!(false false true),
-            (true, false, false) => forward!(true false false),
-            (true, false, true) => forward!(true false true),
-            (true, true, false) => forward!(true true false),
-            (true, true, true) => forward!(true true true),
+        match (bends, vector_level(needs)) {
+            (false, 0) if !needs.contains(Needs::VERTICES) => return,
+            (false, 0) => forward!(false 0),
+            (false, VORONOI) => forward!(false VORONOI),
+            (false, VECTORS) => forward!(false VECTORS),
+            (false, _) => forward!(false NORMALS),
+            (true, 0) => forward!(true 0),
+            (true, VORONOI) => forward!(true VORONOI),
+            (true, VECTORS) => forward!(true VECTORS),
+            (true, _) => forward!(true NORMALS),
         }
         if lengths {
             self.edges(index, contributions);
@@ -311,18 +340,26 @@ impl Sweep<'_, '_> {
         if !needs.contains(Needs::VERTICES) {
             return;
         }
-        tile.slopes.clear(vectors);
-        let ids = &layout.vertex_ids[layout.vertex_tile(index)];
+        let range = layout.vertex_tile(index);
+        tile.slopes.clear(needs, range.len());
+        let ids = &layout.vertex_ids[range];
         for (term, contribution) in self.terms.iter().zip(contributions) {
             if term.potential.needs(term).contains(Needs::VERTICES) {
-                let run = Vertices::Lanes { arch, total: layout.num_vertices, ids, tile };
+                let run = Vertices::Lanes { level, total: layout.num_vertices, ids, tile };
                 *contribution += term.potential.vertices(term, run);
             }
         }
-        if vectors {
-            dispatch(arch, forward::Slopes::<true> { layout, arrays, index, tile });
-        } else {
-            dispatch(arch, forward::Slopes::<false> { layout, arrays, index, tile });
+        macro_rules! slopes {
+            ($vectors:expr) => {{
+                type Pass<'a> = forward::Slopes<'a, { $vectors }>;
+                dispatch(level, Pass { layout, arrays, index, tile })
+            }};
+        }
+        match vector_level(needs) {
+            0 => slopes!(0),
+            VORONOI => slopes!(VORONOI),
+            VECTORS => slopes!(VECTORS),
+            _ => slopes!(NORMALS),
         }
     }
 
@@ -356,9 +393,9 @@ impl Sweep<'_, '_> {
             }
             // Past the end of a ring comes its first edge again.
             let nothing = 4 * layout.triangle_ids.len() as u32;
-            let triangles = &layout.triangles[steps];
+            let places = &layout.places[steps];
             for lane in 0..BLOCK {
-                let ends = triangles.iter().position(|lanes| lanes[lane] == nothing);
+                let ends = places.iter().position(|lanes| lanes[lane] == nothing);
                 if let Some(end) = ends {
                     moments[end][lane] = moments[0][lane];
                 }
@@ -369,7 +406,7 @@ impl Sweep<'_, '_> {
 
 /// The third pass over a tile.
 fn backward(
-    arch: Arch,
+    level: Level,
     needs: Needs,
     layout: &Layout,
     arrays: &Arrays,
@@ -378,25 +415,47 @@ fn backward(
     forces: Forces,
 ) {
     macro_rules! backward {
-        ($bends:literal $moments:literal $tensions:literal $vectors:literal) => {{
-            type Pass<'a> = Backward<'a, $bends, $moments, $tensions, $vectors>;
-            dispatch(arch, Pass { layout, arrays, totals, index, forces })
+        ($bends:literal $moments:literal $tensions:literal $vectors:expr) => {{
+            type Pass<'a> = Backward<'a, $bends, $moments, $tensions, { $vectors }>;
+            dispatch(level, Pass { layout, arrays, totals, index, forces })
         }};
     }
     let (bends, moments) = (needs.contains(Needs::CURVATURES), needs.contains(Needs::EDGES));
-    match (bends, moments, needs.contains(Needs::TRIANGLES), needs.contains(Needs::VECTORS)) {
-        (false, false, false, false) => backward!(false false false false),
-        (false, false, false, true) => backward!(false false false true),
-        (false, false, true, false) => backward!(false false true false),
-        (false, false, true, true) => backward!(false false true true),
-        (true, false, false, false) => backward!(true false false false),
-        (true, false, false, true) => backward!(true false false true),
-        (true, false, true, false) => backward!(true false true false),
-        (true, false, true, true) => backward!(true false true true),
-        (_, true, false, false) => backward!(true true false false),
-        (_, true, false, true) => backward!(true true false true),
-        (_, true, true, false) => backward!(true true true false),
-        (_, true, true, true) => backward!(true true true true),
+    match (bends, moments, needs.contains(Needs::TRIANGLES), vector_level(needs)) {
+        (false, false, false, 0) => backward!(false false false 0),
+        (false, false, false, VORONOI) => backward!(false false false VORONOI),
+        (false, false, false, VECTORS) => backward!(false false false VECTORS),
+        (false, false, false, _) => backward!(false false false NORMALS),
+        (false, false, true, 0) => backward!(false false true 0),
+        (false, false, true, VORONOI) => backward!(false false true VORONOI),
+        (false, false, true, VECTORS) => backward!(false false true VECTORS),
+        (false, false, true, _) => backward!(false false true NORMALS),
+        (true, false, false, 0) => backward!(true false false 0),
+        (true, false, false, VORONOI) => backward!(true false false VORONOI),
+        (true, false, false, VECTORS) => backward!(true false false VECTORS),
+        (true, false, false, _) => backward!(true false false NORMALS),
+        (true, false, true, 0) => backward!(true false true 0),
+        (true, false, true, VORONOI) => backward!(true false true VORONOI),
+        (true, false, true, VECTORS) => backward!(true false true VECTORS),
+        (true, false, true, _) => backward!(true false true NORMALS),
+        (_, true, false, 0) => backward!(true true false 0),
+        (_, true, false, VORONOI) => backward!(true true false VORONOI),
+        (_, true, false, VECTORS) => backward!(true true false VECTORS),
+        (_, true, false, _) => backward!(true true false NORMALS),
+        (_, true, true, 0) => backward!(true true true 0),
+        (_, true, true, VORONOI) => backward!(true true true VORONOI),
+        (_, true, true, VECTORS) => backward!(true true true VECTORS),
+        (_, true, true, _) => backward!(true true true NORMALS),
+    }
+}
+
+/// How much of the vertices' vectors is needed.
+fn vector_level(needs: Needs) -> u8 {
+    match needs {
+        needs if needs.contains(Needs::NORMALS) => NORMALS,
+        needs if needs.contains(Needs::CURVATURE_VECTORS) => VECTORS,
+        needs if needs.contains(Needs::VECTORS) => VORONOI,
+        _ => 0,
     }
 }
 

@@ -1,13 +1,11 @@
 //! What passes hand to potentials: the quantities of some elements, column by column.
 
-use super::lanes::{BLOCK, Lane, Records, WithLanes, dispatch};
+use super::lanes::{BLOCK, Lane, Level, Records, WithLanes, dispatch};
 use super::layout::TILE;
 use crate::potentials::{
-    Contribution, Place, Sums, Term, Triangle, TriangleFormula, TriangleSlopes, Vertex,
+    Contribution, Needs, Place, Sums, Term, Triangle, TriangleFormula, TriangleSlopes, Vertex,
     VertexFormula,
 };
-use crate::real::Real;
-use pulp::Arch;
 
 /// One quantity of the elements of a tile.
 #[derive(Clone, Copy)]
@@ -33,12 +31,20 @@ impl Column {
     }
 }
 
+/// The three components of a vector.
+#[inline(always)]
+pub fn load3<S: Records>(simd: S, columns: &[Column; 3], index: usize) -> [Lane<S>; 3] {
+    [columns[0].load(simd, index), columns[1].load(simd, index), columns[2].load(simd, index)]
+}
+
 /// Triangles, and the derivatives of the energy with respect to them.
 pub struct TriangleTile {
     pub twice_area: Column,
     pub dots: [Column; 3],
     pub by_area: Column,
     pub by_length_squared: [Column; 3],
+    /// Whether no formula has acted, so that the derivatives are zero.
+    pub silent: bool,
 }
 
 /// The quantities of vertices, or the derivatives of the energy with respect to them.
@@ -55,6 +61,8 @@ pub struct VertexColumns {
 pub struct VertexTile {
     pub known: VertexColumns,
     pub slopes: VertexColumns,
+    /// tan(φ/2) / l and l² of the edges of a block, step by step.
+    pub ring: Vec<[[f64; BLOCK]; 2]>,
 }
 
 /// The edges at a block of vertices, step by step of their rings.
@@ -76,17 +84,18 @@ impl TriangleTile {
         dots: [Column::ZERO; 3],
         by_area: Column::ZERO,
         by_length_squared: [Column::ZERO; 3],
+        silent: true,
     };
 
     /// Apply a formula to the elements with these indices; returns the sum.
     pub fn apply<F: TriangleFormula>(
         &mut self,
-        arch: Arch,
+        level: Level,
         term: &Term,
         ids: &[u32],
         formula: &F,
     ) -> Contribution {
-        dispatch(arch, InLanes { term, ids, tile: self, formula })
+        dispatch(level, InLanes { term, ids, tile: self, formula })
     }
 }
 
@@ -100,56 +109,87 @@ impl VertexColumns {
         normal_sum: [Column::ZERO; 3],
     };
 
-    /// Set scalars to 0, and `vectors` and Voronoi areas if they are used.
-    pub fn clear(&mut self, vectors: bool) {
-        self.area = Column::ZERO;
-        self.curvature = Column::ZERO;
-        if vectors {
-            self.voronoi_area = Column::ZERO;
-            self.cotangent = [Column::ZERO; 3];
-            self.umbrella = [Column::ZERO; 3];
+    /// Set the columns of so many vertices to 0, as far as somebody needs them.
+    pub fn clear(&mut self, needs: Needs, count: usize) {
+        let clear = |column: &mut Column| column.0[..count.next_multiple_of(BLOCK)].fill(0.0);
+        clear(&mut self.area);
+        clear(&mut self.curvature);
+        if needs.contains(Needs::VECTORS) {
+            clear(&mut self.voronoi_area);
+        }
+        if needs.contains(Needs::CURVATURE_VECTORS) {
+            self.cotangent.iter_mut().chain(&mut self.umbrella).for_each(clear);
+        }
+        if needs.contains(Needs::NORMALS) {
+            self.normal_sum.iter_mut().for_each(clear);
         }
     }
 
+    /// The columns that a formula uses, and zeros for the rest.
     #[inline(always)]
-    fn load<S: Records>(&self, simd: S, index: usize) -> Vertex<Lane<S>> {
-        let vector = |columns: &[Column; 3]| columns.each_ref().map(|x| x.load(simd, index));
-        Vertex {
+    fn load<S: Records, F: VertexFormula>(&self, simd: S, index: usize) -> Vertex<Lane<S>> {
+        let nothing = [Lane::splat(simd, 0.0); 3];
+        let mut vertex = Vertex {
             area: self.area.load(simd, index),
-            voronoi_area: self.voronoi_area.load(simd, index),
-            curvature: self.curvature.load(simd, index),
-            cotangent: vector(&self.cotangent),
-            umbrella: vector(&self.umbrella),
-            normal_sum: vector(&self.normal_sum),
+            voronoi_area: nothing[0],
+            curvature: nothing[0],
+            cotangent: nothing,
+            umbrella: nothing,
+            normal_sum: nothing,
+        };
+        if F::USES.contains(Needs::CURVATURES) {
+            vertex.curvature = self.curvature.load(simd, index);
         }
+        if F::USES.contains(Needs::VECTORS) {
+            vertex.voronoi_area = self.voronoi_area.load(simd, index);
+        }
+        if F::USES.contains(Needs::CURVATURE_VECTORS) {
+            vertex.cotangent = load3(simd, &self.cotangent, index);
+            vertex.umbrella = load3(simd, &self.umbrella, index);
+        }
+        if F::USES.contains(Needs::NORMALS) {
+            vertex.normal_sum = load3(simd, &self.normal_sum, index);
+        }
+        vertex
     }
 
     #[inline(always)]
-    fn store<S: Records>(&mut self, index: usize, vertex: Vertex<Lane<S>>) {
+    fn store<S: Records, F: VertexFormula>(&mut self, index: usize, vertex: Vertex<Lane<S>>) {
         self.area.store(index, vertex.area);
-        self.voronoi_area.store(index, vertex.voronoi_area);
-        self.curvature.store(index, vertex.curvature);
+        if F::USES.contains(Needs::CURVATURES) {
+            self.curvature.store(index, vertex.curvature);
+        }
+        if F::USES.contains(Needs::VECTORS) {
+            self.voronoi_area.store(index, vertex.voronoi_area);
+        }
         for k in 0..3 {
-            self.cotangent[k].store(index, vertex.cotangent[k]);
-            self.umbrella[k].store(index, vertex.umbrella[k]);
-            self.normal_sum[k].store(index, vertex.normal_sum[k]);
+            if F::USES.contains(Needs::CURVATURE_VECTORS) {
+                self.cotangent[k].store(index, vertex.cotangent[k]);
+                self.umbrella[k].store(index, vertex.umbrella[k]);
+            }
+            if F::USES.contains(Needs::NORMALS) {
+                self.normal_sum[k].store(index, vertex.normal_sum[k]);
+            }
         }
     }
 }
 
 impl VertexTile {
-    /// Nothing.
-    pub const EMPTY: Self = Self { known: VertexColumns::ZERO, slopes: VertexColumns::ZERO };
+    /// For rings of so many steps.
+    pub fn new(steps: usize) -> Self {
+        let (known, slopes) = (VertexColumns::ZERO, VertexColumns::ZERO);
+        Self { known, slopes, ring: vec![[[0.0; BLOCK]; 2]; steps] }
+    }
 
     /// Apply a formula to the elements with these indices; returns the sum.
     pub fn apply<F: VertexFormula>(
         &mut self,
-        arch: Arch,
+        level: Level,
         term: &Term,
         ids: &[u32],
         formula: &F,
     ) -> Contribution {
-        dispatch(arch, InLanes { term, ids, tile: self, formula })
+        dispatch(level, InLanes { term, ids, tile: self, formula })
     }
 }
 
@@ -185,24 +225,16 @@ impl<S: Records> Accumulated<S> {
             }
             return;
         }
-        let first = |value: Lane<S>| {
-            let mut sum = 0.0;
-            let mut lane = 0;
-            value.map(|x| {
-                sum += if lane < count { x } else { 0.0 };
-                lane += 1;
-                x
-            });
-            sum
-        };
-        let by_parameter = sums.by_parameter.map(first);
-        self.rest.add(Sums { energy: first(sums.energy), by_parameter });
+        let [a, b] = sums.by_parameter;
+        let by_parameter = [a.sum_of_first(count), b.sum_of_first(count)];
+        self.rest.add(Sums { energy: sums.energy.sum_of_first(count), by_parameter });
     }
 
     #[inline(always)]
     fn total(self) -> Contribution {
         let mut total = self.rest;
-        let by_parameter = self.lanes.by_parameter.map(Lane::sum);
+        let [a, b] = self.lanes.by_parameter;
+        let by_parameter = [a.sum(), b.sum()];
         total.add(Sums { energy: self.lanes.energy.sum(), by_parameter });
         total
     }
@@ -216,18 +248,23 @@ impl<F: TriangleFormula> WithLanes for InLanes<'_, TriangleTile, F> {
         let Self { term, ids, tile, formula } = self;
         let mut sum = Accumulated::new(simd);
         for index in (0..ids.len()).step_by(Lane::<S>::COUNT) {
-            let load = |column: &Column| column.load(simd, index);
-            let triangle =
-                Triangle { twice_area: load(&tile.twice_area), dots: tile.dots.each_ref().map(load) };
+            let triangle = Triangle {
+                twice_area: tile.twice_area.load(simd, index),
+                dots: load3(simd, &tile.dots, index),
+            };
+            if formula.vanishes(&triangle) {
+                continue;
+            }
+            tile.silent = false;
             let mut slopes = TriangleSlopes {
-                area: load(&tile.by_area),
-                length_squared: tile.by_length_squared.each_ref().map(load),
+                area: tile.by_area.load(simd, index),
+                length_squared: load3(simd, &tile.by_length_squared, index),
             };
             let place = Place { term, ids: &ids[index..] };
             sum.add(formula.apply(place, &triangle, &mut slopes), ids.len() - index);
             tile.by_area.store(index, slopes.area);
-            for (column, value) in tile.by_length_squared.iter_mut().zip(slopes.length_squared) {
-                column.store(index, value);
+            for k in 0..3 {
+                tile.by_length_squared[k].store(index, slopes.length_squared[k]);
             }
         }
         sum.total()
@@ -242,11 +279,11 @@ impl<F: VertexFormula> WithLanes for InLanes<'_, VertexTile, F> {
         let Self { term, ids, tile, formula } = self;
         let mut sum = Accumulated::new(simd);
         for index in (0..ids.len()).step_by(Lane::<S>::COUNT) {
-            let vertex = tile.known.load(simd, index);
-            let mut slopes = tile.slopes.load(simd, index);
+            let vertex = tile.known.load::<S, F>(simd, index);
+            let mut slopes = tile.slopes.load::<S, F>(simd, index);
             let place = Place { term, ids: &ids[index..] };
             sum.add(formula.apply(place, &vertex, &mut slopes), ids.len() - index);
-            tile.slopes.store(index, slopes);
+            tile.slopes.store::<S, F>(index, slopes);
         }
         sum.total()
     }

@@ -3,8 +3,9 @@
 use super::arrays::Arrays;
 use super::lanes::{BLOCK, Lane, Records, WithLanes};
 use super::layout::{Layout, TILE};
-use super::tiles::TriangleTile;
-use crate::real::{Real, cross, dot, minus};
+use super::tiles::{TriangleTile, load3};
+use crate::mesh::geometry::arctan_over_argument;
+use crate::real::{Real, cross, dot, minus, plus, plus_scaled, scaled};
 use std::ops::AddAssign;
 
 /// What the pass sums.
@@ -16,11 +17,13 @@ pub struct TriangleSums {
     pub six_volumes: f64,
     /// The smallest |N|.
     pub smallest: f64,
+    /// Whether the tensions of these triangles are zero; what earlier evaluations left counts.
+    pub silent: bool,
 }
 
 impl Default for TriangleSums {
     fn default() -> Self {
-        Self { twice_area: 0.0, six_volumes: 0.0, smallest: f64::INFINITY }
+        Self { twice_area: 0.0, six_volumes: 0.0, smallest: f64::INFINITY, silent: true }
     }
 }
 
@@ -29,14 +32,16 @@ impl AddAssign for TriangleSums {
         self.twice_area += other.twice_area;
         self.six_volumes += other.six_volumes;
         self.smallest = self.smallest.min(other.smallest);
+        self.silent &= other.silent;
     }
 }
 
-/// Normals of a tile of triangles; with `POTENTIALS` also what their potentials want to know.
+/// Normals of a tile of triangles; with `POTENTIALS` also what their potentials want to know, with `ANGLES`
+/// the angles of their corners.
 ///
-/// Reads positions, writes the tile's normals: whoever runs it must be the only one to write those, while
+/// Reads positions, writes the tile's normals and angles: whoever runs it must be the only one to write those, while
 /// nobody writes positions or reads these normals.
-pub struct Forward<'a, const POTENTIALS: bool> {
+pub struct Forward<'a, const POTENTIALS: bool, const ANGLES: bool> {
     pub layout: &'a Layout,
     pub arrays: &'a Arrays,
     pub index: usize,
@@ -54,7 +59,7 @@ static COUNTS: [f64; 2 * BLOCK] = {
     counts
 };
 
-impl<const POTENTIALS: bool> WithLanes for Forward<'_, POTENTIALS> {
+impl<const POTENTIALS: bool, const ANGLES: bool> WithLanes for Forward<'_, POTENTIALS, ANGLES> {
     type Output = TriangleSums;
 
     #[inline(always)]
@@ -66,25 +71,46 @@ impl<const POTENTIALS: bool> WithLanes for Forward<'_, POTENTIALS> {
         for first in triangles.clone().step_by(Lane::<S>::COUNT) {
             let offsets = &self.layout.corners[first / BLOCK];
             // SAFETY: the layout's offsets are within the positions, and the normals have whole blocks.
-            let [a, b, c] = unsafe {
-                offsets.each_ref().map(|offsets| {
-                    let offsets = offsets.as_ptr().add(first % BLOCK);
-                    Lane::gather3(simd, self.arrays.positions.at(0), offsets)
-                })
+            let (a, b, c) = unsafe {
+                let (positions, lane) = (self.arrays.positions.at(0), first % BLOCK);
+                (
+                    Lane::gather3(simd, positions, offsets[0].as_ptr().add(lane)),
+                    Lane::gather3(simd, positions, offsets[1].as_ptr().add(lane)),
+                    Lane::gather3(simd, positions, offsets[2].as_ptr().add(lane)),
+                )
             };
             let (ab, ca) = (minus(b, a), minus(a, c));
             let normal = cross(ca, ab);
             let twice = dot(normal, normal).sqrt();
             let inverse = zero.of(1.0) / twice;
-            let [x, y, z] = normal.map(|component| component * inverse);
+            let [x, y, z] = scaled(normal, inverse);
             // SAFETY: as above.
             unsafe { Lane::store4(self.arrays.normals.at(4 * first), [x, y, z, twice]) };
             if POTENTIALS {
                 let bc = minus(c, b);
                 let index = first % TILE;
                 self.tile.twice_area.store(index, twice);
-                for (k, (one, other)) in [(ca, ab), (ab, bc), (bc, ca)].into_iter().enumerate() {
-                    self.tile.dots[k].store(index, zero - dot(one, other));
+                self.tile.dots[0].store(index, zero - dot(ca, ab));
+                self.tile.dots[1].store(index, zero - dot(ab, bc));
+                self.tile.dots[2].store(index, zero - dot(bc, ca));
+                self.tile.by_area.store(index, zero);
+                self.tile.by_length_squared[0].store(index, zero);
+                self.tile.by_length_squared[1].store(index, zero);
+                self.tile.by_length_squared[2].store(index, zero);
+            }
+            if ANGLES {
+                let bc = minus(c, b);
+                let angles = [
+                    angle(twice, zero - dot(ca, ab)),
+                    angle(twice, zero - dot(ab, bc)),
+                    angle(twice, zero - dot(bc, ca)),
+                ];
+                // SAFETY: there is a record of angles for each normal.
+                unsafe {
+                    let at = self.arrays.angles.at(4 * first);
+                    Lane::store4(at, [angles[0], angles[1], angles[2], zero]);
+                    let at = self.arrays.next_angles.at(4 * first);
+                    Lane::store4(at, [angles[1], angles[2], angles[0], zero]);
                 }
             }
             smallest = smallest.min(twice);
@@ -104,8 +130,24 @@ impl<const POTENTIALS: bool> WithLanes for Forward<'_, POTENTIALS> {
             twice_area: twice_area.sum(),
             six_volumes: six_volumes.sum(),
             smallest: smallest.smallest(),
+            silent: true,
         }
     }
+}
+
+/// The angle of (`adjacent`, `opposite`) in (0, π): eight times that of which the tangent is small enough for
+/// the polynomial, found by three times tan(α/2) = tan α / (1 + √(1 + tan² α)).
+#[inline(always)]
+fn angle<R: Real>(opposite: R, adjacent: R) -> R {
+    let hypotenuse = opposite.mul_add(opposite, adjacent * adjacent).sqrt();
+    // tan(α/2) in the form that does not cancel, on either side of a right angle.
+    let one = opposite.of(1.0);
+    let obtuse = adjacent.zero().above(adjacent);
+    let half =
+        ((hypotenuse - adjacent) / opposite).or_else(obtuse, opposite / (hypotenuse + adjacent));
+    let quarter = half / (one + half.mul_add(half, one).sqrt());
+    let eighth = quarter / (one + quarter.mul_add(quarter, one).sqrt());
+    eighth * arctan_over_argument(eighth * eighth) * 8.0
 }
 
 /// The tensions along the sides of a tile of triangles, from the slopes that its potentials found.
@@ -129,12 +171,30 @@ impl WithLanes for Tensions<'_> {
             let tile = self.tile;
             let by_area = tile.by_area.load(simd, index);
             let stress = by_area * 0.5 / tile.twice_area.load(simd, index);
-            let [t0, t1, t2] = [0, 1, 2].map(|k: usize| {
-                let by_length = tile.by_length_squared[k].load(simd, index);
-                stress.mul_add(tile.dots[(k + 2) % 3].load(simd, index), by_length + by_length)
-            });
+            let dots = load3(simd, &tile.dots, index);
+            let by_length = load3(simd, &tile.by_length_squared, index);
+            let [t0, t1, t2] =
+                plus_scaled(plus(by_length, by_length), stress, [dots[2], dots[0], dots[1]]);
             // SAFETY: the tensions have whole blocks.
             unsafe { Lane::store4(self.arrays.tensions.at(4 * first), [t2, t0, t1, t2]) };
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn angles_are_exact_to_rounding() {
+        for k in 1..=1000 {
+            let expected = std::f64::consts::PI * f64::from(k) / 1000.5;
+            for scale in [1e-3, 1.0, 1e5] {
+                let found = angle(scale * expected.sin(), scale * expected.cos());
+                // The sine near π itself has lost digits.
+                let tolerance = 1e-15 * (1.0 + 1.0 / (std::f64::consts::PI - expected));
+                assert!((found - expected).abs() < tolerance, "{expected}: {found}");
+            }
         }
     }
 }
