@@ -57,6 +57,7 @@ demo: build ## simulate a vesicle and draw it with its fluctuation spectrum (abo
 
 bench: build ## measure the cost of an evaluation and of a time step
 	@$(CARGO) bench -q --locked --bench evaluate -- --output-format bencher --warm-up-time 0.5 --measurement-time 2
+	@$(CARGO) bench -q --locked --bench gpu
 	@$(VENV)/bin/python benches/steps.py
 
 clean: ## remove everything that was built, .venv too
