@@ -52,6 +52,10 @@ pub struct Buffers {
 /// Beside the results the processor reads the count of thin triangles and two timestamps.
 pub const TAIL: usize = 32;
 
+/// What the buffers of the shaders and that of the processor are for.
+const STORED: Usage = Usage::STORAGE.union(Usage::COPY_DST).union(Usage::COPY_SRC);
+const READ: Usage = Usage::MAP_READ.union(Usage::COPY_DST);
+
 /// A buffer that nothing is in must have a size nevertheless.
 const LEAST: usize = 256;
 
@@ -83,25 +87,15 @@ impl Buffers {
             Binding::Totals => totals,
             _ => LEAST,
         };
-        device
-            .guarded(v, || {
-                let bound = std::array::from_fn(|k| {
-                    let binding = ALL[k];
-                    create(
-                        device,
-                        sizes(binding),
-                        Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC,
-                    )
-                });
-                let readback = create(device, LEAST, Usage::MAP_READ | Usage::COPY_DST);
-                let group = bind(device, &bound);
-                Self { bound, readback, group, vertices: v, optional }
-            })
-            .and_then(|buffers| {
-                buffers.check_limits(device)?;
-                buffers.write_topology(device, topology);
-                Ok(buffers)
-            })
+        check_limits(device, v, ALL.into_iter().map(sizes).max().unwrap_or(0))?;
+        let buffers = device.guarded(v, || {
+            let bound = std::array::from_fn(|k| create(device, sizes(ALL[k]), STORED));
+            let readback = create(device, LEAST, READ);
+            let group = bind(device, &bound);
+            Self { bound, readback, group, vertices: v, optional }
+        })?;
+        buffers.write_topology(device, topology);
+        Ok(buffers)
     }
 
     pub fn get(&self, binding: Binding) -> &wgpu::Buffer {
@@ -128,35 +122,16 @@ impl Buffers {
         if wanted.is_empty() && self.readback.size() >= reads {
             return Ok(());
         }
+        let largest = wanted.iter().map(|(_, size)| *size).max().unwrap_or(0);
+        check_limits(device, self.vertices, largest)?;
         device.guarded(self.vertices, || {
             for (binding, size) in wanted {
-                let usage = Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC;
-                self.bound[binding as usize] = create(device, size, usage);
+                self.bound[binding as usize] = create(device, size, STORED);
             }
             if self.readback.size() < reads {
-                let usage = Usage::MAP_READ | Usage::COPY_DST;
-                self.readback = create(device, reads as usize, usage);
+                self.readback = create(device, reads as usize, READ);
             }
             self.group = bind(device, &self.bound);
-        })?;
-        self.check_limits(device)
-    }
-
-    /// A buffer that cannot be bound is not an error of wgpu's until it is used.
-    fn check_limits(&self, device: &Device) -> Result<()> {
-        let most = device.wgpu.limits().max_storage_buffer_binding_size;
-        let largest = self.bound.iter().map(wgpu::Buffer::size).max().unwrap_or(0);
-        if largest <= most {
-            return Ok(());
-        }
-        Err(Error::AdapterLacks {
-            adapter: device.adapter.name.clone(),
-            lack: format!(
-                "binds buffers of up to {} MB, but a mesh of {} vertices needs one of {} MB",
-                most >> 20,
-                self.vertices,
-                largest >> 20
-            ),
         })
     }
 
@@ -182,6 +157,23 @@ impl Buffers {
         let rings: Vec<u32> = topology.offsets.iter().chain(&topology.corners).copied().collect();
         write(Binding::Rings, &rings);
     }
+}
+
+/// Refuse what the device does not bind before wgpu does, whose message knows nothing of meshes.
+fn check_limits(device: &Device, vertices: usize, largest: usize) -> Result<()> {
+    let limits = device.wgpu.limits();
+    let most = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+    if largest as u64 <= most {
+        return Ok(());
+    }
+    Err(Error::AdapterLacks {
+        adapter: device.adapter.name.clone(),
+        lack: format!(
+            "has buffers of {} MB at most, but a mesh of {vertices} vertices needs one of {} MB",
+            most >> 20,
+            largest >> 20
+        ),
+    })
 }
 
 const ALL: [Binding; COUNT] = [
