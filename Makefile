@@ -12,7 +12,7 @@ PIP = $(VENV)/bin/python -m pip --disable-pip-version-check -q
 
 # What pip builds; the Python files of the package are used in place.
 SOURCES := Cargo.toml Cargo.lock build.rs setup.py python/forces.i \
-           $(wildcard src/*.rs src/*/*.rs shaders/* $(foreach any,wrappers/* wrappers/*/* wrappers/*/*/*,$(any)/*))
+           $(wildcard src/*.rs src/*/*.rs src/*/*/*.rs shaders/* shaders/*/* $(foreach any,wrappers/* wrappers/*/* wrappers/*/*/*,$(any)/*))
 CPP := $(wildcard $(foreach any,wrappers/* wrappers/*/* wrappers/*/*/* tests/cpp examples,\
            $(any)/*.h $(any)/*.c $(any)/*.cpp))
 PY := $(wildcard setup.py python tests examples benches)
@@ -65,6 +65,7 @@ paper: build ## make the paper's figures in small versions, and a report of them
 bench: build ## race evaluations, time steps and the paper's Table III; BENCH=--quick is short (else half an hour)
 	@$(CARGO) bench -q --locked --bench evaluate -- --output-format bencher $(if $(findstring --quick,$(BENCH)),--quick,\
 	    --warm-up-time 0.5 --measurement-time 2)
+	@$(CARGO) bench -q --locked --bench gpu
 	@$(VENV)/bin/python benches/steps.py $(BENCH)
 	@$(VENV)/bin/python benches/table3.py $(findstring --quick,$(BENCH))
 

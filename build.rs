@@ -3,6 +3,10 @@
 //! OpenMM is looked for in `$OPENMM_DIR` (a folder with `include` and `lib`), else in the Python that
 //! `$PYTHON` names, else in `.venv` here, else in `python3`: the wheel from PyPI carries all that is needed.
 
+#[cfg(feature = "gpu")]
+#[path = "shaders/compose.rs"]
+mod compose;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, exit};
 use std::{env, fs};
@@ -12,6 +16,11 @@ fn main() {
         println!("cargo:rerun-if-env-changed={variable}");
     }
     println!("cargo:rerun-if-changed=wrappers");
+    println!("cargo:rerun-if-changed=shaders");
+    #[cfg(feature = "gpu")]
+    if let Err(message) = compose::write_modules(Path::new("shaders"), &out_dir()) {
+        fail(&message);
+    }
     let site_packages = python_site_packages();
     let openmm = find_openmm(site_packages.as_deref());
     let include = openmm.join("include");
@@ -55,6 +64,10 @@ fn fail(message: &str) -> ! {
     exit(1);
 }
 
+fn out_dir() -> PathBuf {
+    PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"))
+}
+
 /// Where the chosen Python keeps its packages, if it has OpenMM.
 fn python_site_packages() -> Option<PathBuf> {
     let local = Path::new(".venv/bin/python");
@@ -88,7 +101,7 @@ fn find_openmm(site_packages: Option<&Path>) -> PathBuf {
 
 /// Ask the library itself: the headers do not say.
 fn openmm_version(include: &Path, lib: &Path) -> String {
-    let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
+    let out = out_dir();
     let (source, program) = (out.join("version.cpp"), out.join("version"));
     let code = "#include <OpenMM.h>\n#include <iostream>\n\
                 int main() { std::cout << OpenMM::Platform::getOpenMMVersion(); }\n";
@@ -132,7 +145,7 @@ fn bind_c_api(include: &Path, site_packages: Option<&Path>) {
         // SAFETY: a build script has one thread.
         unsafe { env::set_var("LIBCLANG_PATH", folder) };
     }
-    let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
+    let out = out_dir();
     let bindings = std::panic::catch_unwind(|| {
         bindgen::Builder::default()
             .header(include.join("OpenMMCWrapper.h").display().to_string())

@@ -98,6 +98,10 @@ forward! {
     /// Switch something on or off.
     Helfrich_MembraneForce_setSwitch =>
         helfrich_shim_setSwitch(force: *mut Force, name: *const c_char, on: c_int) -> c_int;
+    /// Choose what computes the force: "cpu", "gpu", "gpu:single", "gpu:double", "auto", or "" for what the process
+    /// has chosen.
+    Helfrich_MembraneForce_setBackend =>
+        helfrich_shim_setBackend(force: *mut Force, backend: *const c_char) -> c_int;
     /// Let a Context parameter take the place of a scalar.
     Helfrich_MembraneForce_setContextParameter =>
         helfrich_shim_setContextParameter(force: *mut Force, parameter: *const c_char, name: *const c_char) -> c_int;

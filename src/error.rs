@@ -87,9 +87,61 @@ pub enum Error {
     #[error("there is no {what} called \"{name}\"; known are: {known}")]
     UnknownName { what: &'static str, name: String, known: String },
 
+    /// No adapter, or not the one that was asked for.
+    #[error(
+        "there is no GPU to compute on: {found}; install its driver (Vulkan on Linux), or choose the processor, set_backend(\"cpu\")"
+    )]
+    NoAdapter { found: String },
+
+    /// An adapter without something that is needed.
+    #[error(
+        "the GPU {adapter} {lack}; choose another adapter or precision, or the processor, set_backend(\"cpu\")"
+    )]
+    AdapterLacks { adapter: String, lack: String },
+
+    /// The device has gone, for good.
+    #[error(
+        "the GPU {adapter} was lost ({reason}); start again from the last checkpoint, or use set_backend(\"auto\"), with which the processor takes over"
+    )]
+    LostDevice { adapter: String, reason: String },
+
+    /// The device has too little memory.
+    #[error(
+        "the GPU {adapter} has not enough memory for a mesh of {vertices} vertices; choose the processor, set_backend(\"cpu\")"
+    )]
+    OutOfDeviceMemory { adapter: String, vertices: usize },
+
+    /// Anything else that a driver can say.
+    #[error("the GPU {adapter} has failed: {reason}; choose the processor, set_backend(\"cpu\")")]
+    DeviceFailure { adapter: String, reason: String },
+
+    /// A name that is none of the backends.
+    #[error("there is no backend \"{name}\"; known are: auto, cpu, gpu, gpu:single, gpu:double")]
+    UnknownBackend { name: String },
+
+    /// Forces that share an evaluation ask for different backends.
+    #[error(
+        "has the backend \"{this}\", but another force on the same triangles has \"{other}\", and they are computed together; give them the same"
+    )]
+    BackendConflict { this: String, other: String },
+
     /// A call through the C interface that breaks its contract.
     #[error("{0}")]
     Contract(String),
+}
+
+impl Error {
+    /// Whether the GPU is at fault, so that the processor could do what the GPU could not.
+    pub fn is_of_device(&self) -> bool {
+        matches!(
+            self,
+            Self::NoAdapter { .. }
+                | Self::AdapterLacks { .. }
+                | Self::LostDevice { .. }
+                | Self::OutOfDeviceMemory { .. }
+                | Self::DeviceFailure { .. }
+        )
+    }
 }
 
 /// The result of everything that can fail in this crate.

@@ -27,7 +27,7 @@ pub(crate) fn set_last_error(message: String) {
 }
 
 /// Run a fallible body and turn its result, or its panic, into a status and a message.
-fn guarded(subject: &str, body: impl FnOnce() -> Result<()>) -> c_int {
+pub(crate) fn guarded(subject: &str, body: impl FnOnce() -> Result<()>) -> c_int {
     let message = match catch_unwind(AssertUnwindSafe(body)) {
         Ok(Ok(())) => return 0,
         Ok(Err(error)) => format!("{subject}: {error}"),
@@ -48,7 +48,7 @@ fn guarded(subject: &str, body: impl FnOnce() -> Result<()>) -> c_int {
 ///
 /// # Safety
 /// `text` must be null or end with a NUL.
-unsafe fn text<'a>(text: *const c_char) -> &'a str {
+pub(crate) unsafe fn text<'a>(text: *const c_char) -> &'a str {
     if text.is_null() {
         return "";
     }
@@ -67,7 +67,7 @@ unsafe fn slice<'a, T>(data: *const T, length: usize) -> &'a [T] {
 ///
 /// # Safety
 /// `buffer` must have room for `size` bytes, unless `size` is 0.
-unsafe fn copy_out(message: &str, buffer: *mut c_char, size: i64) -> i64 {
+pub(crate) unsafe fn copy_out(message: &str, buffer: *mut c_char, size: i64) -> i64 {
     if size > 0 {
         let length = message.len().min(size as usize - 1);
         let bytes = unsafe { slice::from_raw_parts_mut(buffer.cast::<u8>(), length + 1) };

@@ -126,6 +126,20 @@ impl MembraneForce {
         Ok(self)
     }
 
+    /// Choose what computes the force: "cpu", "gpu", "gpu:single", "gpu:double", "auto", or "" for what the
+    /// process has chosen.
+    ///
+    /// # Errors
+    /// An unknown backend.
+    pub fn set_backend(&mut self, backend: &str) -> Result<&mut Self> {
+        let backend = c_text(backend)?;
+        // SAFETY: the force is alive and the text ends with a NUL.
+        check(unsafe {
+            c_api::Helfrich_MembraneForce_setBackend(self.force.as_ptr(), backend.as_ptr())
+        })?;
+        Ok(self)
+    }
+
     /// Let a Context parameter take the place of a scalar.
     ///
     /// # Errors

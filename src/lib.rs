@@ -29,11 +29,13 @@
 #![deny(unsafe_op_in_unsafe_fn)]
 #![warn(missing_docs)]
 
+pub mod backend;
 pub mod c_api;
 pub mod dynamics;
 pub mod error;
 pub mod evaluator;
 pub mod ffi;
+pub mod ffi_backend;
 pub mod force;
 pub mod membrane;
 pub mod mesh;

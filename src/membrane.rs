@@ -1,10 +1,10 @@
 //! A mesh as one OpenMM Context sees it: shared by all its forces on the same triangles.
 
+use crate::backend::Choice;
 use crate::error::{Error, Result};
-use crate::evaluator::CpuEvaluator;
+use crate::evaluator::ChosenEvaluator;
 use crate::mesh::Topology;
 use crate::potentials::{Contribution, Element, Term};
-use smallvec::SmallVec;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, Ordering};
 
@@ -19,7 +19,7 @@ pub fn count() -> i64 {
 /// A mesh with the buffers to evaluate any terms on it.
 pub struct Membrane {
     topology: Arc<Topology>,
-    evaluator: CpuEvaluator,
+    evaluator: ChosenEvaluator,
     num_particles: usize,
 }
 
@@ -30,7 +30,7 @@ impl Membrane {
     /// Those of [`Topology::new`].
     pub fn new(triangles: &[[i64; 3]], num_particles: usize) -> Result<Self> {
         let topology = Arc::new(Topology::new(triangles, num_particles)?);
-        let evaluator = CpuEvaluator::new(topology.clone());
+        let evaluator = ChosenEvaluator::new(topology.clone());
         ALIVE.fetch_add(1, Ordering::Relaxed);
         Ok(Self { topology, evaluator, num_particles })
     }
@@ -45,11 +45,19 @@ impl Membrane {
         &self.topology
     }
 
+    /// Let a force join that wants to be computed in some way, or in any.
+    ///
+    /// # Errors
+    /// Those of [`ChosenEvaluator::choose`].
+    pub fn choose(&mut self, wish: Option<Choice>) -> Result<()> {
+        self.evaluator.choose(wish)
+    }
+
     /// Evaluate terms together. Positions (nm) and forces (kJ/mol/nm) are those of all particles of the
     /// System, x y z of one after the other; forces are added. Without contributions no energies are summed.
     ///
     /// # Errors
-    /// Those of [`CpuEvaluator::evaluate`], and a parameter outside its domain, as a Context parameter
+    /// Those of [`ChosenEvaluator::evaluate`], and a parameter outside its domain, as a Context parameter
     /// can come to be.
     pub fn evaluate(
         &mut self,
@@ -70,8 +78,7 @@ impl Membrane {
         for term in terms {
             self.check(term)?;
         }
-        let terms: SmallVec<[&Term; 8]> = terms.iter().collect();
-        self.evaluator.evaluate(&terms, positions, contributions, forces)
+        self.evaluator.evaluate(terms, positions, contributions, forces)
     }
 
     /// Refuse a term with values outside their domains, or with more or fewer values for single

@@ -19,8 +19,9 @@ from . import _plugin
 
 _plugin.load()
 
-from . import analysis, config, vcm  # noqa: E402
+from . import analysis, backend, config, vcm  # noqa: E402
 from ._paths import cmake_path, include_path, library_path  # noqa: E402
+from .backend import adapters, get_backend, set_backend  # noqa: E402
 from .errors import MeshError  # noqa: E402
 from .forces import *  # noqa: E402, F403
 from .forces import __all__ as _force_names  # noqa: E402
@@ -37,12 +38,16 @@ __all__ = [
     "MeshError",
     "ModeReporter",
     "Vesicle",
+    "adapters",
     "analysis",
+    "backend",
     "cmake_path",
     "config",
+    "get_backend",
     "harden",
     "include_path",
     "library_path",
+    "set_backend",
     "vcm",
     *_force_names,
 ]

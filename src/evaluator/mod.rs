@@ -1,10 +1,14 @@
 //! Evaluators own the buffers and run the passes over a mesh; they know no physics.
 
 mod checks;
+mod chosen;
 mod cpu;
+#[cfg(feature = "gpu")]
+pub mod gpu;
 mod passes;
 mod reference;
 pub(crate) mod simd;
 
+pub use chosen::{ChosenEvaluator, LEAST_VERTICES_FOR_GPU};
 pub use cpu::{CpuEvaluator, InstructionSet};
 pub use reference::ReferenceEvaluator;

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from functools import cache
 
 import openmm as mm
+import openmmhelfrich as helfrich
 import pytest
 
 
@@ -18,6 +19,8 @@ class Target:
     platform: str
     tolerance: float
     properties: dict[str, str] = field(default_factory=dict, hash=False)
+    #: What computes the membrane's forces, as `MembraneForce.setBackend` takes it.
+    backend: str = ""
 
     def __str__(self) -> str:
         return self.name
@@ -42,6 +45,22 @@ ON_OPENCL = [
     Target("OpenCL-double", "OpenCL", 1e-9, {"Precision": "double"}),
 ]
 
+ON_GPU = [
+    Target("GPU-single", "Reference", 1e-4, backend="gpu:single"),
+    Target("GPU-double", "Reference", 1e-10, backend="gpu:double"),
+]
+
+
+def require_gpu(double: bool = False) -> None:
+    """Skip the test where there is no GPU, or fail it where HELFRICH_REQUIRE_GPU=1 demands one."""
+    found = helfrich.adapters()
+    if found and (found[0].double or not double):
+        return
+    reason = f"{found[0].name} has no double precision" if found else "no GPU, not even in software"
+    if os.environ.get("HELFRICH_REQUIRE_GPU") == "1":
+        pytest.fail(reason)
+    pytest.skip(reason)
+
 
 @cache
 def _why_not(name: str, precision: str) -> str | None:
@@ -64,6 +83,8 @@ def _why_not(name: str, precision: str) -> str | None:
 
 
 def _require(target: Target) -> None:
+    if target.backend.startswith("gpu"):
+        require_gpu(double=target.backend.endswith("double"))
     if target.platform != "OpenCL":
         return
     reason = _why_not(target.platform, target.properties["Precision"])

@@ -27,6 +27,8 @@ class Running:
             system.addParticle(50.0)
         for group, force in enumerate(forces):
             force.setForceGroup(group)
+            if target.backend:
+                force.setBackend(target.backend)
             system.addForce(force)
         self.context = target.context(system)
 

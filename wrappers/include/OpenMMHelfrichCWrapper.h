@@ -40,6 +40,8 @@ extern int Helfrich_MembraneForce_setElementValues(OpenMM_Force* force, const ch
 extern int Helfrich_MembraneForce_setForm(OpenMM_Force* force, int form);
 /** Switch something on or off: "unsignedSpontaneousCurvature" of a BendingForce. */
 extern int Helfrich_MembraneForce_setSwitch(OpenMM_Force* force, const char* name, int on);
+/** What computes the force: "cpu", "gpu", "gpu:single", "gpu:double", "auto", or "" for what the process has chosen. */
+extern int Helfrich_MembraneForce_setBackend(OpenMM_Force* force, const char* backend);
 extern int Helfrich_MembraneForce_setContextParameter(OpenMM_Force* force, const char* parameter, const char* name);
 extern int Helfrich_MembraneForce_addEnergyParameterDerivative(OpenMM_Force* force, const char* name);
 extern int Helfrich_MembraneForce_updateParametersInContext(OpenMM_Force* force, OpenMM_Context* context);

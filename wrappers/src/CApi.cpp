@@ -99,6 +99,10 @@ int helfrich_shim_setSwitch(void* force, const char* name, int on) {
     return guarded([&] { asForce(force).setSwitch(name, on != 0); });
 }
 
+int helfrich_shim_setBackend(void* force, const char* backend) {
+    return guarded([&] { asForce(force).setBackend(backend); });
+}
+
 int helfrich_shim_setContextParameter(void* force, const char* parameter, const char* name) {
     return guarded([&] { asForce(force).setContextParameter(parameter, name); });
 }

@@ -37,6 +37,7 @@ void MembraneForceImpl::initialize(ContextImpl& context) {
     membrane = SharedMembrane::acquire(owner.getTypeName(), context, owner.getTriangles());
     try {
         copyValues();
+        membrane->choose(owner.getTypeName(), owner.getBackend());
     } catch (...) {
         // OpenMM will not delete this object any more; the membrane shall not stay for ever.
         membrane.reset();

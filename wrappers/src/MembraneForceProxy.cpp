@@ -142,6 +142,8 @@ void MembraneForceProxy::serialize(const void* object, SerializationNode& node) 
         node.setStringProperty(what, name);
     for (const string& name : findSwitches(forceName))
         node.setBoolProperty(name, force.getSwitch(name));
+    if (!force.getBackend().empty())
+        node.setStringProperty("backend", force.getBackend());
     SerializationNode& parameters = node.createChildNode("Parameters");
     for (int i = 0; i < force.getNumParameters(); i++) {
         const string& parameter = force.getParameterName(i);
@@ -182,7 +184,7 @@ void MembraneForceProxy::readForce(const SerializationNode& node, MembraneForce&
     string what, name;
     bool hasForms = findForm(forceName, 0, what, name);
     vector<string> switches = findSwitches(forceName);
-    set<string> attributes = {"type", "version", "forceGroup", "name"};
+    set<string> attributes = {"type", "version", "forceGroup", "name", "backend"};
     attributes.insert(switches.begin(), switches.end());
     if (hasForms)
         attributes.insert(what);
@@ -192,6 +194,8 @@ void MembraneForceProxy::readForce(const SerializationNode& node, MembraneForce&
         force.setForceGroup(integer(forceName, node, "forceGroup"));
     if (node.hasProperty("name"))
         force.setName(text(forceName, node, "name"));
+    if (node.hasProperty("backend"))
+        force.setBackend(text(forceName, node, "backend"));
     if (hasForms) {
         string wanted = text(forceName, node, what);
         int form = 0;

@@ -54,6 +54,10 @@ public:
     double evaluate(const std::string& subject, OpenMM::ContextImpl& context, int groups,
                     const std::vector<OpenMM::Vec3>& positions, bool includeEnergy, std::vector<OpenMM::Vec3>* forces,
                     std::map<std::string, double>* derivatives);
+    /** Choose what computes the forces, for one that joins; `backend` is empty if it does not mind. */
+    void choose(const std::string& subject, const std::string& backend) {
+        check(Helfrich_Membrane_choose(subject.c_str(), core, backend.c_str()));
+    }
     /** Refuse a term that cannot be evaluated on this membrane. */
     void checkTerm(const std::string& subject, const HelfrichTerm& term) const {
         check(Helfrich_Membrane_checkTerm(subject.c_str(), core, &term));

@@ -1,12 +1,16 @@
-"""``openmm-helfrich info``: what a configuration file would simulate, without doing it."""
+"""``openmm-helfrich info``: what a configuration file would simulate, without doing it.
+
+Without a file it describes the machine.
+"""
 
 from __future__ import annotations
 
 import time
+from pathlib import Path
 
 import click
 
-from .options import config_argument, platform_option, reader_options, tidy_errors
+from .options import platform_option, reader_options, tidy_errors
 
 __all__ = ["info"]
 
@@ -15,16 +19,23 @@ _MEASURE_SECONDS = 1.5
 
 
 @click.command()
-@config_argument
+@click.argument("config", required=False, type=click.Path(path_type=Path, dir_okay=False))
 @platform_option
 @click.option("--measure/--no-measure", default=True, help="Measure the time per step.")
 @reader_options
 def info(config, platform, measure, vcm_compatible, ignore_unknown):
-    """Say what CONFIG would simulate: a VCM configuration, or our own in TOML.
+    """Say what CONFIG would simulate (a VCM configuration, or our own in TOML), or describe this machine.
 
     Meshes, potentials with their start energies, time scales, the time step beside what is
-    stable, and the time that the run would take.
+    stable, and the time that the run would take. Without CONFIG: the GPUs with what they can do,
+    and which of processor and GPU computes a membrane, with the timings that decide it.
     """
+    if config is None:
+        from .machine import machine
+
+        for line in machine():
+            click.echo(line)
+        return
     with tidy_errors():
         from ..config import read_any
 

@@ -50,7 +50,7 @@ def on_dask(function, points, scheduler, workers):
         stack.enter_context(
             dask.config.set(
                 {
-                    "distributed.nanny.pre-spawn-environ.RAYON_NUM_THREADS": 1,
+                    "distributed.nanny.pre-spawn-environ.OPENMM_CPU_THREADS": 1,
                     "distributed.comm.timeouts.connect": "15s",
                 }
             )

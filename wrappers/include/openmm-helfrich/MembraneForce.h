@@ -146,6 +146,22 @@ public:
      */
     void updateParametersInContext(OpenMM::Context& context);
     /**
+     * Choose what computes the force in Contexts that are made from now on: the processor or a GPU. Forces
+     * on the same triangles of one Context are computed together, so those of them that have a choice of
+     * their own must have the same one; the others follow.
+     *
+     * @param backend  "cpu"; "gpu", or with a precision "gpu:single" or "gpu:double"; "auto", which takes the
+     *                 GPU for large meshes if it is faster and the processor if the GPU fails; or empty, the
+     *                 default, for what has been chosen for the whole process. "gpu@1" names an adapter.
+     */
+    void setBackend(const std::string& backend);
+    /**
+     * Get what the force has chosen, empty if it follows the process.
+     */
+    const std::string& getBackend() const {
+        return backend;
+    }
+    /**
      * Membranes do not know periodic boundary conditions.
      *
      * @return false
@@ -223,6 +239,7 @@ private:
     std::vector<std::string> derivatives;
     int form;
     unsigned int switches;
+    std::string backend;
 };
 
 /*
@@ -367,6 +384,12 @@ inline bool MembraneForce::getSwitch(const std::string& name) const {
 inline void MembraneForce::setSwitch(const std::string& name, bool on) {
     unsigned int bit = findSwitch(name);
     switches = on ? switches | bit : switches & ~bit;
+}
+
+inline void MembraneForce::setBackend(const std::string& choice) {
+    if (!choice.empty())
+        check(Helfrich_checkBackend(type.c_str(), choice.c_str()));
+    backend = choice;
 }
 
 inline void MembraneForce::updateParametersInContext(OpenMM::Context& context) {

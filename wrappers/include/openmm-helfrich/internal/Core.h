@@ -55,6 +55,8 @@ int Helfrich_Potential_check(const char* potential, int index, double value);
 int Helfrich_Membrane_create(const char* subject, const int* triangles, int64_t numTriangles, int64_t numParticles,
                              HelfrichMembrane** membrane);
 void Helfrich_Membrane_destroy(HelfrichMembrane* membrane);
+int Helfrich_Membrane_choose(const char* subject, HelfrichMembrane* membrane, const char* backend);
+int Helfrich_checkBackend(const char* subject, const char* backend);
 int64_t Helfrich_Membrane_numEdges(const HelfrichMembrane* membrane);
 void Helfrich_Membrane_edges(const HelfrichMembrane* membrane, int* particles);
 int Helfrich_Membrane_checkTerm(const char* subject, const HelfrichMembrane* membrane, const HelfrichTerm* term);

@@ -1,0 +1,84 @@
+"""What ``openmm-helfrich info`` says of the machine: GPUs, and what "auto" would choose."""
+
+from __future__ import annotations
+
+__all__ = ["machine"]
+
+# Below this number of vertices "auto" looks for no GPU (src/evaluator/chosen.rs).
+_LEAST_VERTICES = 20_000
+
+# Subdivisions of the icospheres that are measured where nothing is known yet: N = 10 n² + 2.
+_MEASURED = (48, 96, 192)
+
+
+def machine() -> list[str]:
+    """Lines about versions, adapters and the choice of a backend."""
+    import openmm
+
+    from .. import __version__, backend
+
+    found = backend.adapters()
+    lines = [
+        f"openmm-helfrich {__version__}, OpenMM {openmm.Platform.getOpenMMVersion()}",
+        f"Backend: {backend.get_backend()}",
+        "",
+    ]
+    if not found:
+        lines.append("No GPU, nor any driver of one.")
+    for adapter in found:
+        lines.append(f"GPU {adapter.index}: {adapter.name}, {adapter.kind}")
+        lines.append(f"  {adapter.interface}, {adapter.driver}")
+        double = "single and double precision" if adapter.double else "single precision only"
+        clock = "with" if adapter.timestamps else "without"
+        lines.append(f"  {double}, {clock} timestamps")
+    lines += ["", 'What "auto" chooses:']
+    lines.append(f"  below {_LEAST_VERTICES} vertices the processor")
+    if all(adapter.kind == "software" for adapter in found):
+        reason = "is no GPU" if not found else "is no GPU but in software"
+        return [*lines, f"  above, too, for there {reason}"]
+    return lines + _timings()
+
+
+def _timings() -> list[str]:
+    """The measurements behind the choice, made now where there are none yet."""
+    from .. import backend
+
+    _measure()
+    known = backend.timings()
+    lines = ["  above, by the time of an evaluation (paper's four forces, or what was simulated):"]
+    for machine in sorted({timing.machine for timing in known}):
+        lines.append(f"  {machine.replace('|', ', ')}")
+        lines.append("    vertices   processor         GPU  choice")
+        for timing in known:
+            if timing.machine == machine:
+                choice = "GPU" if timing.gpu < timing.cpu else "processor"
+                lines.append(
+                    f"    {timing.vertices:8d}  {timing.cpu * 1e3:7.2f} ms  "
+                    f"{timing.gpu * 1e3:7.2f} ms  {choice}"
+                )
+    return lines
+
+
+def _measure() -> None:
+    """Let "auto" measure the paper's forces; it does so for sizes that it does not know."""
+    import openmm
+
+    from .. import Mesh, Vesicle
+
+    for divisions in _MEASURED:
+        mesh = Mesh.icosphere(divisions, 1000.0)
+        system = Vesicle(mesh).system()
+        for force in system.getForces():
+            _let_choose(force)
+        reference = openmm.Platform.getPlatformByName("Reference")
+        context = openmm.Context(system, openmm.VerletIntegrator(0.1), reference)
+        context.setPositions(mesh.vertices)
+        context.getState(forces=True)
+
+
+def _let_choose(force) -> None:
+    from .. import forces
+
+    for cls in forces.MembraneForce.__subclasses__():
+        if cls.isinstance(force):
+            cls.cast(force).setBackend("auto")

@@ -1,0 +1,225 @@
+// The passes over the mesh, one thread an element, each gathering what it needs in a fixed order. `energy_of_…`
+// call the potentials; build.rs writes them from the names of the functions in potentials/.
+
+const GROUPS_ACROSS = 32768u;
+
+// The number of a group. Those past the last one that has elements must not store anything.
+fn group_index(group: vec3<u32>) -> u32 {
+    return group.y * GROUPS_ACROSS + group.x;
+}
+
+fn groups_for(elements: u32) -> u32 {
+    return (elements + GROUP_SIZE - 1u) / GROUP_SIZE;
+}
+
+fn is_needed(bits: u32) -> bool {
+    return (frame.needs & bits) != 0u;
+}
+
+// Normals and areas, and their sums.
+@compute @workgroup_size(GROUP_SIZE)
+fn triangles_forward(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+    let group = group_index(id);
+    let triangle = group * GROUP_SIZE + lane;
+    let exists = triangle < frame.num_triangles;
+    var geometry = vec4r();
+    if exists {
+        geometry = new_triangle(triangle);
+        triangle_geometry[triangle] = geometry;
+    }
+    if is_needed(TOTALS) {
+        sum_triangle(triangle, exists, geometry, lane, group, groups_for(frame.num_triangles));
+    }
+}
+
+// The total area and volume, their energies, and the derivatives with respect to them; one group.
+@compute @workgroup_size(GROUP_SIZE)
+fn totals_forward(@builtin(local_invocation_index) lane: u32) {
+    let groups = groups_for(frame.num_triangles);
+    sum_groups(groups, lane);
+    if lane != 0u {
+        return;
+    }
+    var slopes = TotalSlopes(real(0.0), real(0.0));
+    for (var term = 0u; term < frame.num_terms; term++) {
+        if (frame.terms[term].needs & TOTALS) == 0u {
+            continue;
+        }
+        let contribution = energy_of_totals(term, &slopes);
+        let first = frame.terms[term].sums.x;
+        results[first] = contribution.energy;
+        if (frame.terms[term].needs & DERIVATIVES) != 0u {
+            for (var k = 0u; k < 4u; k++) {
+                results[first + k + 1u] = contribution.by_parameter[k];
+            }
+        }
+    }
+    store_total_slopes(slopes, groups);
+}
+
+// Lengths and dihedral angles, their energies and moments.
+@compute @workgroup_size(GROUP_SIZE)
+fn edges_forward(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+    let group = group_index(id);
+    let index = group * GROUP_SIZE + lane;
+    let exists = index < frame.num_edges;
+    var edge: EdgeGeometry;
+    if exists {
+        edge = new_edge(index);
+    }
+    var slope = real(0.0);
+    for (var term = 0u; term < frame.num_terms; term++) {
+        if (frame.terms[term].needs & EDGES) == 0u {
+            continue;
+        }
+        var contribution = nothing();
+        if exists {
+            contribution = energy_of_edge(term, index, edge, &slope);
+        }
+        store_sums(term, frame.terms[term].sums.z, contribution, lane, group, groups_for(frame.num_edges));
+    }
+    if exists {
+        let moment = select(real(0.0), slope / root(edge.length_squared), slope != real(0.0));
+        edge_geometry[index] = vec4r(edge.length_squared, edge.bend, moment, real(0.0));
+    }
+}
+
+// Areas, curvatures and vectors, their energies and the derivatives with respect to them.
+@compute @workgroup_size(GROUP_SIZE)
+fn vertices_forward(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+    let group = group_index(id);
+    let index = group * GROUP_SIZE + lane;
+    let exists = index < frame.num_vertices;
+    var vertex: VertexGeometry;
+    if exists {
+        vertex = new_vertex(index);
+    }
+    var slopes: VertexSlopes;
+    for (var term = 0u; term < frame.num_terms; term++) {
+        if (frame.terms[term].needs & VERTICES) == 0u {
+            continue;
+        }
+        var contribution = nothing();
+        if exists {
+            contribution = energy_of_vertex(term, index, vertex, &slopes);
+        }
+        store_sums(term, frame.terms[term].sums.w, contribution, lane, group, groups_for(frame.num_vertices));
+    }
+    if exists {
+        vertex_slopes[index] = vec4r(slopes.area, slopes.voronoi_area, slopes.curvature, real(0.0));
+        if is_needed(VECTORS) {
+            store_vector_slope(index, 0u, slopes.cotangent);
+            store_vector_slope(index, 1u, slopes.umbrella);
+            store_vector_slope(index, 2u, slopes.normal_sum);
+        }
+    }
+}
+
+fn new_vertex(index: u32) -> VertexGeometry {
+    var vertex: VertexGeometry;
+    let ring = frame.num_vertices + 1u;
+    for (var place = rings[index]; place < rings[index + 1u]; place++) {
+        let corner = rings[ring + place];
+        let triangle = corner / 3u;
+        if is_needed(VECTORS) {
+            let geometry = load_triangle(triangle);
+            vertex.area += geometry.twice_area / real(6.0);
+            add_corner(&vertex, geometry, corner % 3u, is_needed(NORMALS));
+        } else {
+            vertex.area += triangle_geometry[triangle].w / real(6.0);
+        }
+        if is_needed(CURVATURES) {
+            // In a closed surface each edge at a vertex leaves it in exactly one triangle.
+            let edge = edge_geometry[corner_edges[corner]];
+            vertex.curvature += real(0.5) * edge.x * edge.y;
+        }
+    }
+    return vertex;
+}
+
+// Energies of triangles, and all forces of a triangle on its corners.
+@compute @workgroup_size(GROUP_SIZE)
+fn triangles_backward(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+    let group = group_index(id);
+    let index = group * GROUP_SIZE + lane;
+    let exists = index < frame.num_triangles;
+    var triangle: TriangleGeometry;
+    if exists {
+        triangle = load_triangle(index);
+    }
+    var slopes: TriangleSlopes;
+    for (var term = 0u; term < frame.num_terms; term++) {
+        if (frame.terms[term].needs & TRIANGLES) == 0u {
+            continue;
+        }
+        var contribution = nothing();
+        if exists {
+            contribution = energy_of_triangle(term, index, triangle, &slopes);
+        }
+        let groups = groups_for(frame.num_triangles);
+        store_sums(term, frame.terms[term].sums.y, contribution, lane, group, groups);
+    }
+    if !exists || !is_needed(FORCES) {
+        return;
+    }
+
+    var volume_slope = real(0.0);
+    if is_needed(TOTALS) {
+        let totals = total_slopes(groups_for(frame.num_triangles));
+        slopes.area += totals.area;
+        volume_slope = totals.volume;
+    }
+    var curvature_slopes = vec3r();
+    if is_needed(VERTICES) {
+        var sum = real(0.0);
+        for (var k = 0u; k < 3u; k++) {
+            let stored = vertex_slopes[corner_vertex(index, k)];
+            sum += stored.x;
+            curvature_slopes[k] = stored.z;
+        }
+        slopes.area += sum / real(3.0);
+    }
+    var half_tensions = vec3r();
+    var moments = vec3r();
+    if is_needed(EDGES | CURVATURES) {
+        for (var k = 0u; k < 3u; k++) {
+            let edge = edge_geometry[corner_edges[3u * index + k]];
+            // Jülicher's curvature adds m d(l φ), with m the mean of ∂E/∂J at the two ends.
+            let mean = real(0.5) * (curvature_slopes[k] + curvature_slopes[(k + 1u) % 3u]);
+            half_tensions[k] = real(0.5) * mean * edge.y;
+            moments[k] = mean + edge.z;
+        }
+    }
+    var forces = forces_on_corners(
+        triangle, slopes.area, slopes.length_squared, half_tensions, moments, volume_slope);
+    if is_needed(VECTORS) {
+        let more = forces_of_vectors(index, triangle, is_needed(NORMALS));
+        for (var k = 0u; k < 3u; k++) {
+            forces[k] += more[k];
+        }
+    }
+    for (var k = 0u; k < 3u; k++) {
+        let first = 9u * index + 3u * k;
+        corner_forces[first] = forces[k].x;
+        corner_forces[first + 1u] = forces[k].y;
+        corner_forces[first + 2u] = forces[k].z;
+    }
+}
+
+// The force on each vertex: the sum over its corners.
+@compute @workgroup_size(GROUP_SIZE)
+fn vertices_backward(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+    let index = group_index(id) * GROUP_SIZE + lane;
+    if index >= frame.num_vertices {
+        return;
+    }
+    var force = vec3r();
+    let ring = frame.num_vertices + 1u;
+    for (var place = rings[index]; place < rings[index + 1u]; place++) {
+        let first = 3u * rings[ring + place];
+        force += vec3r(corner_forces[first], corner_forces[first + 1u], corner_forces[first + 2u]);
+    }
+    results[3u * index] = force.x;
+    results[3u * index + 1u] = force.y;
+    results[3u * index + 2u] = force.z;
+}

@@ -1,0 +1,41 @@
+// Dihedral angles φ: K f(φ), f by the form; c = 1 − cos φ.
+
+fn dihedral_edge(term: u32, element: u32, edge: EdgeGeometry, slope: ptr<function, real>) -> Contribution {
+    let stiffness = value(term, 0u, element);
+    let angle = edge.bend * root(edge.length_squared);
+    // 1 − cos φ without cancellation.
+    let half_sine = sine(real(0.5) * angle);
+    let c = real(2.0) * half_sine * half_sine;
+    let sine = real(2.0) * half_sine * cosine(real(0.5) * angle);
+    var f = c;
+    var by_angle = sine;
+    switch frame.terms[term].form {
+        // Quartic
+        case 0u: {
+            f = c * c;
+            by_angle = real(2.0) * c * sine;
+        }
+        // Cosine
+        case 1u: {}
+        // Exp
+        case 2u: {
+            let growth = exp_minus_one(real(2.0) * c);
+            f = real(0.5) * growth;
+            by_angle = (growth + real(1.0)) * sine;
+        }
+        // SmoothExp
+        case 3u: {
+            let growth = exp_minus_one(real(10.0) * c);
+            f = real(0.04) * growth;
+            by_angle = real(0.4) * (growth + real(1.0)) * sine;
+        }
+        // SmoothExp46
+        default: {
+            let growth = exp_minus_one(real(2.0) * c);
+            f = real(0.5) * (growth - angle * angle);
+            by_angle = (growth + real(1.0)) * sine - angle;
+        }
+    }
+    *slope += stiffness * by_angle;
+    return Contribution(stiffness * f, vec4r(f, real(0.0), real(0.0), real(0.0)));
+}

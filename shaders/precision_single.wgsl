@@ -1,0 +1,25 @@
+// Single precision. Positions are whole numbers on a lattice over the mesh, 2³⁰ steps across each of its
+// parts: their differences are exact, so that a side is as precise as a number can be, however small it is
+// beside the mesh, and no compiler can spoil that by reordering floating-point arithmetic.
+
+alias real = f32;
+alias vec3r = vec3<f32>;
+alias vec4r = vec4<f32>;
+
+@group(0) @binding(1) var<storage, read> positions: array<i32>;
+
+// A triangle whose area is a smaller share of its longest side squared has no normal worth the name.
+const THINNEST = 1e-6;
+
+fn lattice_position(vertex: u32) -> vec3<i32> {
+    return vec3<i32>(positions[3u * vertex], positions[3u * vertex + 1u], positions[3u * vertex + 2u]);
+}
+
+// The vector from one vertex to another of the same part of the mesh.
+fn separation(start: u32, end: u32) -> vec3r {
+    return vec3r(lattice_position(end) - lattice_position(start)) * frame.quantum;
+}
+
+fn root(x: real) -> real {
+    return sqrt(x);
+}

@@ -1,0 +1,62 @@
+// The sums of area and volume over all triangles in double precision, as trees of fixed shape.
+
+// Twice the area and six times the volume, for each group, and then the derivatives of the energy with
+// respect to area and volume.
+@group(0) @binding(12) var<storage, read_write> totals: array<vec2<f64>>;
+
+var<workgroup> total_shares: array<vec2<f64>, GROUP_SIZE>;
+
+fn total_of_group(share: vec2<f64>, lane: u32) -> vec2<f64> {
+    workgroupBarrier();
+    total_shares[lane] = share;
+    for (var half = GROUP_SIZE / 2u; half > 0u; half /= 2u) {
+        workgroupBarrier();
+        if lane < half {
+            total_shares[lane] += total_shares[lane + half];
+        }
+    }
+    return total_shares[lane];
+}
+
+fn sum_triangle(triangle: u32, exists: bool, geometry: vec4r, lane: u32, group: u32, groups: u32) {
+    var share = vec2<f64>();
+    if exists {
+        share = vec2<f64>(geometry.w, dot(position(corner_vertex(triangle, 0u)), geometry.xyz));
+    }
+    let sum = total_of_group(share, lane);
+    if lane == 0u && group < groups {
+        totals[group] = sum;
+    }
+}
+
+var<workgroup> sum_of_all: vec2<f64>;
+
+fn sum_groups(groups: u32, lane: u32) {
+    var share = vec2<f64>();
+    for (var group = lane; group < groups; group += GROUP_SIZE) {
+        share += totals[group];
+    }
+    let sum = total_of_group(share, lane);
+    if lane == 0u {
+        sum_of_all = sum;
+    }
+}
+
+// How far the total area is above the target of a term.
+fn excess_of_area(term: u32) -> real {
+    return real(0.5) * sum_of_all.x - frame.terms[term].values[1];
+}
+
+// How far the total volume is above the target of a term.
+fn excess_of_volume(term: u32) -> real {
+    return sum_of_all.y / real(6.0) - frame.terms[term].values[1];
+}
+
+fn store_total_slopes(slopes: TotalSlopes, groups: u32) {
+    totals[groups] = vec2<f64>(slopes.area, slopes.volume);
+}
+
+fn total_slopes(groups: u32) -> TotalSlopes {
+    let stored = totals[groups];
+    return TotalSlopes(stored.x, stored.y);
+}

@@ -1,0 +1,243 @@
+//! The evaluator that a mesh uses: the processor's, a GPU's, or whichever is faster.
+
+use super::CpuEvaluator;
+#[cfg(feature = "gpu")]
+use super::gpu::{GpuEvaluator, Precision, calibration};
+use crate::backend::{self, Choice, Kind};
+use crate::error::{Error, Result};
+use crate::mesh::Topology;
+use crate::potentials::{Contribution, Term};
+use smallvec::SmallVec;
+use std::sync::Arc;
+
+/// Below so many vertices no GPU is looked for: starting one takes longer than many evaluations of such a mesh,
+/// and an evaluation there no longer than the way to a GPU and back.
+pub const LEAST_VERTICES_FOR_GPU: usize = 20_000;
+
+/// Either evaluator, made when it is first needed.
+pub struct ChosenEvaluator {
+    topology: Arc<Topology>,
+    /// What a force has asked for; otherwise the choice for the process holds.
+    own: Option<Choice>,
+    /// What holds, once it is known.
+    choice: Option<Choice>,
+    cpu: Option<CpuEvaluator>,
+    #[cfg(feature = "gpu")]
+    gpu: Option<GpuEvaluator>,
+    /// Whether it is settled that the processor computes.
+    settled_on_cpu: bool,
+}
+
+impl ChosenEvaluator {
+    /// For a mesh; nothing is chosen yet.
+    pub fn new(topology: Arc<Topology>) -> Self {
+        Self {
+            topology,
+            own: None,
+            choice: None,
+            cpu: None,
+            #[cfg(feature = "gpu")]
+            gpu: None,
+            settled_on_cpu: false,
+        }
+    }
+
+    /// Let a force join that has asked for something, or for nothing. A GPU that is asked for is started now,
+    /// so that its errors come when a Context is made.
+    ///
+    /// # Errors
+    /// Another force has asked for something else; there is no such GPU, or it cannot do what is asked.
+    pub fn choose(&mut self, wish: Option<Choice>) -> Result<()> {
+        if let (Some(this), Some(other)) = (wish, self.own) {
+            if this != other {
+                let (this, other) = (this.to_string(), other.to_string());
+                return Err(Error::BackendConflict { this, other });
+            }
+        }
+        self.own = self.own.or(wish);
+        let choice = self.own.map_or_else(backend::global, Ok)?;
+        if self.choice == Some(choice) {
+            return Ok(());
+        }
+        backend::check(choice)?;
+        self.choice = Some(choice);
+        self.settled_on_cpu =
+            choice.kind == Kind::Cpu || choice.kind == Kind::Auto && !self.is_worth_a_look();
+        #[cfg(feature = "gpu")]
+        {
+            self.gpu = None;
+            if choice.kind == Kind::Gpu {
+                self.gpu = Some(self.start_gpu(choice)?);
+            }
+        }
+        Ok(())
+    }
+
+    /// Evaluate terms, as [`CpuEvaluator::evaluate`] does.
+    ///
+    /// # Errors
+    /// Its errors, and those of a GPU that was asked for. Nothing has been added to the forces then.
+    pub fn evaluate(
+        &mut self,
+        terms: &[Term],
+        positions: &[f64],
+        contributions: &mut [Contribution],
+        forces: Option<&mut [f64]>,
+    ) -> Result<()> {
+        if self.choice.is_none() {
+            self.choose(None)?;
+        }
+        if self.settled_on_cpu {
+            return self.on_cpu(terms, positions, contributions, forces);
+        }
+        self.on_gpu(terms, positions, contributions, forces)
+    }
+
+    fn on_cpu(
+        &mut self,
+        terms: &[Term],
+        positions: &[f64],
+        contributions: &mut [Contribution],
+        forces: Option<&mut [f64]>,
+    ) -> Result<()> {
+        backend::count_evaluation(false);
+        let topology = &self.topology;
+        let cpu = self.cpu.get_or_insert_with(|| CpuEvaluator::new(topology.clone()));
+        let terms: SmallVec<[&Term; 8]> = terms.iter().collect();
+        cpu.evaluate(&terms, positions, contributions, forces)
+    }
+}
+
+#[cfg(not(feature = "gpu"))]
+impl ChosenEvaluator {
+    fn is_worth_a_look(&self) -> bool {
+        false
+    }
+
+    fn on_gpu(
+        &mut self,
+        terms: &[Term],
+        positions: &[f64],
+        contributions: &mut [Contribution],
+        forces: Option<&mut [f64]>,
+    ) -> Result<()> {
+        self.on_cpu(terms, positions, contributions, forces)
+    }
+}
+
+#[cfg(feature = "gpu")]
+impl ChosenEvaluator {
+    fn is_worth_a_look(&self) -> bool {
+        self.topology.num_vertices() >= LEAST_VERTICES_FOR_GPU || calibration::prefers_gpu()
+    }
+
+    fn start_gpu(&self, choice: Choice) -> Result<GpuEvaluator> {
+        let precision =
+            if choice.double == Some(true) { Precision::Double } else { Precision::Single };
+        GpuEvaluator::new(self.topology.clone(), choice.adapter, precision)
+    }
+
+    fn on_gpu(
+        &mut self,
+        terms: &[Term],
+        positions: &[f64],
+        contributions: &mut [Contribution],
+        mut forces: Option<&mut [f64]>,
+    ) -> Result<()> {
+        let auto = self.choice.is_none_or(|choice| choice.kind == Kind::Auto);
+        let tried = self.try_gpu(terms, positions, contributions, forces.as_deref_mut());
+        match tried {
+            Ok(true) => {
+                backend::count_evaluation(true);
+                Ok(())
+            }
+            // Here the processor names the culprit, or computes what single precision cannot.
+            Ok(false) => self.on_cpu(terms, positions, contributions, forces),
+            Err(error) if auto && error.is_of_device() => {
+                self.gpu = None;
+                self.settled_on_cpu = true;
+                warn_once(&error);
+                self.on_cpu(terms, positions, contributions, forces)
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Whether the GPU has computed; false if it is not to, or cannot.
+    fn try_gpu(
+        &mut self,
+        terms: &[Term],
+        positions: &[f64],
+        contributions: &mut [Contribution],
+        forces: Option<&mut [f64]>,
+    ) -> Result<bool> {
+        if self.gpu.is_none() {
+            let choice = self.choice.map_or_else(backend::global, Ok)?;
+            if choice.kind == Kind::Auto && !calibration::has_candidate(choice.adapter) {
+                self.settled_on_cpu = true;
+                return Ok(false);
+            }
+            let mut gpu = self.start_gpu(choice)?;
+            if choice.kind == Kind::Auto && !self.gpu_is_faster(&mut gpu, terms, positions)? {
+                self.settled_on_cpu = true;
+                return Ok(false);
+            }
+            self.gpu = Some(gpu);
+            self.cpu = None;
+        }
+        match &mut self.gpu {
+            Some(gpu) => gpu.evaluate(terms, positions, contributions, forces),
+            None => Ok(false),
+        }
+    }
+
+    /// What an earlier measurement says, or else one on this mesh.
+    fn gpu_is_faster(
+        &mut self,
+        gpu: &mut GpuEvaluator,
+        terms: &[Term],
+        positions: &[f64],
+    ) -> Result<bool> {
+        if calibration::prefers_gpu() {
+            return Ok(true);
+        }
+        let key = calibration::Key::new(gpu, &self.topology, terms);
+        if let Some(known) = calibration::recall(&key) {
+            return Ok(known.gpu < known.cpu);
+        }
+        let mut contributions = vec![Contribution::default(); terms.len()];
+        let mut forces = vec![0.0; positions.len()];
+        let mut cpu_fails = None;
+        let cpu = calibration::fastest(|| {
+            let forces = Some(forces.as_mut_slice());
+            cpu_fails = self.on_cpu(terms, positions, &mut contributions, forces).err();
+        });
+        if cpu_fails.is_some() {
+            // The real evaluation will say so.
+            return Ok(false);
+        }
+        let mut gpu_fails = None;
+        let on_gpu = calibration::fastest(|| {
+            let forces = Some(forces.as_mut_slice());
+            gpu_fails = gpu.evaluate(terms, positions, &mut contributions, forces).err();
+        });
+        if let Some(error) = gpu_fails {
+            return Err(error);
+        }
+        let times = calibration::Times { cpu, gpu: on_gpu };
+        calibration::remember(key, times);
+        Ok(times.gpu < times.cpu)
+    }
+}
+
+/// Say on the standard error why the processor computes, once in a process.
+#[cfg(feature = "gpu")]
+fn warn_once(error: &Error) {
+    static SAID: std::sync::Once = std::sync::Once::new();
+    SAID.call_once(|| {
+        // What could be done about it is after the semicolon, and it has been done.
+        let message = error.to_string();
+        let reason = message.split("; ").next().unwrap_or_default();
+        eprintln!("openmm-helfrich: {reason}; the processor takes over");
+    });
+}

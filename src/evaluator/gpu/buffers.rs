@@ -1,0 +1,221 @@
+//! The memory that a mesh has on a device, as long as its Context lives.
+
+use super::Precision;
+use super::device::Device;
+use super::frame::groups;
+use crate::error::{Error, Result};
+use crate::mesh::Topology;
+use crate::potentials::Needs;
+use wgpu::BufferUsages as Usage;
+
+/// The binding of each buffer; `shaders/bindings.wgsl` says what is in them.
+#[derive(Clone, Copy)]
+pub enum Binding {
+    Frame,
+    Positions,
+    CornerVertices,
+    CornerEdges,
+    EdgeCorners,
+    Rings,
+    Fields,
+    TriangleGeometry,
+    EdgeGeometry,
+    VertexSlopes,
+    VectorSlopes,
+    CornerForces,
+    Totals,
+    Results,
+    ThinTriangles,
+}
+
+const COUNT: usize = Binding::ThinTriangles as usize + 1;
+
+/// How many bytes some of the buffers must have for an evaluation.
+pub struct Demand {
+    pub frame: usize,
+    pub fields: usize,
+    pub results: usize,
+    pub needs: Needs,
+}
+
+/// Buffers in the order of their bindings, and one from which the processor reads.
+pub struct Buffers {
+    bound: [wgpu::Buffer; COUNT],
+    pub readback: wgpu::Buffer,
+    pub group: wgpu::BindGroup,
+    /// The number of vertices, for messages.
+    vertices: usize,
+    /// For each intermediate result the needs that ask for it, and its size.
+    optional: [(Binding, Needs, usize); 3],
+}
+
+/// Beside the results the processor reads the count of thin triangles and two timestamps.
+pub const TAIL: usize = 32;
+
+/// What the buffers of the shaders and that of the processor are for.
+const STORED: Usage = Usage::STORAGE.union(Usage::COPY_DST).union(Usage::COPY_SRC);
+const READ: Usage = Usage::MAP_READ.union(Usage::COPY_DST);
+
+/// A buffer that nothing is in must have a size nevertheless.
+const LEAST: usize = 256;
+
+impl Buffers {
+    /// # Errors
+    /// The device has not enough memory, or does not allow buffers of this size.
+    pub fn new(device: &Device, topology: &Topology, precision: Precision) -> Result<Self> {
+        let (v, e) = (topology.num_vertices(), topology.edges.len());
+        let t = topology.triangles.len();
+        let real = precision.size();
+        // Two sums of area and volume for each group, and the derivatives with respect to them.
+        let totals = match precision {
+            Precision::Single => 16 * (2 * groups(t) + 1),
+            Precision::Double => 16 * (groups(t) + 1),
+        };
+        let optional = [
+            (Binding::EdgeGeometry, Needs::EDGES | Needs::CURVATURES, 4 * e * real),
+            (Binding::VertexSlopes, Needs::VERTICES, 4 * v * real),
+            (Binding::VectorSlopes, Needs::VECTORS, 9 * v * real),
+        ];
+        let position = if precision == Precision::Single { 4 } else { 8 };
+        let sizes = |binding: Binding| match binding {
+            Binding::Positions => 3 * v * position,
+            Binding::CornerVertices | Binding::CornerEdges => 12 * t,
+            Binding::EdgeCorners => 8 * e,
+            Binding::Rings => 4 * (v + 1 + 3 * t),
+            Binding::TriangleGeometry => 4 * t * real,
+            Binding::CornerForces => 9 * t * real,
+            Binding::Totals => totals,
+            _ => LEAST,
+        };
+        check_limits(device, v, ALL.into_iter().map(sizes).max().unwrap_or(0))?;
+        let buffers = device.guarded(v, || {
+            let bound = std::array::from_fn(|k| create(device, sizes(ALL[k]), STORED));
+            let readback = create(device, LEAST, READ);
+            let group = bind(device, &bound);
+            Self { bound, readback, group, vertices: v, optional }
+        })?;
+        buffers.write_topology(device, topology);
+        Ok(buffers)
+    }
+
+    pub fn get(&self, binding: Binding) -> &wgpu::Buffer {
+        &self.bound[binding as usize]
+    }
+
+    /// Make what is too small for an evaluation larger.
+    ///
+    /// # Errors
+    /// As for [`Buffers::new`].
+    pub fn provide(&mut self, device: &Device, demand: &Demand) -> Result<()> {
+        let mut wanted = vec![
+            (Binding::Frame, demand.frame),
+            (Binding::Fields, demand.fields),
+            (Binding::Results, demand.results),
+        ];
+        for (binding, needs, size) in self.optional {
+            if demand.needs.intersects(needs) {
+                wanted.push((binding, size));
+            }
+        }
+        wanted.retain(|(binding, size)| self.get(*binding).size() < *size as u64);
+        let reads = (demand.results + TAIL) as u64;
+        if wanted.is_empty() && self.readback.size() >= reads {
+            return Ok(());
+        }
+        let largest = wanted.iter().map(|(_, size)| *size).max().unwrap_or(0);
+        check_limits(device, self.vertices, largest)?;
+        device.guarded(self.vertices, || {
+            for (binding, size) in wanted {
+                self.bound[binding as usize] = create(device, size, STORED);
+            }
+            if self.readback.size() < reads {
+                self.readback = create(device, reads as usize, READ);
+            }
+            self.group = bind(device, &self.bound);
+        })
+    }
+
+    fn write_topology(&self, device: &Device, topology: &Topology) {
+        let write = |binding: Binding, words: &[u32]| {
+            device.queue.write_buffer(self.get(binding), 0, bytemuck::cast_slice(words));
+        };
+        write(Binding::CornerVertices, topology.triangles.as_flattened());
+        write(Binding::CornerEdges, topology.triangle_edges.as_flattened());
+        let corners: Vec<u32> = topology
+            .edges
+            .iter()
+            .enumerate()
+            .flat_map(|(index, edge)| {
+                edge.triangles.map(|triangle| {
+                    let sides = &topology.triangle_edges[triangle as usize];
+                    let side = sides.iter().position(|side| *side as usize == index);
+                    3 * triangle + side.unwrap_or(0) as u32
+                })
+            })
+            .collect();
+        write(Binding::EdgeCorners, &corners);
+        let rings: Vec<u32> = topology.offsets.iter().chain(&topology.corners).copied().collect();
+        write(Binding::Rings, &rings);
+    }
+}
+
+/// Refuse what the device does not bind before wgpu does, whose message knows nothing of meshes.
+fn check_limits(device: &Device, vertices: usize, largest: usize) -> Result<()> {
+    let limits = device.wgpu.limits();
+    let most = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+    if largest as u64 <= most {
+        return Ok(());
+    }
+    Err(Error::AdapterLacks {
+        adapter: device.adapter.name.clone(),
+        lack: format!(
+            "has buffers of {} MB at most, but a mesh of {vertices} vertices needs one of {} MB",
+            most >> 20,
+            largest >> 20
+        ),
+    })
+}
+
+const ALL: [Binding; COUNT] = [
+    Binding::Frame,
+    Binding::Positions,
+    Binding::CornerVertices,
+    Binding::CornerEdges,
+    Binding::EdgeCorners,
+    Binding::Rings,
+    Binding::Fields,
+    Binding::TriangleGeometry,
+    Binding::EdgeGeometry,
+    Binding::VertexSlopes,
+    Binding::VectorSlopes,
+    Binding::CornerForces,
+    Binding::Totals,
+    Binding::Results,
+    Binding::ThinTriangles,
+];
+
+fn create(device: &Device, size: usize, usage: Usage) -> wgpu::Buffer {
+    let size = size.max(LEAST).next_multiple_of(16) as u64;
+    device.wgpu.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size,
+        usage,
+        mapped_at_creation: false,
+    })
+}
+
+fn bind(device: &Device, buffers: &[wgpu::Buffer]) -> wgpu::BindGroup {
+    let entries: Vec<_> = buffers
+        .iter()
+        .enumerate()
+        .map(|(binding, buffer)| wgpu::BindGroupEntry {
+            binding: binding as u32,
+            resource: buffer.as_entire_binding(),
+        })
+        .collect();
+    device.wgpu.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: None,
+        layout: &device.layout,
+        entries: &entries,
+    })
+}
