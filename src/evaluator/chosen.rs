@@ -1,8 +1,8 @@
 //! The evaluator that a mesh uses: the processor's, a GPU's, or whichever is faster.
 
-use super::CpuEvaluator;
 #[cfg(feature = "gpu")]
 use super::gpu::{GpuEvaluator, Precision, calibration};
+use super::{CpuEvaluator, InstructionSet};
 use crate::backend::{self, Choice, Kind};
 use crate::error::{Error, Result};
 use crate::mesh::Topology;
@@ -17,6 +17,8 @@ pub const LEAST_VERTICES_FOR_GPU: usize = 20_000;
 /// Either evaluator, made when it is first needed.
 pub struct ChosenEvaluator {
     topology: Arc<Topology>,
+    /// Threads of the processor that may share the work; 0 for as many as there are.
+    threads: usize,
     /// What a force has asked for; otherwise the choice for the process holds.
     own: Option<Choice>,
     /// What holds, once it is known.
@@ -33,6 +35,7 @@ impl ChosenEvaluator {
     pub fn new(topology: Arc<Topology>) -> Self {
         Self {
             topology,
+            threads: 0,
             own: None,
             choice: None,
             cpu: None,
@@ -42,17 +45,26 @@ impl ChosenEvaluator {
         }
     }
 
+    /// Let so many threads share evaluations on the processor, where that turns out faster; 0 for as many as there
+    /// are.
+    pub fn set_threads(&mut self, threads: usize) {
+        self.threads = threads;
+        if let Some(cpu) = &mut self.cpu {
+            cpu.set_threads(threads);
+        }
+    }
+
     /// Let a force join that has asked for something, or for nothing. A GPU that is asked for is started now,
     /// so that its errors come when a Context is made.
     ///
     /// # Errors
     /// Another force has asked for something else; there is no such GPU, or it cannot do what is asked.
     pub fn choose(&mut self, wish: Option<Choice>) -> Result<()> {
-        if let (Some(this), Some(other)) = (wish, self.own) {
-            if this != other {
-                let (this, other) = (this.to_string(), other.to_string());
-                return Err(Error::BackendConflict { this, other });
-            }
+        if let (Some(this), Some(other)) = (wish, self.own)
+            && this != other
+        {
+            let (this, other) = (this.to_string(), other.to_string());
+            return Err(Error::BackendConflict { this, other });
         }
         self.own = self.own.or(wish);
         let choice = self.own.map_or_else(backend::global, Ok)?;
@@ -101,8 +113,10 @@ impl ChosenEvaluator {
         forces: Option<&mut [f64]>,
     ) -> Result<()> {
         backend::count_evaluation(false);
-        let topology = &self.topology;
-        let cpu = self.cpu.get_or_insert_with(|| CpuEvaluator::new(topology.clone()));
+        let (topology, threads) = (&self.topology, self.threads);
+        let cpu = self.cpu.get_or_insert_with(|| {
+            CpuEvaluator::with(topology.clone(), InstructionSet::Best, threads)
+        });
         let terms: SmallVec<[&Term; 8]> = terms.iter().collect();
         cpu.evaluate(&terms, positions, contributions, forces)
     }
@@ -145,7 +159,11 @@ impl ChosenEvaluator {
         mut forces: Option<&mut [f64]>,
     ) -> Result<()> {
         let auto = self.choice.is_none_or(|choice| choice.kind == Kind::Auto);
-        let tried = self.try_gpu(terms, positions, contributions, forces.as_deref_mut());
+        // Energies that nobody wants come at no cost, and tell whether the device could compute.
+        let mut unwanted: SmallVec<[Contribution; 8]> = SmallVec::new();
+        unwanted.resize(terms.len(), Contribution::default());
+        let known = if contributions.is_empty() { &mut unwanted } else { &mut *contributions };
+        let tried = self.try_gpu(terms, positions, known, forces.as_deref_mut());
         match tried {
             Ok(true) => {
                 backend::count_evaluation(true);

@@ -24,7 +24,7 @@ _MEASURE_SECONDS = 1.5
 @click.option("--measure/--no-measure", default=True, help="Measure the time per step.")
 @reader_options
 def info(config, platform, measure, vcm_compatible, ignore_unknown):
-    """Say what CONFIG would simulate (a VCM configuration, or our own in TOML), or describe this machine.
+    """Say what CONFIG, of VCM or in TOML, would simulate, or describe this machine.
 
     Meshes, potentials with their start energies, time scales, the time step beside what is
     stable, and the time that the run would take. Without CONFIG: the GPUs with what they can do,

@@ -298,6 +298,6 @@ impl GpuEvaluator {
 
 /// Where the tail of the readback begins, which timestamps want to be a multiple of 8.
 fn tail(bytes: usize) -> usize {
-    debug_assert!(TAIL >= 8 + 24);
+    const { assert!(TAIL >= 8 + 24) };
     bytes.next_multiple_of(8)
 }
