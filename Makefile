@@ -23,7 +23,7 @@ PY := $(wildcard setup.py python tests examples benches)
 build: $(VENV)/.installed ## build everything and install it in .venv (the default)
 	@echo "openmm-helfrich is installed in .venv; try: make demo"
 
-test: lint test-rust test-package test-python ## run all checks: lint, Rust, a clean installation, Python
+test: lint test-rust test-python test-package ## run all checks: lint, Rust, Python, a clean installation
 
 lint: $(VENV)/.requirements ## check formatting, and lint Rust, C++ and Python
 	@echo "== Formatting and lint"
@@ -46,7 +46,7 @@ test-rust: $(VENV)/.requirements # Rust's tests, and its documentation
 
 test-package: $(VENV)/.requirements # `pip install .` where nothing else is
 	@echo "== A clean installation"
-	@CARGO_TARGET_DIR=$(TARGET)/package $(SHELL) .ci/check-package.sh $(VENV)/bin/python
+	@CARGO_TARGET_DIR=$(TARGET) $(SHELL) .ci/check-package.sh $(VENV)/bin/python
 
 test-python: build # what a user sees
 	@echo "== Python"

@@ -86,9 +86,8 @@ double SharedMembrane::evaluate(const string& subject, ContextImpl& context, int
             if (member->usesContextParameters())
                 checkTerm(member->getOwner().getTypeName(), terms.back());
         }
-    bool wantsDerivatives =
-        derivatives != nullptr && std::any_of(terms.begin(), terms.end(),
-                                              [](const HelfrichTerm& term) { return term.wantsDerivatives != 0; });
+    bool wantsDerivatives = derivatives != nullptr &&
+        std::any_of(terms.begin(), terms.end(), [](const HelfrichTerm& term) { return term.wantsDerivatives != 0; });
     contributions.assign(terms.size(), HelfrichContribution());
     // Vec3 is three doubles and nothing else, but its operator[] returns copies.
     static_assert(sizeof(Vec3) == 3 * sizeof(double), "an array of Vec3 is an array of coordinates");
