@@ -36,6 +36,7 @@ def oblate_run(reduced_volume, softness, duration, time_step, subdivision, seed)
     ramp = round(0.2 * duration / time_step)
     rows = []
     failed = ""
+    shape = mesh.vertices
     try:
         if softness != SOFTEST:
             heights = vesicle.placement.heights
@@ -45,12 +46,13 @@ def oblate_run(reduced_volume, softness, duration, time_step, subdivision, seed)
         for _ in range(SAMPLES):
             simulation.step(round(0.8 * duration / time_step / SAMPLES))
             rows.append(list(vesicle.energies(simulation.context).values()))
+            state = simulation.context.getState(positions=True)
+            shape = state.getPositions(asNumpy=True).value_in_unit(unit.nanometer)
     except openmm.OpenMMException as error:
         failed = str(error)
-    state = simulation.context.getState(positions=True)
     return {
         "energies": np.array(rows).reshape(-1, 4),
-        "shape": state.getPositions(asNumpy=True).value_in_unit(unit.nanometer),
+        "shape": shape,
         "triangles": mesh.triangles,
         "failed": failed,
     }
@@ -163,10 +165,16 @@ def main():
     for softness in (softest, hard):
         for view in ("tilted", "cut"):
             for volume in volumes:
-                mesh = helfrich.Mesh(
-                    table[volume, softness]["shape"], table[volume, softness]["triangles"]
-                )
-                panels.append((f"ν = {volume:g}, Ξ = {softness:g}", along_axes(mesh), None))
+                result = table[volume, softness]
+                title = f"ν = {volume:g}, Ξ = {softness:g}"
+                try:
+                    mesh = helfrich.Mesh(result["shape"], result["triangles"])
+                except helfrich.MeshError:
+                    # It blew up; its start stands in for it.
+                    mesh = helfrich.Mesh.icosphere(common["subdivision"][0], 1000.0)
+                    mesh = mesh.oblate(min(volume, mesh.reduced_volume))
+                title += " (failed)" if result["failed"] else ""
+                panels.append((title, along_axes(mesh), None))
                 views.append(view)
     path = figure.picture(
         "", f"Last shapes at Ξ = {softest:g} (above) and {hard:g} (below), whole and cut in halves."
