@@ -32,10 +32,14 @@ def oblate_run(reduced_volume, softness, duration, time_step, subdivision, seed)
     integrator = openmm.LangevinMiddleIntegrator(300, 0.01, time_step)
     integrator.setRandomNumberSeed(seed)
     simulation = vesicle.simulation(integrator, "Reference")
+    if vesicle.energies(simulation.context)["heights"] > vesicle.epsilon * mesh.num_vertices:
+        # The flattest starts have triangles of nearly no height at their rim.
+        simulation.minimizeEnergy(maxIterations=200)
     simulation.context.setVelocitiesToTemperature(300, seed)
     ramp = round(0.2 * duration / time_step)
     rows = []
     failed = ""
+    shape = mesh.vertices
     try:
         if softness != SOFTEST:
             heights = vesicle.placement.heights
@@ -45,12 +49,13 @@ def oblate_run(reduced_volume, softness, duration, time_step, subdivision, seed)
         for _ in range(SAMPLES):
             simulation.step(round(0.8 * duration / time_step / SAMPLES))
             rows.append(list(vesicle.energies(simulation.context).values()))
+            state = simulation.context.getState(positions=True)
+            shape = state.getPositions(asNumpy=True).value_in_unit(unit.nanometer)
     except openmm.OpenMMException as error:
         failed = str(error)
-    state = simulation.context.getState(positions=True)
     return {
         "energies": np.array(rows).reshape(-1, 4),
-        "shape": state.getPositions(asNumpy=True).value_in_unit(unit.nanometer),
+        "shape": shape,
         "triangles": mesh.triangles,
         "failed": failed,
     }
@@ -70,10 +75,8 @@ def main():
     import openmmhelfrich as helfrich
 
     figure = Figure("fig07", "Fig. 7, SM 8", "Vesicles of reduced volume 1 to 0.1", __doc__)
-    volumes = figure.choose(
-        np.arange(10, 0, -1) / 10, [1.0, 0.6, 0.3], [1.0, 0.8, 0.6, 0.4, 0.2, 0.1]
-    )
-    softnesses = figure.choose([0.037, 0.15, 0.33, 0.59], [0.037, 0.59])
+    volumes = figure.choose(np.arange(10, 0, -1) / 10, [1.0, 0.6, 0.3], [1.0, 0.6, 0.3, 0.1])
+    softnesses = figure.choose([0.037, 0.15, 0.33, 0.59], [0.037, 0.59], [0.037, 0.59])
     duration = figure.choose(100_000.0, 10_000.0, 10_000.0)
     common = {
         "duration": [duration],
@@ -95,7 +98,8 @@ def main():
     )
     if figure.size == "medium":
         figure.reduced(
-            "Six reduced volumes, 10 ns in place of 100 ns, Δt = 0.5 ps in place of 0.2 ps."
+            "Four reduced volumes, two softnesses, 10 ns in place of 100 ns, Δt = 0.5 ps in place "
+            "of 0.2 ps."
         )
 
     stable = [key for key, result in table.items() if not result["failed"]]
@@ -164,10 +168,16 @@ def main():
     for softness in (softest, hard):
         for view in ("tilted", "cut"):
             for volume in volumes:
-                mesh = helfrich.Mesh(
-                    table[volume, softness]["shape"], table[volume, softness]["triangles"]
-                )
-                panels.append((f"ν = {volume:g}, Ξ = {softness:g}", along_axes(mesh), None))
+                result = table[volume, softness]
+                title = f"ν = {volume:g}, Ξ = {softness:g}"
+                try:
+                    mesh = helfrich.Mesh(result["shape"], result["triangles"])
+                except helfrich.MeshError:
+                    # It blew up; its start stands in for it.
+                    mesh = helfrich.Mesh.icosphere(common["subdivision"][0], 1000.0)
+                    mesh = mesh.oblate(min(volume, mesh.reduced_volume))
+                title += " (failed)" if result["failed"] else ""
+                panels.append((title, along_axes(mesh), None))
                 views.append(view)
     path = figure.picture(
         "", f"Last shapes at Ξ = {softest:g} (above) and {hard:g} (below), whole and cut in halves."

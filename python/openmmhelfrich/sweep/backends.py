@@ -8,6 +8,7 @@ import logging
 import os
 import pickle
 import queue
+import signal
 import sys
 import time
 from pathlib import Path
@@ -57,15 +58,15 @@ def on_dask(function, points, scheduler, workers):
         )
         if scheduler is None:
             count = workers or os.cpu_count() or 1
-            cluster = stack.enter_context(
-                distributed.LocalCluster(
+            with _deaf_to_interrupts():
+                cluster = distributed.LocalCluster(
                     n_workers=min(count, len(points)),
                     threads_per_worker=1,
                     processes=True,
-                    dashboard_address=None,
+                    dashboard_address=":0",
                     silence_logs=logging.CRITICAL,
                 )
-            )
+            stack.enter_context(cluster)
             client = stack.enter_context(distributed.Client(cluster))
             where = "this machine"
         else:
@@ -103,6 +104,21 @@ def on_dask(function, points, scheduler, workers):
         finally:
             with contextlib.suppress(Exception):
                 client.cancel(list(waiting), force=True)
+
+
+@contextlib.contextmanager
+def _deaf_to_interrupts():
+    """Processes started in here ignore Ctrl-C, which is for this process; it ends them in order."""
+    try:
+        before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    except ValueError:
+        # Only the main thread may do so, and only it gets interrupts.
+        yield
+        return
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def timed(function, point):
