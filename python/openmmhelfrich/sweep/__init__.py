@@ -1,0 +1,159 @@
+"""Sweeps over parameter points: parallel, cached, and able to go on after an interruption.
+
+A sweep maps a function over points, each of which is a dictionary of its keyword arguments::
+
+    from openmmhelfrich.sweep import grid, sweep
+
+    def energy(softness, seed):
+        ...
+        return {"bending": 1.0, "distances": np.zeros(3)}
+
+    points = grid(softness=(0.037, 0.15), seed=range(10))
+    results = sweep(energy, points, cache="results")
+
+The function must be pure: its result depends on its arguments alone, among which the seed of all
+its random numbers. Each result is stored as soon as it is there, so that a sweep that was
+interrupted computes only what is missing. The points are spread by Dask, over the cores of this
+machine or over the workers of any running scheduler.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterable, Mapping
+
+from tqdm import tqdm
+
+from .backends import SweepError, on_dask, on_this_process
+from .cache import Cache
+from .plain import plain_point, plain_result
+
+__all__ = ["Cache", "SweepError", "grid", "sweep"]
+
+
+def grid(**axes) -> list[dict]:
+    """All combinations of values, the last axis varying fastest.
+
+    Parameters
+    ----------
+    **axes : iterable
+        The values of each parameter.
+
+    Returns
+    -------
+    list of dict
+
+    Examples
+    --------
+    >>> grid(scheme=["Julicher", "GompperKroll"], seed=range(2))[1]
+    {'scheme': 'Julicher', 'seed': 1}
+    """
+    names = list(axes)
+    return [dict(zip(names, row, strict=True)) for row in itertools.product(*axes.values())]
+
+
+def sweep(
+    function: Callable[..., Mapping],
+    points: Iterable[Mapping],
+    *,
+    cache=None,
+    version: int = 1,
+    scheduler: str | None = None,
+    workers: int | None = None,
+    description: str | None = None,
+    progress: bool = True,
+) -> list[dict]:
+    """Call ``function(**point)`` for every point and return the results in the order of the points.
+
+    Parameters
+    ----------
+    function : callable
+        A pure function. It returns a dictionary of arrays, numbers, strings, booleans, None, and
+        lists of these. It is sent to the workers by value if it comes from a script, together with
+        the modules beside the script; only installed packages must be there already.
+    points : iterable of dict
+        Keyword arguments: numbers, strings, booleans, None, and lists of these.
+    cache : str, Path or Cache, optional
+        Folder in which results are stored and looked for, made where needed. Default: none.
+    version : int
+        Part of the key of the stored results: count it up when the function changes.
+    scheduler : str, optional
+        Address of a running Dask scheduler, such as ``tcp://node1:8786``. Its workers need not
+        see the cache folder. A worker that is lost costs the point that it was computing, which
+        another worker takes over. Default: a cluster of processes on this machine.
+    workers : int, optional
+        Number of processes on this machine, each with one thread; 0 computes in this process,
+        without Dask. Default: one for each core. Not with `scheduler`.
+    description : str, optional
+        Text beside the progress bar. Default: the name of the function.
+    progress : bool
+        Whether to show a progress bar on standard error.
+
+    Returns
+    -------
+    list of dict
+        One result for each point. Numbers and lists are as JSON gives them back, whether a result
+        was just computed or stored.
+
+    Raises
+    ------
+    TypeError
+        A point or a result that is no dictionary of the above.
+    ValueError
+        A negative number of workers, or workers beside a scheduler.
+    OSError
+        The scheduler does not answer, or the cache folder cannot be written to.
+    SweepError
+        The function raised an exception, or killed its worker several times, at some points; or
+        the scheduler has no workers or went away. What was finished is stored.
+    """
+    if workers is not None and (isinstance(workers, bool) or not int(workers) == workers >= 0):
+        raise ValueError(f"sweep: workers needs a whole number of 0 or more, got {workers!r}")
+    if scheduler is not None and workers is not None:
+        raise ValueError("sweep: give either a scheduler or a number of workers, not both")
+    points = [plain_point(point) for point in points]
+    name = function.__name__
+    store = cache if cache is None or isinstance(cache, Cache) else Cache(cache)
+    keys = [Cache.key(name, point, version) for point in points]
+    # Equal points are computed once.
+    results: dict[str, dict] = {}
+    missing: dict[str, dict] = {}
+    for key, point in zip(keys, points, strict=True):
+        if key not in results and key not in missing:
+            stored = store.load(name, key, point) if store else None
+            if stored is None:
+                missing[key] = point
+            else:
+                results[key] = stored
+    failures: dict[str, BaseException] = {}
+    bar = tqdm(
+        total=len(results) + len(missing),
+        initial=len(results),
+        desc=description or name,
+        disable=not progress,
+    )
+    with bar:
+        if missing:
+            compute = on_this_process if workers == 0 else on_dask
+            for key, outcome in compute(function, missing, scheduler, workers):
+                if isinstance(outcome, BaseException):
+                    failures[key] = outcome
+                else:
+                    results[key] = plain_result(outcome, name)
+                    if store:
+                        store.save(name, key, missing[key], results[key])
+                bar.update()
+    if failures:
+        raise _failed(name, missing, failures)
+    return [results[key] for key in keys]
+
+
+def _failed(name, points, failures):
+    lines = [f"  {points[key]}: {type(error).__name__}: {error}" for key, error in failures.items()]
+    shown = lines[:10] + ([f"  … and {len(lines) - 10} more"] if len(lines) > 10 else [])
+    error = SweepError(
+        f"sweep: {name} failed at {len(failures)} of {len(points)} points; the others are "
+        "stored:\n" + "\n".join(shown)
+    )
+    error.__cause__ = next(iter(failures.values()))
+    return error

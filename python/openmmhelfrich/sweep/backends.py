@@ -1,0 +1,158 @@
+"""Where the points of a sweep are computed: in this process, or by Dask."""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import logging
+import os
+import pickle
+import queue
+import sys
+from pathlib import Path
+
+from tqdm import tqdm
+
+__all__ = ["SweepError", "on_dask", "on_this_process"]
+
+# How long to wait for the first worker of a scheduler, and between looks at its health, s.
+_FIRST_WORKER = 60
+_HEALTH = 10
+
+
+class SweepError(RuntimeError):
+    """Some points of a sweep failed; the message names them. The others are stored."""
+
+
+def on_this_process(function, points, scheduler, workers):
+    """Compute in this process, and yield each key with the result or the exception."""
+    for key, point in points.items():
+        try:
+            yield key, function(**point)
+        except Exception as error:
+            yield key, error
+
+
+def on_dask(function, points, scheduler, workers):
+    """Compute on a Dask cluster, and yield each key with the result or the exception."""
+    try:
+        import dask
+        import distributed
+    except ImportError as error:
+        raise ImportError(
+            f"sweep: needs dask and distributed ({error}); install openmm-helfrich[paper], or "
+            "compute in this process with workers=0"
+        ) from error
+    payload = _by_value(function)
+    with contextlib.ExitStack() as stack:
+        # One thread for each worker, also in our own kernels: the points are the parallel part.
+        stack.enter_context(
+            dask.config.set(
+                {
+                    "distributed.nanny.pre-spawn-environ.RAYON_NUM_THREADS": 1,
+                    "distributed.comm.timeouts.connect": "15s",
+                }
+            )
+        )
+        if scheduler is None:
+            count = workers or os.cpu_count() or 1
+            cluster = stack.enter_context(
+                distributed.LocalCluster(
+                    n_workers=min(count, len(points)),
+                    threads_per_worker=1,
+                    processes=True,
+                    dashboard_address=None,
+                    silence_logs=logging.CRITICAL,
+                )
+            )
+            client = stack.enter_context(distributed.Client(cluster))
+            where = "this machine"
+        else:
+            client = stack.enter_context(distributed.Client(scheduler))
+            where = scheduler
+            try:
+                client.wait_for_workers(1, timeout=_FIRST_WORKER)
+            except (TimeoutError, distributed.TimeoutError):
+                raise SweepError(
+                    f"sweep: the scheduler at {where} got no worker within {_FIRST_WORKER} s; "
+                    f"start some with: dask worker {where} --nthreads 1"
+                ) from None
+        finished: queue.SimpleQueue = queue.SimpleQueue()
+        # Not pure in Dask's sense, or it might hand out what an older version has computed.
+        futures = {
+            client.submit(_call, payload, point, pure=False): key for key, point in points.items()
+        }
+        for future in futures:
+            future.add_done_callback(finished.put)
+        try:
+            waiting = dict(futures)
+            while waiting:
+                try:
+                    future = finished.get(timeout=_HEALTH)
+                except queue.Empty:
+                    _check_health(client, where)
+                    continue
+                key = waiting.pop(future)
+                if future.status == "cancelled" or future.status == "lost":
+                    raise SweepError(f"sweep: lost the scheduler of {where}; run again to go on")
+                error = future.exception()
+                yield key, future.result() if error is None else error
+                # The worker may forget the result now.
+                future.release()
+        finally:
+            with contextlib.suppress(Exception):
+                client.cancel(list(waiting), force=True)
+
+
+def _call(payload, point):
+    return _loaded(payload)(**point)
+
+
+@functools.lru_cache(maxsize=4)
+def _loaded(payload):
+    return pickle.loads(payload)
+
+
+def _check_health(client, where):
+    """Raise SweepError if nothing will ever come any more."""
+    if client.status != "running":
+        raise SweepError(f"sweep: lost the scheduler of {where}; run again to go on")
+    if not client.scheduler_info(n_workers=-1)["workers"]:
+        tqdm.write(f"sweep: {where} has no worker left; waiting for one", sys.stderr)
+
+
+def _by_value(function):
+    """The function as bytes; one of a script, or of a module beside it, travels as a whole.
+
+    Functions of packages stay references: packages are large, and installed where the workers are.
+    """
+    import cloudpickle
+
+    module = sys.modules.get(getattr(function, "__module__", None))
+    beside = _modules_beside(module)
+    for other in beside:
+        cloudpickle.register_pickle_by_value(other)
+    try:
+        return cloudpickle.dumps(function)
+    finally:
+        for other in beside:
+            cloudpickle.unregister_pickle_by_value(other)
+
+
+def _modules_beside(module):
+    """The module and its neighbours in the folder, if it belongs to no package; without a script.
+
+    What a script defines goes by value anyway.
+    """
+    file = getattr(module, "__file__", None)
+    if file is None or getattr(module, "__package__", None):
+        return []
+    folder = Path(file).resolve().parent
+    return [
+        other
+        for other in list(sys.modules.values())
+        if getattr(other, "__file__", None)
+        and not getattr(other, "__package__", None)
+        and other.__name__ not in ("__main__", "__mp_main__")
+        and Path(other.__file__).resolve().parent == folder
+    ]

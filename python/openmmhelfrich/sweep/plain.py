@@ -1,0 +1,54 @@
+"""Points and results in the form in which they are stored."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from .cache import RECORD
+
+__all__ = ["plain_point", "plain_result"]
+
+
+def plain_result(result, name):
+    """A result of the function `name`, checked, numbers as JSON keeps them; else TypeError."""
+    if not isinstance(result, Mapping):
+        raise TypeError(
+            f"sweep: {name} must return a dictionary, got {type(result).__name__}: {result!r}"
+        )
+    plain = {}
+    for entry, value in result.items():
+        if entry == RECORD:
+            raise TypeError(f"sweep: {name} must not call a result {RECORD!r}; take another name")
+        if isinstance(value, np.ndarray) and value.ndim > 0:
+            if value.dtype.hasobject:
+                raise TypeError(f"sweep: {name} returned objects in the array {entry!r}")
+            plain[str(entry)] = value
+        else:
+            plain[str(entry)] = _plain_value(value, f"sweep: {name}: result {entry!r}")
+    return plain
+
+
+def plain_point(point):
+    """A point, checked, with numbers and lists as JSON keeps them; else TypeError."""
+    where = "sweep: point"
+    if not isinstance(point, Mapping):
+        raise TypeError(f"{where} must be a dictionary, got {type(point).__name__}: {point!r}")
+    return {str(name): _plain_value(value, f"{where}: {name!r}") for name, value in point.items()}
+
+
+def _plain_value(value, where):
+    """The value as JSON keeps it."""
+    if isinstance(value, (np.generic, np.ndarray)):
+        value = value.tolist()
+    if value is None or isinstance(value, (bool, int, float, str)):
+        return value
+    if isinstance(value, (list, tuple, range)):
+        return [_plain_value(item, where) for item in value]
+    if isinstance(value, Mapping):
+        return {str(name): _plain_value(item, where) for name, item in value.items()}
+    raise TypeError(
+        f"{where} must be a number, a string, a boolean, None or a list of these, "
+        f"got {type(value).__name__}"
+    )
