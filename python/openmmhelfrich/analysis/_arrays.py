@@ -7,8 +7,7 @@ import openmm
 import openmm.app
 from openmm import unit
 
-
-# Frames are worked on in chunks that take about this many numbers, which bounds the memory and stays
+# Frames are worked on in chunks of about this many numbers, which bounds the memory and stays
 # close to the processor.
 _CHUNK = 1 << 20
 

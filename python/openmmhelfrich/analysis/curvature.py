@@ -1,29 +1,83 @@
-"""Mean curvature of the vertices of a triangulated surface."""
+"""Areas, normals and curvatures of the vertices of a triangulated surface."""
+
+from typing import NamedTuple
 
 import numpy as np
 
-from ._arrays import dot, frames_of, gather_sum, triangles_of
+from ._arrays import dot, gather_sum, over_frames
+from .elements import edges_of
+
+SCHEMES = (
+    "Julicher",
+    "GompperKroll",
+    "GompperKrollBarycentric",
+    "JulicherVoronoi",
+    "Espriu",
+)
+"""Names of the schemes of `BendingForce`, each at the place that its constant names."""
 
 
-def mean_curvature(vertices, triangles):
-    """Mean curvature at every vertex after Jülicher, H_i = J_i / a_i.
+class VertexQuantities(NamedTuple):
+    """What `vertex_quantities` returns, shape (num_vertices, …) each; frames are an axis before."""
 
-    J_i = Σ_j l_ij φ_ij / 2 (B11) and a_i = Σ_t a_t / 3 (B12), summed over the edges and the
-    triangles at vertex i: l_ij is the length of an edge and φ_ij the angle between the normals of
-    its two triangles, positive at a convex edge. H is the *sum* of the two principal curvatures,
-    2/R on a sphere of radius R. Source: doi:10.1103/PhysRevE.108.015301.
+    barycentric_area: np.ndarray
+    """a_B = Σ_t a_t / 3 (B12), nm²."""
+    voronoi_area: np.ndarray
+    """a_V = Σ_j l_ij² (cot θ1 + cot θ2) / 8 (B8), nm²; 0 or negative where triangles are obtuse."""
+    normal: np.ndarray
+    """n = Σ_t θ_t n_t / |…| (B9), a unit vector outward, shape (…, 3)."""
+    julicher: np.ndarray
+    """J = Σ_j l_ij φ_ij / 2 (B11), nm; positive where the surface is convex."""
+    cotangent: np.ndarray
+    """S = Σ_j (cot θ1 + cot θ2)(r_i − r_j) / 2 (B7), nm, shape (…, 3)."""
+    umbrella: np.ndarray
+    """Σ_j (r_i − r_j) / √3, Espriu's vector, nm, shape (…, 3); S if triangles are equilateral."""
+
+    def mean_curvature(self, scheme="Julicher"):
+        """Mean curvature H at every vertex by a scheme, see `mean_curvature`, 1/nm."""
+        name = _scheme(scheme)
+        area = self.voronoi_area if name in _VORONOI else self.barycentric_area
+        if name in ("Julicher", "JulicherVoronoi"):
+            return self.julicher / area
+        vector = self.umbrella if name == "Espriu" else self.cotangent
+        return dot(self.normal, vector) / area
+
+
+_VORONOI = ("GompperKroll", "JulicherVoronoi")
+
+
+def mean_curvature(vertices, triangles, scheme="Julicher"):
+    """Mean curvature H of every vertex, by one of the schemes of `BendingForce`.
+
+    ========================= ===================== ======
+    scheme                    H
+    ========================= ===================== ======
+    "Julicher"                J / a_B               (B13)
+    "GompperKroll"            n · S / a_V           (B10)
+    "GompperKrollBarycentric" n · S / a_B           (B15)
+    "JulicherVoronoi"         J / a_V               (B16)
+    "Espriu"                  n · Σ(r_i − r_j)/√3a_B
+    ========================= ===================== ======
+
+    H is the *sum* of the two principal curvatures, 2/R on a sphere of radius R, and positive where
+    the surface bulges outward. `VertexQuantities` has the symbols. The energies of the schemes with
+    vectors have S², which is (n · S)² but for the part of S along the surface. Source:
+    doi:10.1103/PhysRevE.108.015301.
 
     Parameters
     ----------
-    vertices : array_like or Quantity
+    vertices : array_like, Quantity, Mesh, State, Context, Simulation, Trajectory or path
         Shape (num_vertices, 3) for one frame or (num_frames, num_vertices, 3), nm.
-    triangles : array_like of int
+    triangles : array_like of int or Mesh
         Shape (num_triangles, 3), counter-clockwise seen from outside, a closed surface.
+    scheme : str or int
+        A name of the table, or a constant of `BendingForce`.
 
     Returns
     -------
     ndarray
-        H, shape (num_vertices,) or (num_frames, num_vertices), 1/nm.
+        H, shape (num_vertices,) or (num_frames, num_vertices), 1/nm. Voronoi areas can be 0, where
+        H is infinite.
 
     Raises
     ------
@@ -31,19 +85,49 @@ def mean_curvature(vertices, triangles):
         A Quantity that is no length, or indices that are no integers.
     ValueError
         A wrong shape, an index out of range, a coordinate that is not finite, a vertex without a
-        triangle, or an edge that does not have two triangles of the same orientation.
+        triangle, an edge that does not have two triangles of the same orientation, or another
+        scheme.
     """
-    frames, single = frames_of(vertices)
-    num_vertices = frames.shape[1]
-    faces = triangles_of(triangles, num_vertices)
-    unused = np.setdiff1d(np.arange(num_vertices), faces)
-    if len(unused):
-        raise ValueError(f"triangles: vertex {unused[0]} belongs to no triangle")
-    start, end, left, right = _edges(faces)
+    _scheme(scheme)
+    return vertex_quantities(vertices, triangles).mean_curvature(scheme)
 
+
+def vertex_quantities(vertices, triangles) -> VertexQuantities:
+    """Areas, normals and integrated curvatures of all vertices.
+
+    Parameters
+    ----------
+    vertices, triangles
+        As for `mean_curvature`.
+
+    Returns
+    -------
+    VertexQuantities
+        The fields document the formulae.
+
+    Raises
+    ------
+    TypeError, ValueError
+        As for `mean_curvature`.
+    """
+
+    def work(frames, faces, first):
+        num_vertices = frames.shape[1]
+        unused = np.setdiff1d(np.arange(num_vertices), faces)
+        if len(unused):
+            raise ValueError(f"triangles: vertex {unused[0]} belongs to no triangle")
+        return _quantities(frames, faces, num_vertices)
+
+    return VertexQuantities(*over_frames(work, vertices, triangles, lambda n, t: 60 * t))
+
+
+def _quantities(frames, faces, num_vertices):
+    start, end, left, right = edges_of(faces)
     corners = frames[:, faces]
     normals = np.cross(corners[:, :, 1] - corners[:, :, 0], corners[:, :, 2] - corners[:, :, 0])
-    areas = np.linalg.norm(normals, axis=-1) / 2
+    doubled = np.linalg.norm(normals, axis=-1)
+    area = _vertex_sum(np.repeat(doubled / 6, 3, axis=1), faces.ravel(), num_vertices)
+
     edges = frames[:, end] - frames[:, start]
     lengths = np.linalg.norm(edges, axis=-1)
     # l · sin φ and l · cos φ of unnormalised normals: atan2 needs neither a division nor a clamp.
@@ -51,50 +135,43 @@ def mean_curvature(vertices, triangles):
         dot(edges, np.cross(normals[:, left], normals[:, right])),
         lengths * dot(normals[:, left], normals[:, right]),
     )
-    curvature = lengths * angles / 2
-    integrated = gather_sum(
-        np.concatenate([curvature, curvature], axis=1),
-        np.concatenate([start, end]),
-        num_vertices,
+    both = np.concatenate([start, end])
+    julicher = _vertex_sum(np.tile(lengths * angles / 2, 2), both, num_vertices)
+    umbrella = _vertex_sum(np.concatenate([-edges, edges], axis=1), both, num_vertices)
+
+    # Per corner of a triangle: its angle, and the share of the opposite side in S and in a_V.
+    voronoi, cotangent, normal = 0, 0, 0
+    for corner in range(3):
+        here, b, c = (faces[:, (corner + k) % 3] for k in range(3))
+        u, v = frames[:, b] - frames[:, here], frames[:, c] - frames[:, here]
+        cosine = dot(u, v)
+        side = frames[:, b] - frames[:, c]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            cot = cosine / doubled
+            weighted = (np.arctan2(doubled, cosine) / doubled)[..., np.newaxis] * normals
+        ends = np.concatenate([b, c])
+        voronoi += _vertex_sum(np.tile(dot(side, side) * cot / 8, 2), ends, num_vertices)
+        pull = cot[..., np.newaxis] * side / 2
+        cotangent += _vertex_sum(np.concatenate([pull, -pull], axis=1), ends, num_vertices)
+        normal += _vertex_sum(weighted, here, num_vertices)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
+    return area, voronoi, normal, julicher, cotangent, umbrella / np.sqrt(3)
+
+
+def _vertex_sum(values, owners, num_vertices):
+    """`gather_sum` of scalars, or of vectors component by component."""
+    if values.ndim == 2:
+        return gather_sum(values, owners, num_vertices)
+    return np.stack(
+        [gather_sum(values[..., axis], owners, num_vertices) for axis in range(3)], axis=-1
     )
-    area = gather_sum(np.repeat(areas / 3, 3, axis=1), faces.ravel(), num_vertices)
-    result = integrated / area
-    return result[0] if single else result
 
 
-def _edges(faces):
-    """Edges of a closed surface, each once.
-
-    Returns
-    -------
-    start, end : ndarray of int
-        The two vertices of each edge, in the order in which its left triangle names them.
-    left, right : ndarray of int
-        The triangle that has the edge start → end, and the one that has it end → start.
-    """
-    start = faces.ravel()
-    end = np.roll(faces, -1, axis=1).ravel()
-    owner = np.repeat(np.arange(len(faces)), 3)
-    num_vertices = faces.max() + 1
-    forward = start * num_vertices + end
-    backward = end * num_vertices + start
-    order = np.argsort(forward, kind="stable")
-    keys = forward[order]
-    repeated = np.flatnonzero(keys[1:] == keys[:-1])
-    if len(repeated):
-        edge = order[repeated[0]]
-        raise ValueError(
-            f"triangles: two triangles run along the edge {start[edge]} → {end[edge]} in the same "
-            "direction, so the surface is not oriented or not a manifold"
-        )
-    place = np.minimum(np.searchsorted(keys, backward), len(keys) - 1)
-    missing = np.flatnonzero(keys[place] != backward)
-    if len(missing):
-        edge = missing[0]
-        raise ValueError(
-            f"triangles: the edge {start[edge]} – {end[edge]} has one triangle only, so the "
-            "surface is not closed"
-        )
-    twin = order[place]
-    once = start < end
-    return start[once], end[once], owner[once], owner[twin[once]]
+def _scheme(scheme):
+    """The name of a scheme given by name or constant."""
+    if isinstance(scheme, str) and scheme in SCHEMES:
+        return scheme
+    if not isinstance(scheme, (str, bool)) and scheme in range(len(SCHEMES)):
+        return SCHEMES[scheme]
+    raise ValueError(f"scheme: need one of {SCHEMES} or a constant of BendingForce, got {scheme!r}")

@@ -4,6 +4,21 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .correlation import autocorrelation_time
+
+
+class Estimate(NamedTuple):
+    """A mean with its standard error, as `mean_with_error` returns it."""
+
+    mean: float
+    """Mean of all values."""
+    error: float
+    """Standard error of the mean."""
+    correlation_time: float
+    """Integrated autocorrelation time τ in steps; ½ if values are independent."""
+    effective_samples: float
+    """Number of independent values that would give the same error, n / 2τ."""
+
 
 class Spectrum(NamedTuple):
     """Mean square amplitudes per l, as `spectrum` returns them; arrays of equal length."""
@@ -81,35 +96,105 @@ def spectrum(amplitudes):
     return Spectrum(modes, mean, error, time)
 
 
-def autocorrelation_time(series):
-    """Integrated autocorrelation time τ = ½ + Σ_{k>0} ρ(k), in steps of the series.
+def mean_with_error(series) -> Estimate:
+    """Mean of a correlated series with its standard error, √(2 τ σ² / n).
 
-    A mean over n values has the variance σ² · 2τ/n. The sum ends at the first lag k ≥ 5 τ(k),
-    where more terms would add noise only (Sokal's window, doi:10.1007/978-1-4899-0319-8_6).
+    τ is the integrated autocorrelation time, see `autocorrelation_time`. The variance σ² is that
+    about the known mean, σ²_n / (1 − 2τ/n) with σ²_n that about the mean of the series. For a
+    check by a method without τ see `blocking`.
 
     Parameters
     ----------
     series : array_like
-        Shape (n,), or (n, k) for k equivalent series, whose mean and autocorrelation are taken
-        over all of them together: in a run that is not long, the mean of one series alone
-        hides its slow part.
+        Shape (n,), or (n, k) for k equivalent series, at equal intervals of time; n of 2 or more.
 
     Returns
     -------
-    float
-        τ, at least ½; ½ for a constant.
+    Estimate
+        Mean, error, correlation time, and effective number of samples.
+
+    Raises
+    ------
+    ValueError
+        Another shape, fewer than two values, or a value that is not finite.
     """
+    series = _series(series)
+    time = autocorrelation_time(series)
+    samples = series.size / (2 * time)
+    # With a single effective sample the variance about the mean says nothing.
+    lost = min(1 / samples, 0.5)
+    variance = series.var() / (1 - lost)
+    return Estimate(float(series.mean()), float(np.sqrt(variance / samples)), time, float(samples))
+
+
+class Blocking(NamedTuple):
+    """Errors of a mean by block length, as `blocking` returns them."""
+
+    length: np.ndarray
+    """Block lengths 1, 2, 4, … in steps."""
+    error: np.ndarray
+    """Standard error of the mean from blocks of this length."""
+    uncertainty: np.ndarray
+    """Standard error of that error, error / √(2 (blocks − 1))."""
+    best: int
+    """Index of the shortest length whose blocks are long against the correlation."""
+
+    @property
+    def mean_error(self) -> float:
+        """The error at the best length."""
+        return float(self.error[self.best])
+
+
+def blocking(series) -> Blocking:
+    """Standard error of a mean by blocking: neighbours are averaged in pairs, again and again.
+
+    As soon as blocks are longer than the memory of the series they are independent, and the
+    estimate √(σ² / (blocks − 1)) stops growing: Flyvbjerg and Petersen, doi:10.1063/1.457480. The
+    best length B is the shortest with B³ > 2 n (ε_B / ε_1)⁴, ε the errors, see Lee et al.,
+    doi:10.1103/PhysRevE.83.066706; the longest, if none is: then the run is too short for its
+    error.
+
+    Parameters
+    ----------
+    series : array_like
+        Shape (n,), or (n, k) for k equivalent series, whose blocks are counted together; n of 2 or
+        more. What is left over at the end of an odd number of blocks is dropped.
+
+    Returns
+    -------
+    Blocking
+        Lengths, errors, their uncertainty, and the index of the best.
+
+    Raises
+    ------
+    ValueError
+        Another shape, fewer than two values, or a value that is not finite.
+    """
+    blocks = _series(series)
+    n = len(blocks)
+    mean = blocks.mean()
+    lengths, errors, counts = [], [], []
+    length = 1
+    while len(blocks) >= 2:
+        count = blocks.size
+        lengths.append(length)
+        counts.append(count)
+        errors.append(np.sqrt(np.mean((blocks - mean) ** 2) / (count - 1)))
+        even = len(blocks) // 2 * 2
+        blocks = (blocks[0:even:2] + blocks[1:even:2]) / 2
+        length *= 2
+    lengths, errors, counts = np.array(lengths), np.array(errors), np.array(counts)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        long_enough = lengths.astype(float) ** 3 > 2 * n * (errors / errors[0]) ** 4
+    best = int(np.argmax(long_enough)) if long_enough.any() else len(lengths) - 1
+    return Blocking(lengths, errors, errors / np.sqrt(2 * (counts - 1)), best)
+
+
+def _series(series):
+    """Shape (n, k) with two rows or more of finite numbers."""
     series = np.asarray(series, dtype=float)
-    series = series.reshape(len(series), -1) - series.mean()
-    n = len(series)
-    # Twice the length in zeros keeps the transform's circular sum from wrapping around.
-    transform = np.fft.rfft(series, n=2 * n, axis=0)
-    covariance = np.fft.irfft(abs(transform) ** 2, axis=0)[:n].sum(axis=1)
-    if not covariance[0] > 0:
-        return 0.5
-    # The mean over the pairs that a lag has; dividing by n for all would bias τ downward.
-    correlation = covariance / covariance[0] * n / np.arange(n, 0, -1)
-    time = np.cumsum(correlation) - 0.5
-    ended = np.flatnonzero(np.arange(n) >= 5 * time)
-    # A series shorter than its memory never meets the window: take the largest partial sum.
-    return float(max(0.5, time[ended[0]] if len(ended) else time.max()))
+    if series.ndim not in (1, 2) or len(series) < 2 or series.size == 0:
+        raise ValueError(f"series: need shape (n,) or (n, k) with n ≥ 2, got {series.shape}")
+    if not np.isfinite(series).all():
+        raise ValueError(f"series: value {np.argwhere(~np.isfinite(series))[0]} is not finite")
+    return series.reshape(len(series), -1)

@@ -1,0 +1,251 @@
+"""Elastic constants and damping rates from measured spectra and autocorrelations."""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import curve_fit, least_squares
+
+from . import theory
+from .correlation import autocorrelation
+
+# Above this γ/ω an autocorrelation function is an exponential for all that can be seen.
+_MOST_OVERDAMPED = 100
+
+
+class ElasticFit(NamedTuple):
+    """What `fit_young` finds."""
+
+    young_over_kT: float
+    """Two-dimensional Young modulus Y over kBT, 1/nm²; noise can make it negative."""
+    young_error: float
+    """Its standard error."""
+    kappa_over_kT: float
+    """Bending rigidity κ over kBT, as given or as fitted."""
+    kappa_error: float
+    """Its standard error, 0 if it was given."""
+    reduced_chi_squared: float
+    """Σ of the squared deviations in error bars, over the degrees of freedom; about 1 if (A18)
+    describes the spectrum. NaN without a degree of freedom."""
+
+
+class DampingFit(NamedTuple):
+    """What `fit_damping` finds."""
+
+    friction: float
+    """Damping rate γ, 1/ps."""
+    friction_error: float
+    """Its standard error."""
+    frequency: float
+    """Angular frequency ω of the undamped mode, rad/ps, as given or as fitted."""
+    frequency_error: float
+    """Its standard error, 0 if it was given."""
+
+
+def fit_young(spectrum, radius, kappa_over_kT=None, lmin=2, lmax=None) -> ElasticFit:
+    """Shear modulus of a vesicle from its spectrum, by (A18).
+
+    ln ⟨|u_lm|²⟩ = −ln [κ (l+2)(l+1) l (l−1) + Y r0² · 3 (l² + l − 2) / (3 (l² + l) − 2)]
+
+    (kBT = 1) is fitted to l = lmin … lmax, weighted with the relative errors of the spectrum: what
+    a run fixes is the relative error of a mean square. Errors are those of a linearised fit.
+
+    Parameters
+    ----------
+    spectrum : Spectrum
+        From `analysis.spectrum`, with positive means and errors in the range.
+    radius : float
+        r0, nm.
+    kappa_over_kT : float, optional
+        κ over kBT. Default: fitted along.
+    lmin, lmax : int, optional
+        Range of the fit, 2 or more. Default: all from 2. Modes above about √N / 2 are not those of
+        a continuum.
+
+    Returns
+    -------
+    ElasticFit
+        Y and κ with errors, and how good the fit is.
+
+    Raises
+    ------
+    ValueError
+        Fewer modes than constants, or a mean or an error that is not positive.
+    RuntimeError
+        The fit does not converge.
+    """
+    if not radius > 0:
+        raise ValueError(f"radius: need a positive number, got {radius}")
+    if kappa_over_kT is not None and not kappa_over_kT > 0:
+        raise ValueError(f"kappa_over_kT: need a positive number, got {kappa_over_kT}")
+    l = np.asarray(spectrum.l)
+    chosen = (l >= max(2, lmin)) & (l <= (l.max() if lmax is None else lmax))
+    l, mean, error = l[chosen], spectrum.mean[chosen], spectrum.error[chosen]
+    constants = 1 if kappa_over_kT is not None else 2
+    if len(l) < constants:
+        raise ValueError(f"spectrum: {len(l)} modes in the range do not fix {constants} constants")
+    if not ((mean > 0) & (error > 0)).all():
+        bad = l[~((mean > 0) & (error > 0))][0]
+        raise ValueError(f"spectrum: the mean and the error of l = {bad} must be positive")
+
+    bending = theory.stiffness(l)
+    n = l * (l + 1.0)
+    shear = 3 * (n - 2) / (3 * n - 2)
+    relative = error / mean
+    # The linear problem 1/⟨|u|²⟩ = κ s + Y r0² g gives the start.
+    scale = 1 / (relative / mean)
+    if constants == 1:
+        rest = (1 / mean - kappa_over_kT * bending) * scale
+        start = [shear * scale @ rest / np.sum((shear * scale) ** 2)]
+        floor = -kappa_over_kT * np.min(bending / shear)
+        start = [max(start[0], floor / 2)]
+
+        def model(_, modulus):
+            return -np.log(kappa_over_kT * bending + modulus * shear)
+
+        bounds = ([floor * (1 - 1e-9)], [np.inf])
+    else:
+        columns = np.stack([bending, shear], axis=1)
+        first = np.linalg.lstsq(columns * scale[:, None], scale / mean, rcond=None)[0]
+        kappa = max(first[0], 1e-3 / np.median(mean * bending))
+        # In terms of κ and Y r0² / κ the stiffness stays positive within fixed bounds.
+        floor = -np.min(bending / shear)
+        start = [np.log(kappa), max(first[1] / kappa, floor / 2)]
+
+        def model(_, log_kappa, ratio):
+            return -log_kappa - np.log(bending + ratio * shear)
+
+        bounds = ([-np.inf, floor * (1 - 1e-9)], [np.inf, np.inf])
+    found, covariance = curve_fit(
+        model,
+        l,
+        np.log(mean),
+        p0=start,
+        sigma=relative,
+        absolute_sigma=True,
+        bounds=bounds,
+        x_scale=[1.0] * (constants - 1) + [max(abs(start[-1]), 1.0)],
+    )
+    deviations = (np.log(mean) - model(l, *found)) / relative
+    freedom = len(l) - constants
+    quality = float(deviations @ deviations / freedom) if freedom else float("nan")
+    if constants == 1:
+        modulus, modulus_error = found[0], np.sqrt(covariance[0, 0])
+        kappa, kappa_error = kappa_over_kT, 0.0
+    else:
+        kappa = np.exp(found[0])
+        kappa_error = kappa * np.sqrt(covariance[0, 0])
+        modulus = kappa * found[1]
+        gradient = np.array([modulus, kappa])
+        modulus_error = np.sqrt(gradient @ covariance @ gradient)
+    area = radius**2
+    return ElasticFit(
+        float(modulus / area),
+        float(modulus_error / area),
+        float(kappa),
+        float(kappa_error),
+        quality,
+    )
+
+
+def fit_damping(series, interval, lags=None, frequency=None) -> DampingFit:
+    """Damping rate γ and frequency ω of a mode from its autocorrelation function.
+
+    `theory.langevin_autocorrelation` (A35–A37) is fitted to the unbiased autocorrelation, averaged
+    over equivalent series. Errors are those of a jackknife that leaves out one series at a time, so
+    they know about everything in which the series differ; a single series is cut in eight parts
+    instead, whose autocorrelations are compared. Where γ ≫ 2ω the function depends on ω²/γ alone:
+    then give the frequency.
+
+    Parameters
+    ----------
+    series : array_like
+        Shape (n,), or (n, k) for k equivalent series, such as ``amplitudes[:, l**2 : (l + 1)**2]``,
+        of zero mean, at equal intervals of time.
+    interval : float
+        Time between frames, ps.
+    lags : int, optional
+        Lags that are fitted. Default: n // 10, at least 10. Take one or two memories: what follows
+        is noise.
+    frequency : float, optional
+        ω, rad/ps, if it is known. Default: fitted along.
+
+    Returns
+    -------
+    DampingFit
+        γ and ω with errors.
+
+    Raises
+    ------
+    ValueError
+        Too few frames or a number out of range.
+    RuntimeError
+        The fit does not converge, or the mode is too overdamped to tell γ without the frequency.
+    """
+    series = np.asarray(series, dtype=float)
+    if series.ndim not in (1, 2) or len(series) < 4:
+        raise ValueError(f"series: need shape (n,) or (n, k) with n ≥ 4, got {series.shape}")
+    if not interval > 0:
+        raise ValueError(f"interval: need a positive number, got {interval}")
+    if frequency is not None and not frequency > 0:
+        raise ValueError(f"frequency: need a positive number, got {frequency}")
+    if lags is None:
+        lags = min(len(series), max(10, len(series) // 10))
+    if series.ndim == 1 or series.shape[1] == 1:
+        length = len(series) // 8
+        if length < lags:
+            raise ValueError(
+                f"series: one series of {len(series)} frames has no eight parts of {lags} lags for "
+                "an error; take fewer lags, or several equivalent series"
+            )
+        series = series.reshape(-1)[: 8 * length].reshape(8, length).T
+    functions = autocorrelation(series, lags, normalise=False)
+    if not (functions[0] > 0).all():
+        raise ValueError(f"series: series {np.argmin(functions[0])} is zero throughout")
+    times = interval * np.arange(lags)
+    total = functions.sum(axis=1)
+    best = _damped(times, total / total[0], frequency)
+    if frequency is None and best[0] > _MOST_OVERDAMPED * best[1]:
+        raise RuntimeError(
+            "fit_damping: the mode is overdamped, and of its two rates only "
+            f"ω²/γ = {best[1] ** 2 / best[0]:.4g} /ps "
+            "can be told from its autocorrelation; give the frequency"
+        )
+    count = functions.shape[1]
+    without = np.array(
+        [
+            _damped(times, part / part[0], frequency, best)
+            for part in (total[:, np.newaxis] - functions).T
+        ]
+    )
+    error = np.sqrt((count - 1) * without.var(axis=0))
+    return DampingFit(float(best[0]), float(error[0]), float(best[1]), float(error[1]))
+
+
+def _damped(times, correlation, frequency, start=None):
+    """γ and ω that describe an autocorrelation function best, ω fixed if it is given."""
+    if start is None:
+        # The scale of time is unknown over decades, so a coarse search comes before the fit.
+        trial = np.pi / times[-1] * np.geomspace(0.02, len(times), 60)
+        ratios = np.geomspace(0.01, 100, 25)
+        omega, ratio = np.meshgrid(trial if frequency is None else [frequency], ratios)
+        omega, gamma = omega.ravel(), (omega * ratio).ravel()
+        curves = theory.langevin_autocorrelation(
+            times[:, np.newaxis], omega[np.newaxis], gamma[np.newaxis]
+        )
+        place = np.argmin(((curves - correlation[:, np.newaxis]) ** 2).sum(axis=0))
+        start = gamma[place], omega[place]
+
+    def unpack(logarithms):
+        gamma = np.exp(logarithms[0])
+        return gamma, np.exp(logarithms[1]) if frequency is None else frequency
+
+    def deviation(logarithms):
+        gamma, omega = unpack(logarithms)
+        return theory.langevin_autocorrelation(times, omega, gamma) - correlation
+
+    found = least_squares(
+        deviation, np.log(start if frequency is None else start[:1]), method="trf", max_nfev=500
+    )
+    if not found.success:
+        raise RuntimeError(f"fit_damping: the fit does not converge ({found.message})")
+    return unpack(found.x)

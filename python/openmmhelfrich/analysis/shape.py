@@ -1,0 +1,133 @@
+"""Measures of the shape of a vesicle as a whole."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ._arrays import dot, over_frames
+
+
+class Shape(NamedTuple):
+    """What `shape` returns; arrays of shape (num_frames,), or scalars for one frame."""
+
+    area: np.ndarray
+    """Area A of the triangles, nm²."""
+    volume: np.ndarray
+    """Volume V within them, nm³."""
+    reduced_volume: np.ndarray
+    """6 √π V / A^{3/2}, 1 for a sphere."""
+    radius_of_gyration: np.ndarray
+    """√(λ1 + λ2 + λ3) of the gyration tensor's eigenvalues, nm."""
+    asphericity: np.ndarray
+    """λ3 − (λ1 + λ2)/2, nm², λ3 the largest."""
+    acylindricity: np.ndarray
+    """λ2 − λ1, nm²."""
+    anisotropy: np.ndarray
+    """Relative shape anisotropy κ², 0 for a sphere, ¼ for a flat disk, 1 for a rod."""
+
+
+def shape(vertices, triangles) -> Shape:
+    """Area, volume, reduced volume and the measures of the gyration tensor.
+
+    With the eigenvalues λ1 ≤ λ2 ≤ λ3 of the tensor of `gyration_tensor`: R_g² = λ1 + λ2 + λ3,
+    asphericity b = λ3 − (λ1 + λ2)/2, acylindricity c = λ2 − λ1, and the relative shape anisotropy
+    κ² = (b² + ¾ c²) / R_g⁴. Theodorou and Suter, doi:10.1021/ma00148a028.
+
+    Parameters
+    ----------
+    vertices : array_like, Quantity, Mesh, State, Context, Simulation, Trajectory or path
+        Shape (num_vertices, 3) for one frame or (num_frames, num_vertices, 3), nm.
+    triangles : array_like of int or Mesh
+        Shape (num_triangles, 3), counter-clockwise seen from outside, a closed surface.
+
+    Returns
+    -------
+    Shape
+        The measures, one value for each frame.
+
+    Raises
+    ------
+    TypeError
+        A Quantity that is no length, or indices that are no integers.
+    ValueError
+        A wrong shape, an index out of range, or a coordinate that is not finite.
+    """
+
+    def work(frames, faces, first):
+        positions = frames - frames.mean(axis=1, keepdims=True)
+        a, b, c = (positions[:, faces[:, corner]] for corner in range(3))
+        normals = np.cross(b - a, c - a)
+        area = np.linalg.norm(normals, axis=2).sum(axis=1) / 2
+        # A sum of a·(b × c) about the mean of the vertices, where rounding is least.
+        volume = dot(a, np.cross(b, c)).sum(axis=1) / 6
+        small, middle, large = np.linalg.eigvalsh(_tensor(positions)).T
+        square = small + middle + large
+        asphericity = large - (small + middle) / 2
+        acylindricity = middle - small
+        return (
+            area,
+            volume,
+            6 * np.sqrt(np.pi) * volume / area**1.5,
+            np.sqrt(square),
+            asphericity,
+            acylindricity,
+            (asphericity**2 + 0.75 * acylindricity**2) / square**2,
+        )
+
+    return Shape(*over_frames(work, vertices, triangles, lambda n, t: 20 * t))
+
+
+def gyration_tensor(vertices):
+    """Gyration tensor of the vertices, S = Σ_i (x_i − x̄)(x_i − x̄)ᵀ / N.
+
+    Parameters
+    ----------
+    vertices : array_like, Quantity, Mesh, State, Context, Simulation, Trajectory or path
+        Shape (num_vertices, 3) for one frame or (num_frames, num_vertices, 3), nm.
+
+    Returns
+    -------
+    ndarray
+        Shape (3, 3) or (num_frames, 3, 3), nm². Its trace is the square of the radius of gyration.
+
+    Raises
+    ------
+    TypeError
+        A Quantity that is no length.
+    ValueError
+        A wrong shape, or a coordinate that is not finite.
+    """
+
+    def work(frames, faces, first):
+        return _tensor(frames - frames.mean(axis=1, keepdims=True))
+
+    return over_frames(work, vertices)
+
+
+def area_excess(vertices, triangles):
+    """Area in excess of the sphere of equal volume, A / 4πR_V² − 1 with R_V = (3V/4π)^⅓.
+
+    `theory.area_excess` has its mean for thermal undulations. In terms of the reduced volume v it
+    is v^{−2/3} − 1. Flat triangles have an excess of their own, 0.06 % for 1002 vertices
+    on a sphere.
+
+    Parameters
+    ----------
+    vertices, triangles
+        As for `shape`.
+
+    Returns
+    -------
+    float or ndarray
+        The excess of each frame, without unit.
+
+    Raises
+    ------
+    TypeError, ValueError
+        As for `shape`.
+    """
+    return shape(vertices, triangles).reduced_volume ** (-2 / 3) - 1
+
+
+def _tensor(positions):
+    return np.matmul(positions.transpose(0, 2, 1), positions) / positions.shape[1]

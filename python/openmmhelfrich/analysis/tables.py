@@ -1,0 +1,229 @@
+"""Tables that grow row by row during a run, as CSV or HDF5, and their readers."""
+
+from __future__ import annotations
+
+import csv
+import re
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+__all__ = ["Modes", "open_table", "read_modes", "read_table"]
+
+_HDF5 = (".h5", ".hdf5")
+_MODE = re.compile(r"u_(\d+)_(-?\d+)")
+
+
+class Modes(NamedTuple):
+    """Amplitudes over time, as `read_modes` returns them."""
+
+    step: np.ndarray
+    """Step of the simulation, int, shape (num_frames,)."""
+    time: np.ndarray
+    """Time, ps, shape (num_frames,)."""
+    amplitudes: np.ndarray
+    """u_lm at index l² + l + m, shape (num_frames, (lmax+1)²)."""
+
+    @property
+    def interval(self) -> float:
+        """Time between frames, ps; ValueError if it varies or there is one frame only."""
+        gaps = np.diff(self.time)
+        if len(gaps) == 0 or not np.allclose(gaps, gaps[0], rtol=1e-6, atol=0):
+            raise ValueError("Modes: the frames are not at equal intervals of time")
+        return float(gaps.mean())
+
+
+def read_modes(path) -> Modes:
+    """Read the file of a `ModeReporter`.
+
+    Parameters
+    ----------
+    path : str or Path
+        CSV, or HDF5 (``.h5``, ``.hdf5``).
+
+    Returns
+    -------
+    Modes
+        Steps, times and amplitudes.
+
+    Raises
+    ------
+    FileNotFoundError
+        There is no such file.
+    ImportError
+        An HDF5 file without h5py.
+    ValueError
+        The file is none of a `ModeReporter`, or broken.
+    """
+    table = read_table(path)
+    found = {
+        (int(match[1]), int(match[2])): column
+        for name, column in table.items()
+        if (match := _MODE.fullmatch(name))
+    }
+    count = round(len(found) ** 0.5)
+    wanted = [(l, m) for l in range(count) for m in range(-l, l + 1)]
+    if not found or set(wanted) != set(found) or not {"step", "time"} <= set(table):
+        raise ValueError(f"read_modes: {path} has no columns step, time, u_0_0, u_1_-1, …")
+    amplitudes = np.stack([found[mode] for mode in wanted], axis=1)
+    return Modes(table["step"].astype(int), table["time"], amplitudes)
+
+
+def read_table(path) -> dict[str, np.ndarray]:
+    """Read the columns of a file that a reporter wrote.
+
+    A last line that is cut off, because the run was killed in the middle of it, is left out.
+
+    Parameters
+    ----------
+    path : str or Path
+        CSV, or HDF5 (``.h5``, ``.hdf5``).
+
+    Returns
+    -------
+    dict of str to ndarray
+        Columns by name, without the units that CSV headers have in parentheses; shape (num_rows,).
+
+    Raises
+    ------
+    FileNotFoundError
+        There is no such file.
+    ImportError
+        An HDF5 file without h5py.
+    ValueError
+        The file is no table of numbers; the message names the line.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise FileNotFoundError(f"read_table: there is no file {path}")
+    if path.suffix.lower() in _HDF5:
+        with _h5py().File(path, "r") as file:
+            names = list(file.attrs.get("columns", []))
+            if not names or "rows" not in file:
+                raise ValueError(f"read_table: {path} has no rows of a reporter")
+            rows = np.array(file["rows"])
+        return dict(zip(names, rows.T, strict=True))
+    text = path.read_text(encoding="utf-8")
+    lines = text[: text.rfind("\n") + 1].splitlines()
+    if not lines:
+        raise ValueError(f"read_table: {path} has no header")
+    names = [name.split(" (")[0] for name in next(csv.reader(lines[:1]))]
+    rows = np.empty((len(lines) - 1, len(names)))
+    for number, line in enumerate(lines[1:]):
+        try:
+            rows[number] = [float(word) for word in line.split(",")]
+        except ValueError as reason:
+            raise ValueError(
+                f"read_table: {path}, line {number + 2}: need {len(names)} numbers ({reason})"
+            ) from None
+    return dict(zip(names, rows.T, strict=True))
+
+
+def open_table(path, columns, append):
+    """A table to which rows are added, in the format of its suffix.
+
+    Parameters
+    ----------
+    path : str or Path
+        ``.csv``, ``.h5`` or ``.hdf5``.
+    columns : dict of str to str
+        The unit of each column by its name; the first is ``step``.
+    append : bool
+        Go on with a file that exists. Otherwise it is overwritten.
+
+    Returns
+    -------
+    _Csv or _Hdf5
+        With a method `add(values)`, after which the row is on disk, and `cut(step)`, which drops
+        the rows after a step.
+
+    Raises
+    ------
+    ImportError
+        HDF5 without h5py.
+    ValueError
+        Another suffix, or a file with other columns.
+    """
+    path = Path(path)
+    suffix = path.suffix.lower()
+    if suffix == ".csv":
+        return _Csv(path, columns, append)
+    if suffix in _HDF5:
+        return _Hdf5(path, columns, append)
+    raise ValueError(f"{path}: the suffix must be .csv, .h5 or .hdf5")
+
+
+class _Csv:
+    """A CSV file; every row is flushed."""
+
+    def __init__(self, path, columns, append):
+        self.path = path
+        header = [f"{name} ({unit})" if unit else name for name, unit in columns.items()]
+        if append and path.is_file() and path.stat().st_size > 0:
+            with path.open(newline="", encoding="utf-8") as file:
+                found = next(csv.reader(file))
+            if found != header:
+                raise ValueError(f"{path}: its columns are {found}, not {header}; do not append")
+        else:
+            path.write_text(",".join(header) + "\n", encoding="utf-8")
+
+    def cut(self, step):
+        text = self.path.read_bytes()
+        # What follows the last end of a line was cut off by a kill.
+        lines = text[: text.rfind(b"\n") + 1].splitlines(keepends=True)
+        kept = [line for line in lines[1:] if float(line.split(b",", 1)[0]) <= step]
+        if len(b"".join([lines[0], *kept])) != len(text):
+            # The file is replaced as a whole, so that a kill leaves the old one or the new one.
+            new = self.path.with_name(self.path.name + ".new")
+            new.write_bytes(b"".join([lines[0], *kept]))
+            new.replace(self.path)
+
+    def add(self, values):
+        # The file is opened for each row, so that one which was moved away is noticed, and none is
+        # left open by a reporter that is forgotten.
+        with self.path.open("a", encoding="utf-8") as file:
+            file.write(",".join(repr(value) for value in values) + "\n")
+
+
+class _Hdf5:
+    """An HDF5 file with the rows in one dataset, closed after every row."""
+
+    def __init__(self, path, columns, append):
+        self.path, self.h5py = path, _h5py()
+        names = list(columns)
+        if append and path.is_file():
+            with self.h5py.File(path, "r") as file:
+                found = list(file.attrs.get("columns", []))
+            if found != names:
+                raise ValueError(f"{path}: its columns are {found}, not {names}; do not append")
+            return
+        with self.h5py.File(path, "w") as file:
+            file.attrs["columns"] = names
+            file.attrs["units"] = list(columns.values())
+            shape = (0, len(names))
+            file.create_dataset(
+                "rows", shape, float, maxshape=(None, len(names)), chunks=(256, len(names))
+            )
+
+    def cut(self, step):
+        with self.h5py.File(self.path, "r+") as file:
+            rows = file["rows"]
+            rows.resize(np.count_nonzero(rows[:, 0] <= step), axis=0)
+
+    def add(self, values):
+        with self.h5py.File(self.path, "r+") as file:
+            rows = file["rows"]
+            rows.resize(len(rows) + 1, axis=0)
+            rows[-1] = values
+
+
+def _h5py():
+    try:
+        import h5py
+    except ImportError as reason:
+        raise ImportError(
+            "HDF5 files need h5py; install it with 'pip install openmm-helfrich[hdf5]', or write "
+            f".csv ({reason})"
+        ) from None
+    return h5py

@@ -1,0 +1,258 @@
+"""Reporters for OpenMM's Simulation: modes, energies per term, and shape, while it runs."""
+
+from __future__ import annotations
+
+import numpy as np
+import openmm
+from openmm import unit
+
+from .analysis import mode_amplitudes, shape
+from .analysis._arrays import triangles_of
+from .analysis.tables import open_table
+
+__all__ = ["MembraneReporter", "ModeReporter"]
+
+_ENERGY = unit.kilojoule_per_mole
+
+
+class _NextReport(dict):
+    """What `describeNextReport` returns: the dict of OpenMM 8.1 and later.
+
+    Programs that drive reporters themselves may still index the tuple of old (steps, positions,
+    velocities, forces, energy, wrap), so that numbers work as keys too.
+    """
+
+    _TUPLE = ("positions", "velocities", "forces", "energy")
+
+    def __missing__(self, key):
+        if key == 0:
+            return self["steps"]
+        if key in (1, 2, 3, 4):
+            return self._TUPLE[key - 1] in self["include"]
+        if key == 5:
+            return self["periodic"]
+        raise KeyError(key)
+
+
+class _TableReporter:
+    """Rows of numbers about one membrane, to a CSV or HDF5 file.
+
+    Subclasses have `_include`, what they need of the State, `_columns`, the units of their columns
+    by name, and `_values`, a row.
+    """
+
+    _include = ("positions",)
+
+    def __init__(self, file, reportInterval, triangles, offset, append):
+        name = type(self).__name__
+        if int(reportInterval) != reportInterval or reportInterval < 1:
+            raise ValueError(f"{name}: reportInterval needs 1 step or more, got {reportInterval}")
+        if offset < 0:
+            raise ValueError(f"{name}: offset needs 0 or more, got {offset}")
+        self._interval = int(reportInterval)
+        self._file, self._append = file, append
+        corners = np.asarray(getattr(triangles, "triangles", triangles))
+        highest = corners.max(initial=0) if corners.dtype.kind in "iu" else 0
+        corners = triangles_of(corners, int(highest) + 1) + int(offset)
+        # Vertices in ascending order of particle index, as in the forces.
+        self._particles, inverse = np.unique(corners, return_inverse=True)
+        self._triangles = inverse.reshape(corners.shape)
+        self._table = None
+
+    def describeNextReport(self, simulation):
+        """When the next report is due, and what it needs, as OpenMM asks for it."""
+        # What the file has beyond the step at which the simulation goes on is written again.
+        self._open(simulation)
+        steps = self._interval - simulation.currentStep % self._interval
+        return _NextReport(steps=steps, periodic=False, include=list(self._include))
+
+    def report(self, simulation, state):
+        """Write one row; it is on disk when this returns."""
+        self._open(simulation)
+        time = state.getTime().value_in_unit(unit.picosecond)
+        positions = state.getPositions(asNumpy=True).value_in_unit(unit.nanometer)
+        values = self._values(simulation, state, np.asarray(positions)[self._particles])
+        self._table.add([int(simulation.currentStep), time, *(float(value) for value in values)])
+
+    def _open(self, simulation):
+        if self._table is not None:
+            return
+        count = simulation.system.getNumParticles()
+        if self._particles[-1] >= count:
+            raise ValueError(
+                f"{type(self).__name__}: the triangles name particle {self._particles[-1]}, but "
+                f"there are {count}"
+            )
+        columns = {"step": "", "time": "ps", **self._columns(simulation)}
+        table = open_table(self._file, columns, self._append)
+        if self._append:
+            table.cut(simulation.currentStep)
+        self._table = table
+
+
+class ModeReporter(_TableReporter):
+    """Writes the amplitudes u_lm of a vesicle while a Simulation runs.
+
+    Columns ``step``, ``time`` (ps) and ``u_l_m`` for l = 0 … lmax, m = −l … l; see
+    `analysis.mode_amplitudes`. `analysis.read_modes` reads the file back. Every row is on disk when
+    it has been written, so that a run that is killed loses nothing.
+
+    Parameters
+    ----------
+    file : str or Path
+        ``.csv``, or ``.h5`` / ``.hdf5`` for HDF5, which needs h5py
+        (``pip install openmm-helfrich[hdf5]``).
+    reportInterval : int
+        Steps between rows.
+    triangles : Mesh or array_like of int
+        The triangles as particle indices, shape (num_triangles, 3), counter-clockwise seen from
+        outside, as for the forces; or a Mesh whose vertex i is particle offset + i.
+    lmax : int
+        Largest l.
+    quadrature, centre : str
+        As for `analysis.mode_amplitudes`.
+    offset : int
+        Added to the indices of the triangles. Default 0.
+    append : bool
+        Go on with an existing file, from the step of the simulation: rows of later steps are
+        dropped, since they will be written again. Load the checkpoint or state first, with
+        ``simulation.currentStep``, which `Simulation.loadCheckpoint` restores.
+
+    Raises
+    ------
+    ValueError
+        A number out of range; at the first report, another suffix, a file with other columns, or a
+        surface that is not closed.
+
+    Examples
+    --------
+    >>> simulation.reporters.append(ModeReporter("modes.csv", 500, mesh, lmax=10))
+    >>> simulation.step(100_000)
+    >>> step, time, amplitudes = analysis.read_modes("modes.csv")
+    """
+
+    def __init__(
+        self,
+        file,
+        reportInterval,
+        triangles,
+        lmax,
+        quadrature="fit",
+        centre="mass",
+        *,
+        offset=0,
+        append=False,
+    ):
+        super().__init__(file, reportInterval, triangles, offset, append)
+        if int(lmax) != lmax or lmax < 0:
+            raise ValueError(f"ModeReporter: lmax needs an integer of 0 or more, got {lmax}")
+        self._lmax, self._options = int(lmax), {"quadrature": quadrature, "centre": centre}
+
+    def _columns(self, simulation):
+        return {f"u_{l}_{m}": "" for l in range(self._lmax + 1) for m in range(-l, l + 1)}
+
+    def _values(self, simulation, state, positions):
+        return mode_amplitudes(positions, self._triangles, self._lmax, **self._options)
+
+
+class MembraneReporter(_TableReporter):
+    """Writes energies per term and the shape of a membrane while a Simulation runs.
+
+    Columns, in this order: ``step``; ``time`` (ps); ``NAME_energy`` (kJ/mol) for each force group
+    of the System; ``potential_energy`` and ``kinetic_energy`` (kJ/mol) of the whole System;
+    ``temperature`` (K); and of the membrane the fields of `analysis.Shape`: ``area`` (nm²),
+    ``volume`` (nm³), ``reduced_volume``, ``radius_of_gyration`` (nm), ``asphericity`` and
+    ``acylindricity`` (nm²), ``anisotropy``. `analysis.read_table` reads the file back.
+
+    Energies per term are those of the Context itself, group by group, and so are exact whatever was
+    changed during the run. NAME is the name of the force; forces that share a group have one column
+    under their names joined by ``+``. Give them groups of their own, as `Vesicle` does, to have
+    them apart. A report costs about one evaluation for each group.
+
+    Parameters
+    ----------
+    file : str or Path
+        ``.csv``, or ``.h5`` / ``.hdf5`` for HDF5.
+    reportInterval : int
+        Steps between rows.
+    triangles : Mesh or array_like of int
+        As for `ModeReporter`.
+    offset : int
+        Added to the indices of the triangles. Default 0.
+    append : bool
+        As for `ModeReporter`.
+
+    Raises
+    ------
+    ValueError
+        As for `ModeReporter`.
+
+    Examples
+    --------
+    >>> simulation.reporters.append(MembraneReporter("energies.csv", 500, vesicle.mesh))
+    >>> simulation.step(100_000)
+    >>> analysis.read_table("energies.csv")["bending_energy"].mean()
+    """
+
+    _include = ("positions", "energy")
+
+    def __init__(self, file, reportInterval, triangles, *, offset=0, append=False):
+        super().__init__(file, reportInterval, triangles, offset, append)
+
+    def _columns(self, simulation):
+        self._groups = _group_names(simulation.system)
+        self._freedom = _degrees_of_freedom(simulation.system)
+        energies = [*self._groups.values(), "potential", "kinetic"]
+        return {
+            **{f"{name}_energy": "kJ/mol" for name in energies},
+            "temperature": "K",
+            "area": "nm^2",
+            "volume": "nm^3",
+            "reduced_volume": "",
+            "radius_of_gyration": "nm",
+            "asphericity": "nm^2",
+            "acylindricity": "nm^2",
+            "anisotropy": "",
+        }
+
+    def _values(self, simulation, state, positions):
+        context = simulation.context
+        terms = [
+            context.getState(getEnergy=True, groups={group}).getPotentialEnergy() / _ENERGY
+            for group in self._groups
+        ]
+        kinetic = state.getKineticEnergy()
+        gas = unit.MOLAR_GAS_CONSTANT_R
+        temperature = 2 * kinetic / (self._freedom * gas) / unit.kelvin if self._freedom else 0.0
+        potential = state.getPotentialEnergy() / _ENERGY
+        return [
+            *terms,
+            potential,
+            kinetic / _ENERGY,
+            temperature,
+            *shape(positions, self._triangles),
+        ]
+
+
+def _group_names(system):
+    """The names of the forces of each force group, joined, by group in ascending order."""
+    names = {}
+    for force in system.getForces():
+        if not isinstance(force, openmm.CMMotionRemover):
+            names.setdefault(force.getForceGroup(), []).append(force.getName())
+    joined, taken = {}, set()
+    for group, parts in sorted(names.items()):
+        # A comma would end the column. Equal names, of several vesicles, get their group's number.
+        name = "+".join(parts).replace(",", ";")
+        if name in taken or name in ("potential", "kinetic"):
+            name = f"{name}_{group}"
+        taken.add(name)
+        joined[group] = name
+    return joined
+
+
+def _degrees_of_freedom(system):
+    masses = [system.getParticleMass(i) / unit.dalton for i in range(system.getNumParticles())]
+    count = 3 * np.count_nonzero(masses) - system.getNumConstraints()
+    fixed = any(isinstance(force, openmm.CMMotionRemover) for force in system.getForces())
+    return count - 3 * fixed
