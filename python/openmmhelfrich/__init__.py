@@ -26,6 +26,7 @@ from .forces import *  # noqa: E402, F403
 from .forces import __all__ as _force_names  # noqa: E402
 from .mesh import Mesh  # noqa: E402
 from .reporters import MembraneReporter, ModeReporter  # noqa: E402
+from .ramps import harden  # noqa: E402
 from .vesicle import Vesicle  # noqa: E402
 
 __version__ = _plugin.version()
@@ -38,6 +39,7 @@ __all__ = [
     "Vesicle",
     "analysis",
     "cmake_path",
+    "harden",
     "include_path",
     "library_path",
     "vcm",

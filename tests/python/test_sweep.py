@@ -98,6 +98,14 @@ class TestHere:
             quiet(reciprocal, grid(x=[1, 0, 2]), cache=tmp_path, workers=0)
         assert len(list(tmp_path.rglob("*.npz"))) == 2
 
+    def test_looks_only(self, tmp_path):
+        quiet(square, [{"x": 5}], cache=tmp_path, workers=0)
+        [result] = quiet(square, [{"x": 5}], cache=tmp_path, compute=False)
+        assert result["number"] == 25
+        assert 0 <= result["seconds"] < 1
+        with pytest.raises(SweepError, match=r"1 of 2 results of square.*'x': 6"):
+            quiet(square, grid(x=[5, 6]), cache=tmp_path, compute=False)
+
     @pytest.mark.parametrize(
         ("function", "points", "options", "error", "message"),
         [

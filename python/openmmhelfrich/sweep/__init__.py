@@ -62,6 +62,7 @@ def sweep(
     workers: int | None = None,
     description: str | None = None,
     progress: bool = True,
+    compute: bool = True,
 ) -> list[dict]:
     """Call ``function(**point)`` for every point and return the results in the order of the points.
 
@@ -88,12 +89,14 @@ def sweep(
         Text beside the progress bar. Default: the name of the function.
     progress : bool
         Whether to show a progress bar on standard error.
+    compute : bool
+        Whether to compute what is not stored; if not, it is an error.
 
     Returns
     -------
     list of dict
         One result for each point. Numbers and lists are as JSON gives them back, whether a result
-        was just computed or stored.
+        was just computed or stored. ``seconds`` is added, the processor time that it took.
 
     Raises
     ------
@@ -105,7 +108,8 @@ def sweep(
         The scheduler does not answer, or the cache folder cannot be written to.
     SweepError
         The function raised an exception, or killed its worker several times, at some points; or
-        the scheduler has no workers or went away. What was finished is stored.
+        the scheduler has no workers or went away. What was finished is stored. Or results are
+        missing that must not be computed.
     """
     if workers is not None and (isinstance(workers, bool) or not int(workers) == workers >= 0):
         raise ValueError(f"sweep: workers needs a whole number of 0 or more, got {workers!r}")
@@ -125,6 +129,12 @@ def sweep(
                 missing[key] = point
             else:
                 results[key] = stored
+    if missing and not compute:
+        raise SweepError(
+            f"sweep: {len(missing)} of {len(points)} results of {name} are not stored in "
+            f"{store.folder if store else 'a cache'}, the first is {next(iter(missing.values()))}; "
+            "run the sweep first"
+        )
     failures: dict[str, BaseException] = {}
     bar = tqdm(
         total=len(results) + len(missing),
@@ -134,12 +144,13 @@ def sweep(
     )
     with bar:
         if missing:
-            compute = on_this_process if workers == 0 else on_dask
-            for key, outcome in compute(function, missing, scheduler, workers):
+            backend = on_this_process if workers == 0 else on_dask
+            for key, outcome in backend(function, missing, scheduler, workers):
                 if isinstance(outcome, BaseException):
                     failures[key] = outcome
                 else:
-                    results[key] = plain_result(outcome, name)
+                    result, seconds = outcome
+                    results[key] = {**plain_result(result, name), "seconds": seconds}
                     if store:
                         store.save(name, key, missing[key], results[key])
                 bar.update()

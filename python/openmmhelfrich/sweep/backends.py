@@ -9,6 +9,7 @@ import os
 import pickle
 import queue
 import sys
+import time
 from pathlib import Path
 
 from tqdm import tqdm
@@ -25,16 +26,16 @@ class SweepError(RuntimeError):
 
 
 def on_this_process(function, points, scheduler, workers):
-    """Compute in this process, and yield each key with the result or the exception."""
+    """Compute in this process, and yield each key with what `timed` returns or the exception."""
     for key, point in points.items():
         try:
-            yield key, function(**point)
+            yield key, timed(function, point)
         except Exception as error:
             yield key, error
 
 
 def on_dask(function, points, scheduler, workers):
-    """Compute on a Dask cluster, and yield each key with the result or the exception."""
+    """Compute on a Dask cluster, and yield each key with what `timed` returns or the exception."""
     try:
         import dask
         import distributed
@@ -104,8 +105,15 @@ def on_dask(function, points, scheduler, workers):
                 client.cancel(list(waiting), force=True)
 
 
+def timed(function, point):
+    """The result of the function at a point, and the processor time that it took, s."""
+    started = time.process_time()
+    result = function(**point)
+    return result, time.process_time() - started
+
+
 def _call(payload, point):
-    return _loaded(payload)(**point)
+    return timed(_loaded(payload), point)
 
 
 @functools.lru_cache(maxsize=4)

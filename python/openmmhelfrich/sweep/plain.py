@@ -19,8 +19,8 @@ def plain_result(result, name):
         )
     plain = {}
     for entry, value in result.items():
-        if entry == RECORD:
-            raise TypeError(f"sweep: {name} must not call a result {RECORD!r}; take another name")
+        if entry in (RECORD, "seconds"):
+            raise TypeError(f"sweep: {name} must not call a result {entry!r}; take another name")
         if isinstance(value, np.ndarray) and value.ndim > 0:
             if value.dtype.hasobject:
                 raise TypeError(f"sweep: {name} returned objects in the array {entry!r}")

@@ -1,0 +1,197 @@
+"""What the figures of the paper share: their command line, their sweeps, and what they report.
+
+A script makes one `Figure`, runs its sweeps through it, checks numbers against what is expected and
+calls `finish`, which prints the table, writes it beside the picture in the folder of results, and
+ends the script with status 1 if a number lies outside its tolerance. `report.py` makes the report
+of these files.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import sys
+from pathlib import Path
+
+import numpy as np
+from openmmhelfrich.sweep import SweepError, sweep
+
+SCHEMES = {
+    "Julicher": "Jülicher (J)",
+    "GompperKroll": "Gompper–Kroll (GK)",
+    "GompperKrollBarycentric": "GK barycentric (GKB)",
+    "JulicherVoronoi": "Jülicher–Voronoi (JV)",
+}
+"""The four bending models of the paper, by the names of `BendingForce`'s constants."""
+
+
+class Figure:
+    """One figure of the paper.
+
+    Parameters
+    ----------
+    name : str
+        Of the files, such as "fig04".
+    target : str
+        What of the paper it is, such as "Fig. 4".
+    title : str
+        One line, without a full stop.
+    description : str
+        The help text of the command line; the docstring of the script.
+    arguments : list of str, optional
+        The command line; default: that of the script.
+    """
+
+    def __init__(self, name, target, title, description, arguments=None):
+        parser = argparse.ArgumentParser(
+            description=description, formatter_class=argparse.RawDescriptionHelpFormatter
+        )
+        parser.add_argument(
+            "--quick", action="store_true", help="smaller and fewer runs, seconds to minutes"
+        )
+        parser.add_argument(
+            "--results",
+            type=Path,
+            help="folder of stored results, pictures, numbers (default: out/paper/full or quick)",
+        )
+        parser.add_argument(
+            "--plot-only", action="store_true", help="draw and check again what is stored"
+        )
+        where = parser.add_mutually_exclusive_group()
+        where.add_argument(
+            "--scheduler", metavar="ADDRESS", help="of a running Dask scheduler, tcp://host:port"
+        )
+        where.add_argument(
+            "--workers",
+            type=int,
+            help="processes on this machine (default: one for each core; 0: without Dask)",
+        )
+        options = parser.parse_args(arguments)
+        if options.workers is not None and options.workers < 0:
+            parser.error(f"--workers: need 0 or more, got {options.workers}")
+        self.name, self.target, self.title = name, target, title
+        self.quick = options.quick
+        self.results = options.results or Path("out/paper") / ("quick" if self.quick else "full")
+        self._options = options
+        self._rows: list[dict] = []
+        self._notes: list[str] = []
+        self._reduced: list[str] = []
+        self._parameters = ""
+        self._pictures: list[dict] = []
+        self._seconds = 0.0
+
+    def choose(self, full, quick):
+        """One of two values: of the full size, or of the quick one."""
+        return quick if self.quick else full
+
+    def sweep(self, function, points, version=1, description=None):
+        """The results of a function at points, stored in the folder of results."""
+        try:
+            results = sweep(
+                function,
+                points,
+                cache=self.results / "cache",
+                version=version,
+                scheduler=self._options.scheduler,
+                workers=self._options.workers,
+                description=description,
+                compute=not self._options.plot_only,
+            )
+        except KeyboardInterrupt:
+            sys.exit(f"{self.name}: interrupted; run it again to go on from here")
+        except (SweepError, OSError, ImportError) as error:
+            sys.exit(f"{self.name}: {error}")
+        self._seconds += sum(result["seconds"] for result in results)
+        return results
+
+    def parameters(self, text):
+        """Say what was simulated."""
+        self._parameters = text
+
+    def reduced(self, text):
+        """Say in what the full run is smaller than the paper's."""
+        self._reduced.append(text)
+
+    def note(self, text):
+        """Say something about the result, with its numbers."""
+        self._notes.append(text)
+
+    def check(self, what, measured, expected, tolerance, error=None, unit=""):
+        """Check |measured − expected| ≤ tolerance, and return whether it holds."""
+        passed = bool(abs(measured - expected) <= tolerance)
+        uncertainty = "" if error is None else f" ± {error:.2g}"
+        self.claim(
+            what,
+            f"{measured:.4g}{uncertainty}{unit}",
+            f"{expected:.4g} ± {tolerance:.2g}{unit}",
+            passed,
+        )
+        return passed
+
+    def claim(self, what, measured, expected, passed):
+        """Check anything else; `measured` and `expected` are texts."""
+        self._rows.append(
+            {"what": what, "measured": measured, "expected": expected, "passed": bool(passed)}
+        )
+
+    def save(self, figure, suffix="", caption=""):
+        """Write a matplotlib figure as a picture of the report."""
+        path = self.picture(suffix, caption)
+        figure.savefig(path, dpi=100)
+        shrink(path)
+
+    def picture(self, suffix="", caption=""):
+        """The path of a picture of the report that the caller writes."""
+        self.results.mkdir(parents=True, exist_ok=True)
+        path = self.results / f"{self.name}{suffix}.png"
+        self._pictures.append({"file": path.name, "caption": caption or self.title})
+        return path
+
+    def finish(self):
+        """Print and write what was found, and exit with 1 if something is outside its tolerance."""
+        record = {
+            "name": self.name,
+            "target": self.target,
+            "title": self.title,
+            "quick": self.quick,
+            "parameters": self._parameters,
+            "reduced": self._reduced,
+            "rows": self._rows,
+            "notes": self._notes,
+            "pictures": self._pictures,
+            "seconds": round(self._seconds, 1),
+        }
+        self.results.mkdir(parents=True, exist_ok=True)
+        path = self.results / f"{self.name}.json"
+        path.write_text(json.dumps(record, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+        print(f"\n{self.target}: {self.title}{' (quick)' if self.quick else ''}")
+        print(self._parameters)
+        width = max((len(row["what"]) for row in self._rows), default=0)
+        for row in self._rows:
+            verdict = "ok  " if row["passed"] else "FAIL"
+            print(
+                f"  {verdict}  {row['what']:{width}s}  measured {row['measured']}"
+                f"  expected {row['expected']}"
+            )
+        for note in self._notes:
+            print(f"  {note}")
+        print(f"  processor time {self._seconds:.0f} s; wrote {os.path.relpath(path)}")
+        sys.exit(0 if all(row["passed"] for row in self._rows) else 1)
+
+
+def shrink(path):
+    """Store a PNG with a palette of 128 colours, which makes it several times smaller."""
+    from PIL import Image
+
+    with Image.open(path) as image:
+        small = image.convert("RGB").quantize(128, dither=Image.Dither.NONE)
+    small.save(path, optimize=True)
+
+
+def mean_and_error(values):
+    """The mean of independent values along the first axis, and its standard error."""
+    values = np.asarray(values, dtype=float)
+    if len(values) < 2:
+        return values.mean(axis=0), np.full(values.shape[1:], np.nan)
+    return values.mean(axis=0), values.std(axis=0, ddof=1) / np.sqrt(len(values))

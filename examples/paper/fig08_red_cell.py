@@ -1,0 +1,183 @@
+"""Fig. 8: a red blood cell, a fluid membrane on an elastic network, from VCM's own files.
+
+Two configurations of the paper: spontaneous curvature 0 (1002 fluid and 162 elastic vertices) and
+0.006/nm (4002 and 92). They are read from the folder that holds them, see --files, with C0 taken in
+its signed form. The paper's text has 92 elastic nodes and a Young modulus of 25 µN/m; its files
+have the 162 nodes and the springs used here.
+"""
+
+import argparse
+import os
+import sys
+from pathlib import Path
+
+import numpy as np
+from _paper import Figure
+from _snapshots import along_axes, draw_meshes
+
+CASES = {
+    # Name: (file, energy of bending at the start in VCM's form (|S|), kJ/mol).
+    "C0 = 0": ("SM_RBC_C0.txt", 8314.340),
+    "C0 = 0.006/nm": ("SM_RBC_C0.006.txt", 78464.14),
+}
+SAMPLES = 200
+
+
+def red_cell(file, duration, seed):
+    """Run one configuration; energies per term over time, and the shape at three times."""
+    import openmm
+    import openmmhelfrich as helfrich
+    from openmm import unit
+
+    config = helfrich.vcm.read(file, seed=seed)
+    simulation = config.simulation("Reference")
+    compatible = helfrich.vcm.read(file, vcm_compatible=True, seed=seed)
+    start = compatible.energies(compatible.simulation("Reference").context)
+    fluid = config.membranes[0]
+    steps = round(duration / config.step_size / SAMPLES)
+    times, energies, temperatures, shapes = [], [], [], [fluid.mesh.vertices]
+    for sample in range(SAMPLES):
+        simulation.step(steps)
+        context = simulation.context
+        state = context.getState(energy=True, positions=True)
+        kinetic = state.getKineticEnergy().value_in_unit(unit.kilojoule_per_mole)
+        positions = state.getPositions(asNumpy=True).value_in_unit(unit.nanometer)
+        times.append((sample + 1) * steps * config.step_size)
+        energies.append(list(config.energies(context).values()))
+        temperatures.append(2 * kinetic / (3 * config.num_particles * 0.00831446261815324))
+        if sample + 1 in (SAMPLES // 10, SAMPLES):
+            shapes.append(positions[fluid.particles.start : fluid.particles.stop])
+    return {
+        "start": start["bending 0"],
+        "terms": list(config.terms),
+        "times": np.array(times),
+        "energies": np.array(energies),
+        "temperatures": np.array(temperatures),
+        "shapes": np.array(shapes),
+        "triangles": fluid.mesh.triangles,
+        "openmm": openmm.__version__,
+    }
+
+
+def thickness(mesh):
+    """Diameter, and thickness in the middle and at its largest, of a disc along z, nm."""
+    rho = np.hypot(mesh.vertices[:, 0], mesh.vertices[:, 1])
+    z = mesh.vertices[:, 2]
+    inner = rho < 0.15 * rho.max()
+    middle = z[inner & (z > 0)].mean() - z[inner & (z < 0)].mean()
+    rings = np.digitize(rho, np.linspace(0, rho.max(), 12))
+    extents = [
+        z[(rings == ring) & (z > 0)].mean() - z[(rings == ring) & (z < 0)].mean()
+        for ring in np.unique(rings)
+        if ((rings == ring) & (z > 0)).any() and ((rings == ring) & (z < 0)).any()
+    ]
+    return 2 * np.percentile(rho, 98), middle, max(extents)
+
+
+def files_folder():
+    """The folder of the configurations: --files, or HELFRICH_SHARED, or one beside the project."""
+    parser = argparse.ArgumentParser(add_help=False)
+    beside = Path(__file__).resolve().parents[3] / "shared"
+    parser.add_argument(
+        "--files", type=Path, default=Path(os.environ.get("HELFRICH_SHARED", beside)) / "vcm"
+    )
+    options, rest = parser.parse_known_args()
+    return options.files.resolve(), rest
+
+
+def main():
+    import matplotlib.pyplot as plt
+    import openmmhelfrich as helfrich
+
+    folder, rest = files_folder()
+    figure = Figure("fig08", "Fig. 8", "A red cell, fluid and elastic membrane", __doc__, rest)
+    durations = figure.choose(
+        {"C0 = 0": 300_000, "C0 = 0.006/nm": 60_000}, dict.fromkeys(CASES, 200)
+    )
+    for file, _ in CASES.values():
+        if not (folder / file).is_file():
+            sys.exit(f"fig08: there is no {folder / file}; say with --files where VCM's files are")
+    points = [
+        {"file": str(folder / file), "duration": durations[case], "seed": 1}
+        for case, (file, _) in CASES.items()
+    ]
+    results = figure.sweep(red_cell, points, description="red cells")
+
+    figure.parameters(
+        "VCM's files SM_RBC_C0 and SM_RBC_C0.006: κ = 120 kJ/mol, GKB, ν = 0.60, Ξ of d = 20 nm, "
+        "LangevinMiddle, γ = 0.01/ps, Δt = 0.2 ps, 300 K, "
+        + "; ".join(f"{case}: {durations[case] / 1000:g} ns" for case in CASES)
+        + "."
+    )
+    if durations["C0 = 0.006/nm"] < 300_000:
+        figure.reduced(
+            f"C0 = 0.006/nm runs for {durations['C0 = 0.006/nm'] / 1000:g} ns of the file's 300 ns."
+        )
+    panels, views = [], []
+    graph, axes = plt.subplots(1, 2, figsize=(9, 3.6), layout="constrained")
+    for axis, (case, (_, published)), result in zip(axes, CASES.items(), results, strict=True):
+        start, energies = result["start"], result["energies"]
+        figure.check(
+            f"{case}: E_b at the start (|S|)", start, published, 2e-6 * published, unit=" kJ/mol"
+        )
+        half = energies[SAMPLES // 2 :]
+        temperature = result["temperatures"][SAMPLES // 2 :]
+        # 200 samples of a quarter ns to 1.5 ns; kinetic energies forget in 1/γ = 100 ps.
+        figure.check(
+            f"{case}: temperature",
+            temperature.mean(),
+            300,
+            figure.choose(3, 25),
+            temperature.std() / np.sqrt(len(temperature)),
+            " K",
+        )
+        figure.claim(
+            f"{case}: runs stably",
+            f"{len(energies)} of {SAMPLES} samples finite, height energy at most "
+            f"{energies[:, result['terms'].index('heights 0')].max():.0f} kJ/mol",
+            "all finite",
+            np.isfinite(energies).all() and len(energies) == SAMPLES,
+        )
+        meshes = [helfrich.Mesh(shape, result["triangles"]) for shape in result["shapes"]]
+        means = ", ".join(
+            f"{term.split()[0]} {mean:.0f} ± {error:.0f}"
+            for term, mean, error in zip(
+                result["terms"], half.mean(axis=0), _blocked_error(half), strict=True
+            )
+        )
+        last = along_axes(meshes[-1])
+        diameter, middle, rim = thickness(last)
+        figure.note(
+            f"{case}: ⟨E⟩ over the second half, kJ/mol: {means}. At the end ν = "
+            f"{last.reduced_volume:.3f}, diameter {diameter:.0f} nm, thickness {middle:.0f} nm in "
+            f"the middle and {rim:.0f} nm at the rim."
+        )
+        figure.claim(
+            f"{case}: thinner in the middle than at the rim",
+            f"{middle:.0f} < {rim:.0f} nm",
+            "a dimple",
+            middle < rim,
+        )
+        for index, term in enumerate(result["terms"]):
+            if energies[:, index].max() > 0:
+                axis.plot(result["times"] / 1000, energies[:, index], label=term.split()[0], lw=1)
+        axis.set(xlabel="t (ns)", ylabel="E (kJ/mol)", title=case, yscale="log")
+        axis.legend(fontsize=7)
+        for mesh, when in ((meshes[0], "start"), (meshes[-1], "end")):
+            turned = along_axes(mesh)
+            panels += [(f"{case}, {when}", turned, None), ("cut", turned, None)]
+            views += ["tilted", "cut"]
+    figure.save(graph, "_energies", "Energies per term over time.")
+    path = figure.picture("", "The fluid membrane at the start and at the end, and cut in halves.")
+    draw_meshes(path, panels, 4, views=views, edges=False)
+    figure.finish()
+
+
+def _blocked_error(samples, blocks=5):
+    """Standard error of the means of columns, from blocks longer than the correlation time."""
+    means = np.array([block.mean(axis=0) for block in np.array_split(samples, blocks)])
+    return means.std(axis=0, ddof=1) / np.sqrt(blocks)
+
+
+if __name__ == "__main__":
+    main()
