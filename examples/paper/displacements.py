@@ -147,9 +147,7 @@ def moduli(shape, compression, l, blocks=10):
 def jackknife(frames, estimate, blocks):
     """An estimate from all frames, and its error from leaving out one block at a time."""
     parts = np.array_split(np.asarray(frames, dtype=float), blocks)
-    without = [
-        estimate(np.concatenate(parts[:left] + parts[left + 1 :])) for left in range(blocks)
-    ]
+    without = [estimate(np.concatenate(parts[:left] + parts[left + 1 :])) for left in range(blocks)]
     error = np.sqrt((blocks - 1) * np.var(without, axis=0))
     return estimate(np.concatenate(parts)), error
 

@@ -1,30 +1,23 @@
 """Fig. 6: fluctuation spectra ⟨|u_lm|²⟩ of a vesicle against l.
 
-    python fig06_spectrum.py            # everything: hours on one core
-    python fig06_spectrum.py --quick    # N = 252 and fewer samples, about a minute
-
 Six panels: number of vertices N, rigidity κ, radius r0, softness Ξ, the Young modulus Y(Ξ) of the
-mesh, and the bending schemes of Jülicher and Gompper–Kroll (barycentric). LangevinMiddle at 300 K
-with kV = 0; ten samples of 10 τ_2 each at the paper's parameters, four elsewhere.
+mesh, and the bending schemes of Jülicher and Gompper–Kroll (barycentric), as ratios to (A17).
 
-(A17) holds for a fluid. A mesh whose vertices keep their neighbours is none at the largest scales:
-it resists shear, and (A18) with Y r0² ≈ 0.15 N kBT is below (A17) for l = 2. `fig06_shear.py`
-measures that modulus by itself, from the displacement of vertices within the surface.
-
-doi:10.1103/PhysRevE.108.015301
+(A17) holds for a fluid. A mesh whose vertices keep their neighbours resists shear a little, about
+Y r0² = 0.15 N kBT however soft it is, and (A18) takes l = 2 below (A17) by a share that grows with
+N kBT / κ. `fig06_shear.py` measures that modulus by itself, from the displacements of vertices
+within the surface, and predicts the spectrum from it.
 """
 
-import math
 from typing import NamedTuple
 
 import matplotlib.pyplot as plt
 import numpy as np
 from _paper import Figure
 from fluctuations import RADIUS, SOFTNESS, VERSION, fluctuate
-from openmmhelfrich.analysis import spectrum, theory
-from scipy.optimize import curve_fit
+from openmmhelfrich.analysis import Spectrum, fit_young, spectrum, theory
 
-# Full size and --quick. Fewer vertices make cheaper steps and shorter periods.
+# Fewer vertices make cheaper steps and shorter periods, so a few more samples cost little there.
 FULL = {
     "base": 1002,
     "vertices": (252, 492, 1002, 1962),
@@ -32,40 +25,20 @@ FULL = {
     "radii": (500.0, 1000.0, 2000.0),
     "samples": 10,
     "few": 4,
-    "periods": 10,
 }
 QUICK = {
     "base": 252,
-    "vertices": (252, 492),
+    "vertices": (252,),
     "rigidities": (20.0, 40.0),
     "radii": (500.0, 1000.0),
-    "samples": 4,
+    "samples": 2,
     "few": 2,
-    "periods": 10,
 }
+PERIODS = 10
 SCHEMES = {"Julicher": "Jülicher", "GompperKrollBarycentric": "GK barycentric"}
 
-# Y(Ξ) is read off the small l, where the shear modulus matters and bending is well resolved.
-FIT_MODES = np.arange(2, 7)
-
-
-def main():
-    figure = Figure("fig06", "Fig. 6 a–f", "Fluctuation spectra of vesicles", __doc__)
-    size = figure.choose(FULL, QUICK)
-    spectra = measure(size, figure)
-    young = {point: fit_young(found, point) for point, found in spectra.items()}
-    show(spectra, young)
-    figure.parameters(
-        f"LangevinMiddle, 300 K, γ = ω_2, Δt = half of 0.1 √Ξ τ_fastest, kV = 0; ordered meshes; "
-        f"N = {size['base']}, κ = 20 kBT, r0 = 1000 nm, Ξ = 0.037, Jülicher where not varied; "
-        f"{size['samples']} samples of {size['periods']} τ_2 (others: {size['few']}), 8 frames a τ_2"
-    )
-    check(figure, size, spectra, young)
-    draw(figure, size, spectra, young)
-    figure.finish()
-
-
-# --- the runs --------------------------------------------------------------------------------
+# Y is read off the small l, where the shear modulus matters and the mesh resolves bending.
+LARGEST_FITTED = 6
 
 
 class Point(NamedTuple):
@@ -78,6 +51,25 @@ class Point(NamedTuple):
     scheme: str = "Julicher"
 
 
+def main():
+    figure = Figure("fig06", "Fig. 6 a–f", "Fluctuation spectra of vesicles", __doc__)
+    size = figure.choose(FULL, QUICK)
+    runs = measure(points_of(size), figure)
+    spectra = {point: pooled(of_point, "fit") for point, of_point in runs.items()}
+    figure.parameters(
+        f"N = {size['base']}, κ = 20 kBT, r0 = 1000 nm, Ξ = 0.037, Jülicher where not varied; "
+        f"kV = 0; LangevinMiddle, 300 K, γ = ω_2, Δt = 0.05 √Ξ τ_fastest, ordered meshes; "
+        f"{size['samples']} samples of {PERIODS} τ_2 ({size['few']} of varied N ≥ 1000, κ, Ξ)"
+    )
+    check(figure, size, spectra)
+    note(figure, size, runs, spectra)
+    draw(figure, size, spectra)
+    figure.finish()
+
+
+# --- the runs --------------------------------------------------------------------------------
+
+
 def points_of(size):
     """The points that are needed, and the number of samples of each."""
     base = Point(size["base"])
@@ -87,13 +79,11 @@ def points_of(size):
         point = base._replace(**changes)
         wanted[point] = max(samples, wanted.get(point, 0))
 
-    add(size["samples"])
     for scheme in SCHEMES:
         add(size["samples"], scheme=scheme)
     for radius in size["radii"]:
         add(size["samples"], radius=radius)
     for num_vertices in size["vertices"]:
-        # Short periods and cheap steps make small meshes nearly free.
         add(size["samples"] if num_vertices < 1000 else size["few"], num_vertices=num_vertices)
     for rigidity in size["rigidities"]:
         add(size["few"], rigidity=rigidity)
@@ -102,13 +92,14 @@ def points_of(size):
     return wanted
 
 
-def runs_of(point, samples, periods):
+def arguments_of(point, samples):
     """The arguments of `fluctuate` for the samples of one point."""
     return [
         {
             **point._asdict(),
-            "lmax": lmax_of(point.num_vertices),
-            "periods": periods,
+            # Half of the largest l that the mesh has, l_max = √N: what the paper shows.
+            "lmax": int(point.num_vertices**0.5 / 2),
+            "periods": PERIODS,
             "frames_per_period": 8,
             "settle_periods": 4,
             "seed": seed + 1,
@@ -117,102 +108,149 @@ def runs_of(point, samples, periods):
     ]
 
 
-def lmax_of(num_vertices):
-    """Half of the largest l that the mesh has, l_max = √N: what the paper shows."""
-    return int(num_vertices**0.5 / 2)
-
-
-class Pooled:
-    """Spectrum of several samples: the mean over them, with the error of their mean."""
-
-    def __init__(self, runs, name):
-        each = [spectrum(run[name]) for run in runs]
-        self.l = each[0].l
-        self.mean = np.mean([one.mean for one in each], axis=0)
-        self.error = np.sqrt(np.sum([one.error**2 for one in each], axis=0)) / len(each)
-        self.time = len(runs) * len(runs[0][name]) * runs[0]["interval"]
-        self.temperature = np.mean([run["temperature"] for run in runs])
-
-
-def measure(size, figure):
-    """Spectra by point, each with both quadratures: {point: {"fit": …, "vertices": …}}."""
-    runs = {
-        point: runs_of(point, samples, size["periods"])
-        for point, samples in points_of(size).items()
-    }
-    flat = [run for of_point in runs.values() for run in of_point]
+def measure(points, figure):
+    """The runs of each point: {point: [result, …]}."""
+    arguments = {point: arguments_of(point, samples) for point, samples in points.items()}
+    flat = [one for of_point in arguments.values() for one in of_point]
     results = iter(figure.sweep(fluctuate, flat, VERSION))
-    spectra = {}
-    for point, of_point in runs.items():
-        found = [next(results) for _ in of_point]
-        spectra[point] = {name: Pooled(found, name) for name in ("fit", "vertices")}
-    return spectra
+    return {point: [next(results) for _ in of_point] for point, of_point in arguments.items()}
 
 
 # --- what they mean --------------------------------------------------------------------------
 
 
+def pooled(runs, name):
+    """Spectrum of several samples: the mean over them, with the error of their mean."""
+    each = [spectrum(run[name]) for run in runs]
+    return Spectrum(
+        each[0].l,
+        np.mean([one.mean for one in each], axis=0),
+        np.sqrt(np.sum([one.error**2 for one in each], axis=0)) / len(each),
+        np.mean([one.correlation_time for one in each], axis=0),
+    )
+
+
 def ratio_of(found, point):
-    """⟨|u_lm|²⟩ over (A17), with its error, for l = 2 … lmax."""
+    """Modes l = 2 … lmax, ⟨|u_lm|²⟩ over (A17), and its error."""
     l = found.l[2:]
     fluid = theory.fluid_spectrum(l, point.rigidity)
     return l, found.mean[2:] / fluid, found.error[2:] / fluid
 
 
-def fit_young(found, point):
-    """Y r0² over kBT and its error from a least-squares fit of (A18) to the smallest l."""
-    modes = FIT_MODES[FIT_MODES <= found["fit"].l[-1]]
-    mean, error = found["fit"].mean[modes], found["fit"].error[modes]
-
-    def model(l, young):
-        # curve_fit may try a negative modulus, which the theory function refuses.
-        n = l * (l + 1)
-        return 1 / (1 / theory.fluid_spectrum(l, point.rigidity) + young * 3 * (n - 2) / (3 * n - 2))
-
-    value, covariance = curve_fit(model, modes, mean, [0.0], sigma=error, absolute_sigma=True)
-    return value[0], math.sqrt(covariance[0, 0])
-
-
 def mean_ratio(found, point, first, last):
-    """Weighted mean of the ratio to (A17) over l = first … last, and its error."""
+    """Mean of the ratio to (A17) over l = first … last, each l alike, and its error."""
     l, ratio, error = ratio_of(found, point)
     chosen = (l >= first) & (l <= last)
-    weights = 1 / error[chosen] ** 2
-    return (ratio[chosen] @ weights) / weights.sum(), 1 / math.sqrt(weights.sum())
+    return ratio[chosen].mean(), np.sqrt(np.sum(error[chosen] ** 2)) / chosen.sum()
 
 
-def show(spectra, young):
-    print("\n⟨|u_lm|²⟩ over (A17), fitted amplitudes; Y r0²/N kBT from (A18), l = 2 … 6")
-    for point, found in spectra.items():
-        l, ratio, error = ratio_of(found["fit"], point)
-        values = " ".join(f"{r:.3f}±{e:.3f}" for r, e in zip(ratio, error, strict=True))
-        y, dy = (value / point.num_vertices for value in young[point])
-        print(
-            f"N {point.num_vertices} κ {point.rigidity:g} kBT r0 {point.radius:g} nm "
-            f"Ξ {point.softness:g} {point.scheme}: "
-            f"{found['fit'].time / 1e6:.2f} µs, {found['fit'].temperature:.1f} K\n"
-            f"    l = 2 …: {values}\n    Y r0²/N kBT = {y:.3f} ± {dy:.3f}"
-        )
-        _, sums, _ = ratio_of(found["vertices"], point)
-        print("    paper's vertex sum: " + " ".join(f"{r:.3f}" for r in sums))
+def young_of(found, point):
+    """Y r0² over kBT and its error, from (A18) with the given κ."""
+    fit = fit_young(found, point.radius, point.rigidity, lmax=LARGEST_FITTED)
+    return fit.young_over_kT * point.radius**2, fit.young_error * point.radius**2
 
 
-def check(figure, size, spectra, young):
+def check(figure, size, spectra):
     base = Point(size["base"])
-    last = min(10, lmax_of(size["base"]))
-    for name, changes in (
-        ("Jülicher", {}),
-        ("GK barycentric", {"scheme": "GompperKrollBarycentric"}),
-        *((f"r0 = {radius:g} nm", {"radius": radius}) for radius in size["radii"]),
-    ):
-        point = base._replace(**changes)
-        mean, error = mean_ratio(spectra[point]["fit"], point, 2, last)
+    last = min(10, spectra[base].l[-1])
+    named = {
+        "Jülicher": base,
+        "GK barycentric": base._replace(scheme="GompperKrollBarycentric"),
+        **{f"r0 = {r:g} nm": base._replace(radius=r) for r in size["radii"] if r != base.radius},
+    }
+    for name, point in named.items():
+        mean, error = mean_ratio(spectra[point], point, 2, last)
         figure.check(
-            f"mean of ⟨|u|²⟩ / (A17), l = 2 … {last}, {name}", mean, 1, 2 * error, error
+            f"⟨|u|²⟩ over (A17), mean of l = 2 … {last}, {name}", mean, 1, 2 * error, error
         )
-        _, ratio, errors = ratio_of(spectra[point]["fit"], point)
-        figure.note(f"{name}: ratio for l = 2 … " + ", ".join(
-            f"{r:.3f} ± {e:.3f}" for r, e in zip(ratio, errors, strict=True)
-        ))
-    slope, error = fit_slope(young, base)
-    figure.check("Y at Ξ = 0.59 over that of (45)", slope, 1, 0.3, error)
+    for name, point in named.items():
+        if point == base:
+            continue
+        mean, error = mean_ratio(spectra[point], point, 2, last)
+        other, other_error = mean_ratio(spectra[base], base, 2, last)
+        both = np.hypot(error, other_error)
+        figure.check(f"{name} against the first row", mean - other, 0, 2 * both, both)
+    hardest = base._replace(softness=SOFTNESS[-1])
+    young, error = young_of(spectra[hardest], hardest)
+    expected = theory.young_modulus(SOFTNESS[-1]) * base.radius**2
+    # (45) was measured at N = 1002; the modulus of a mesh is proportional to its vertices.
+    expected *= base.num_vertices / 1002
+    figure.check("Y r0²/kBT at Ξ = 0.59 against (45)", young, expected, 0.3 * expected, error)
+
+
+def note(figure, size, runs, spectra):
+    """Every spectrum in figures."""
+    for point, found in spectra.items():
+        _, ratio, error = ratio_of(found, point)
+        _, sums, _ = ratio_of(pooled(runs[point], "vertices"), point)
+        young, young_error = (value / point.num_vertices for value in young_of(found, point))
+        temperature = np.mean([run["temperature"] for run in runs[point]])
+        values = ", ".join(f"{r:.3f} ± {e:.3f}" for r, e in zip(ratio, error, strict=True))
+        figure.note(
+            f"N = {point.num_vertices}, κ = {point.rigidity:g} kBT, r0 = {point.radius:g} nm, "
+            f"Ξ = {point.softness:g}, {SCHEMES[point.scheme]}, {len(runs[point])} samples, "
+            f"{temperature:.1f} K: over (A17), l = 2 …: {values}; "
+            f"by the paper's vertex sum {', '.join(f'{value:.2f}' for value in sums)}; "
+            f"Y r0² = ({young:.3f} ± {young_error:.3f}) N kBT"
+        )
+
+
+# --- the picture -----------------------------------------------------------------------------
+
+
+def draw(figure, size, spectra):
+    base = Point(size["base"])
+    panels = (
+        ("a  number of vertices", "N", "num_vertices", size["vertices"], "{:d}"),
+        ("b  rigidity", "κ", "rigidity", size["rigidities"], "{:g} kBT"),
+        ("c  radius", "r0", "radius", size["radii"], "{:g} nm"),
+        ("d  softness", "Ξ", "softness", SOFTNESS, "{:g}"),
+    )
+    page, axes = plt.subplots(2, 3, figsize=(11, 6.6), layout="constrained")
+    a, b, c, d, e, f = axes.flat
+    for axis, (title, symbol, name, values, form) in zip((a, b, c, d), panels, strict=True):
+        for shift, value in enumerate(values):
+            point = base._replace(**{name: value})
+            show(axis, spectra[point], point, f"{symbol} = {form.format(value)}", shift)
+        axis.set_title(title, loc="left")
+    for shift, (scheme, label) in enumerate(SCHEMES.items()):
+        point = base._replace(scheme=scheme)
+        show(f, spectra[point], point, label, shift)
+    f.set_title("f  bending scheme", loc="left")
+    for axis in (a, b, c, d, f):
+        axis.axhline(1, color="black", linewidth=0.8)
+        axis.set(xlabel="l", ylabel="⟨|u_lm|²⟩ / (A17)", xscale="log", ylim=(0, 1.5))
+        axis.set_xticks([2, 3, 4, 6, 8, 12], ["2", "3", "4", "6", "8", "12"])
+        axis.minorticks_off()
+        axis.legend(fontsize=8, loc="lower right")
+    young = np.array(
+        [young_of(spectra[point], point) for point in (base._replace(softness=x) for x in SOFTNESS)]
+    )
+    e.errorbar(SOFTNESS, *(young.T / base.num_vertices), fmt="o", label="fit of (A18)")
+    grid = np.geomspace(0.02, 0.8, 50)
+    e.plot(grid, theory.young_modulus(grid) * 1e6 / 1002, color="black", lw=0.8, label="(45)")
+    e.set(xscale="log", yscale="log", xlabel="Ξ", ylabel="Y r0² / N kBT")
+    e.set_title("e  Young modulus", loc="left")
+    e.legend(fontsize=8)
+    figure.save(page, caption="Spectra over (A17), thin lines (A18) with fitted Y")
+
+
+def show(axis, found, point, label, shift):
+    """One spectrum with error bars, and (A18) with the modulus that was fitted to it."""
+    l, ratio, error = ratio_of(found, point)
+    color = f"C{shift}"
+    axis.errorbar(l, ratio, error, fmt="o", ms=3.5, color=color, label=label)
+    young, _ = young_of(found, point)
+    grid = np.linspace(2, l[-1], 100)
+    n = grid * (grid + 1)
+    stiffness = point.rigidity * theory.stiffness(grid)
+    axis.plot(
+        grid,
+        stiffness / (stiffness + young * 3 * (n - 2) / (3 * n - 2)),
+        color=color,
+        linewidth=0.7,
+    )
+
+
+if __name__ == "__main__":
+    main()

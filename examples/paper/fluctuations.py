@@ -5,8 +5,6 @@ Each run is a pure function of plain numbers, for `openmmhelfrich.sweep`, which 
 the scripts share runs too: what Fig. 6 has simulated, SM 5 and SM 7 find in the cache.
 """
 
-import time
-
 import numpy as np
 import openmm
 from displacements import Displacements
@@ -34,7 +32,7 @@ SNAPSHOTS = 20
 
 
 def parts_of(num_vertices):
-    """n of the icosphere with N = 10 n² + 2 vertices."""
+    """Return n of the icosphere with N = 10 n² + 2 vertices."""
     parts = round(((num_vertices - 2) / 10) ** 0.5)
     if 10 * parts**2 + 2 != num_vertices:
         raise ValueError(f"{num_vertices} is not 10 n² + 2 for a whole n; try {10 * parts**2 + 2}")
@@ -118,9 +116,8 @@ def fluctuate(
         `mode_amplitudes`; "compression" and "rotation", amplitudes of the displacements within the
         surface, see `Displacements`; "area", shape (num_frames,), in 4π r0²; "snapshots", shape
         (SNAPSHOTS, num_vertices, 3), nm; "temperature", K; "interval", ps between frames;
-        "time_step", ps; "seconds" of processor time.
+        "time_step", ps.
     """
-    started = time.process_time()
     vesicle = vesicle_of(num_vertices, rigidity, radius, softness, scheme)
     time_step = 0.5 * vesicle.max_time_step
     integrator = integrator_of("langevin", 2 * np.pi / vesicle.tau_2, time_step, seed)
@@ -145,7 +142,6 @@ def fluctuate(
         "temperature": temperature,
         "interval": stride * time_step,
         "time_step": time_step,
-        "seconds": time.process_time() - started,
     }
 
 
@@ -177,10 +173,8 @@ def relax(num_vertices, integrator, friction, lmax, periods, interval, time_step
     Returns
     -------
     dict
-        "fit", amplitudes of shape (num_frames, (lmax+1)²); "temperature", K;
-        "seconds" of processor time.
+        "fit", amplitudes of shape (num_frames, (lmax+1)²); "temperature", K.
     """
-    started = time.process_time()
     vesicle = vesicle_of(num_vertices, 20.0, RADIUS, SOFTNESS[0], "Julicher")
     settling_step = 0.5 * vesicle.max_time_step
     settling = integrator_of("langevin", 2 * np.pi / vesicle.tau_2, settling_step, seed)
@@ -198,7 +192,6 @@ def relax(num_vertices, integrator, friction, lmax, periods, interval, time_step
     return {
         "fit": mode_amplitudes(positions, vesicle.mesh.triangles, lmax).astype(np.float32),
         "temperature": temperature,
-        "seconds": time.process_time() - started,
     }
 
 

@@ -25,8 +25,8 @@ from .errors import MeshError  # noqa: E402
 from .forces import *  # noqa: E402, F403
 from .forces import __all__ as _force_names  # noqa: E402
 from .mesh import Mesh  # noqa: E402
-from .reporters import MembraneReporter, ModeReporter  # noqa: E402
 from .ramps import harden  # noqa: E402
+from .reporters import MembraneReporter, ModeReporter  # noqa: E402
 from .vesicle import Vesicle  # noqa: E402
 
 __version__ = _plugin.version()
