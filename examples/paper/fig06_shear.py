@@ -5,7 +5,7 @@ measured here without undulations: rotations t_lm of the vertices within the sur
 in a fluid; their mean squares give the shear modulus μ (see `displacements.py`). With the modulus K
 of the vertex density it predicts
 
-    ⟨|u_lm|²⟩ / (A17) = 1 / [1 + 4 μK r0² (n−2) / (μ(n−2) + K n) / κ (l+2)(l+1) l (l−1)],  n = l (l+1),
+    ⟨|u_lm|²⟩ / (A17) = 1 / [1 + 4 μK r0² (n−2) / (μ(n−2) + K n) / κ n (n−2)],  n = l (l+1),
 
 without any fit to the spectrum. The runs are those of `fig06_spectrum.py`.
 """

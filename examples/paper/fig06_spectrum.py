@@ -58,7 +58,7 @@ def main():
     spectra = {point: pooled(of_point, "fit") for point, of_point in runs.items()}
     figure.parameters(
         f"N = {size['base']}, κ = 20 kBT, r0 = 1000 nm, Ξ = 0.037, Jülicher where not varied; "
-        f"kV = 0; LangevinMiddle, 300 K, γ = ω_2, Δt = 0.05 √Ξ τ_fastest, ordered meshes; "
+        f"kV = 0; LangevinMiddle, 300 K, γ = ω_2, Δt = 0.075 √Ξ τ_fastest, ordered meshes; "
         f"{size['samples']} samples of {PERIODS} τ_2 ({size['few']} of varied N ≥ 1000, κ, Ξ)"
     )
     check(figure, size, spectra)
@@ -101,7 +101,7 @@ def arguments_of(point, samples):
             "lmax": int(point.num_vertices**0.5 / 2),
             "periods": PERIODS,
             "frames_per_period": 8,
-            "settle_periods": 4,
+            "settle_periods": 2,
             "seed": seed + 1,
         }
         for seed in range(samples)

@@ -20,9 +20,14 @@ SOFTNESS = (0.037, 0.15, 0.33, 0.59)
 # The area modulus of the paper at its radius; at other radii kA r0² is kept.
 AREA_MODULUS = 1.3  # kJ/mol/nm²
 RADIUS = 1000.0  # nm
+RIGIDITY = 20.0  # kBT
+MASS = 50.0  # amu, of a vertex
 
 # Count this up when the physics of a run changes, so that stored results are not used any more.
 VERSION = 1
+
+# Time step over the bound 0.1 √Ξ τ_fastest of Fig. 5.
+TIME_STEP = 0.75
 
 # Displacements within the surface are fitted with harmonics up to this l.
 DISPLACEMENT_LMAX = 8
@@ -93,8 +98,8 @@ def fluctuate(
     """Equilibrium fluctuations in one LangevinMiddle run.
 
     Averages in equilibrium depend on neither friction, mass nor time step. So the friction is
-    ω_2, which makes l = 2, the slowest mode, forget soonest, and the time step half of the paper's
-    bound 0.1 √Ξ τ_fastest.
+    ω_2, which makes l = 2, the slowest mode, forget soonest, and the time step TIME_STEP of the
+    paper's bound 0.1 √Ξ τ_fastest.
 
     Parameters
     ----------
@@ -119,7 +124,7 @@ def fluctuate(
         "time_step", ps.
     """
     vesicle = vesicle_of(num_vertices, rigidity, radius, softness, scheme)
-    time_step = 0.5 * vesicle.max_time_step
+    time_step = TIME_STEP * vesicle.max_time_step
     integrator = integrator_of("langevin", 2 * np.pi / vesicle.tau_2, time_step, seed)
     context = vesicle.simulation(integrator, fastest_platform()).context
     context.setVelocitiesToTemperature(TEMPERATURE, seed)
@@ -173,10 +178,11 @@ def relax(num_vertices, integrator, friction, lmax, periods, interval, time_step
     Returns
     -------
     dict
-        "fit", amplitudes of shape (num_frames, (lmax+1)²); "temperature", K.
+        "fit", amplitudes of shape (num_frames, (lmax+1)²); "interval", ps between frames;
+        "temperature", K.
     """
-    vesicle = vesicle_of(num_vertices, 20.0, RADIUS, SOFTNESS[0], "Julicher")
-    settling_step = 0.5 * vesicle.max_time_step
+    vesicle = vesicle_of(num_vertices, RIGIDITY, RADIUS, SOFTNESS[0], "Julicher")
+    settling_step = TIME_STEP * vesicle.max_time_step
     settling = integrator_of("langevin", 2 * np.pi / vesicle.tau_2, settling_step, seed)
     simulation = vesicle.simulation(settling, fastest_platform())
     simulation.context.setVelocitiesToTemperature(TEMPERATURE, seed)
@@ -191,6 +197,7 @@ def relax(num_vertices, integrator, friction, lmax, periods, interval, time_step
     positions, temperature = frames_of(context, last, num_frames, stride)
     return {
         "fit": mode_amplitudes(positions, vesicle.mesh.triangles, lmax).astype(np.float32),
+        "interval": stride * time_step,
         "temperature": temperature,
     }
 
@@ -225,3 +232,15 @@ def areas_of(positions, triangles):
     """Area of the triangles in each frame, shape (num_frames,), nm²."""
     a, b, c = (positions[:, triangles[:, corner]].astype(float) for corner in range(3))
     return np.linalg.norm(np.cross(b - a, c - a), axis=2).sum(axis=1) / 2
+
+
+def heights_virial(vesicle, positions):
+    """−Σ h ∂U_h/∂h over all heights of one frame, kJ/mol.
+
+    U = ε (x − ½)² with x = (d/h)⁴ > ½ gives −h ∂U/∂h = 8 ε (x − ½) x.
+    """
+    a, b, c = (positions[vesicle.mesh.triangles[:, corner]].astype(float) for corner in range(3))
+    twice_area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    sides = np.linalg.norm([b - a, c - b, a - c], axis=2)
+    x = (vesicle.min_height * sides / twice_area) ** 4
+    return float(np.sum(8 * vesicle.epsilon * np.maximum(x - 0.5, 0) * x))
