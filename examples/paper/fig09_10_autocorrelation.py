@@ -21,12 +21,12 @@ INTERNAL_FRICTION = 0.15
 
 # Integrator, friction in 1/ps, length in τ_2, time between frames and time step in ps.
 FULL = (
-    ("verlet", 0.0, 40, 80, 0.5),
-    ("langevin", 0.001, 40, 80, 0.5),
-    ("langevin", 0.01, 60, 200, 0.5),
-    ("brownian", 0.01, 40, 200, 0.2),
+    ("verlet", 0.0, 20, 80, 0.8),
+    ("langevin", 0.001, 20, 80, 0.8),
+    ("langevin", 0.01, 30, 200, 0.8),
+    ("brownian", 0.01, 20, 200, 0.4),
 )
-QUICK = tuple((name, friction, 20, every, step) for name, friction, _, every, step in FULL)
+QUICK = tuple((name, friction, 10, every, step) for name, friction, _, every, step in FULL)
 TITLES = {
     ("verlet", 0.0): "Verlet",
     ("langevin", 0.001): "LangevinMiddle, γ = 0.001/ps",

@@ -17,7 +17,7 @@ PAPER = Path(__file__).parents[2] / "examples" / "paper"
 def scripts_importable(monkeypatch):
     monkeypatch.syspath_prepend(str(PAPER))
     yield
-    for name in ("displacements", "fluctuations", "two_modes"):
+    for name in ("displacements", "fluctuations", "mesh_corrections", "two_modes"):
         sys.modules.pop(name, None)
 
 
@@ -112,3 +112,22 @@ def test_two_modes_are_one_where_bending_is_much_stiffer_than_the_mesh(integrato
         expected = theory.brownian_autocorrelation(times, omega, friction)
     assert found[0] == pytest.approx(1)
     assert np.abs(found - expected).max() < 1e-3
+
+
+def test_fit_of_meshes_finds_what_spectra_were_made_with():
+    from mesh_corrections import fit_meshes
+
+    random = np.random.default_rng(7)
+    spectra = []
+    for num_vertices, rigidity in ((492, 20.0), (1002, 20.0), (1002, 40.0), (1962, 10.0)):
+        l = np.arange(2, 16)
+        n = l * (l + 1)
+        stiffness = 0.97 * rigidity * n * (n - 2) / (1 + 2.5 * n / num_vertices)
+        stiffness = stiffness + 0.15 * num_vertices * 3 * (n - 2) / (3 * n - 2)
+        error = 0.02 * rigidity * n * (n - 2) / stiffness
+        ratio = rigidity * n * (n - 2) / stiffness + error * random.normal(size=len(l))
+        spectra.append((num_vertices, rigidity, l, ratio, error))
+    (a, c, _, y), errors, quality = fit_meshes(spectra)
+    assert (np.abs(np.array([a, c, y]) - (0.97, 2.5, 0.15)) < 4 * errors[[0, 1, 3]]).all()
+    assert errors[0] < 0.03 and errors[3] < 0.02
+    assert 0.5 < quality < 1.6
