@@ -81,6 +81,11 @@ class Figure:
         self._pictures: list[dict] = []
         self._seconds = 0.0
 
+    @property
+    def plot_only(self):
+        """Whether nothing is to be computed."""
+        return self._options.plot_only
+
     def choose(self, full, quick):
         """One of two values: of the full size, or of the quick one."""
         return quick if self.quick else full

@@ -56,7 +56,7 @@ def check(figure, size, runs, areas):
     base = Point(size["base"])
     reference, error = areas[base]
     for rigidity in size["rigidities"]:
-        if rigidity != base.rigidity:
+        if rigidity != base.rigidity and base._replace(rigidity=rigidity) in areas:
             area, other = areas[base._replace(rigidity=rigidity)]
             both = np.hypot(error, other)
             figure.check(
@@ -67,7 +67,7 @@ def check(figure, size, runs, areas):
                 both,
             )
     for radius in size["radii"]:
-        if radius != base.radius:
+        if radius != base.radius and base._replace(radius=radius) in areas:
             area, other = areas[base._replace(radius=radius)]
             both = np.hypot(error, other)
             figure.check(
@@ -77,21 +77,22 @@ def check(figure, size, runs, areas):
                 max(3 * both, 1e-5),
                 both,
             )
-    by_softness = [areas[base._replace(softness=softness)][0] for softness in SOFTNESS]
+    found = [x for x in SOFTNESS if base._replace(softness=x) in areas]
+    by_softness = [areas[base._replace(softness=softness)][0] for softness in found]
     figure.claim(
         "⟨A⟩/4πr0²",
-        ", ".join(f"{area:.5f}" for area in by_softness) + f" at Ξ = {SOFTNESS}",
+        ", ".join(f"{area:.5f}" for area in by_softness) + f" at Ξ = {found}",
         "rises with Ξ",
         all(np.diff(by_softness) > 0),
     )
-    for softness in SOFTNESS:
+    for softness in found:
         point = base._replace(softness=softness)
-        found, found_error = strain(point, areas[point])
+        measured, error = strain(point, areas[point])
         demanded, demanded_error = virial_strain(point, runs[point])
-        both = np.hypot(found_error, demanded_error)
+        both = np.hypot(error, demanded_error)
         figure.check(
             f"10⁴ (⟨A⟩/A0 − 1) at Ξ = {softness:g} against the virial theorem",
-            1e4 * found,
+            1e4 * measured,
             1e4 * demanded,
             1e4 * max(3 * both, 0.03 * demanded),
             1e4 * both,
@@ -110,6 +111,7 @@ def draw(figure, size, areas):
     }
     page, axes = plt.subplots(1, 4, figsize=(11, 3), layout="constrained", sharey=True)
     for axis, (name, (label, values)) in zip(axes, axes_of.items(), strict=True):
+        values = [value for value in values if base._replace(**{name: value}) in areas]
         points = [base._replace(**{name: value}) for value in values]
         means, errors = np.array([areas[point] for point in points]).T
         axis.errorbar(values, means, errors, fmt="o", label="⟨A⟩")
