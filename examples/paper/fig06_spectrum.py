@@ -15,7 +15,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from _paper import Figure
 from fluctuations import RADIUS, SOFTNESS, VERSION, fluctuate
-from mesh_corrections import fit_meshes, fit_shear, spectrum_ratio
+from mesh_corrections import bending_ratio, fit_meshes, fit_shear, shear_ratio
 from openmmhelfrich.analysis import Spectrum, fit_young, spectrum, theory
 from openmmhelfrich.sweep import Cache
 
@@ -180,7 +180,7 @@ def mean_ratio(found, point, first, last):
 
 
 def young_of(found, point):
-    """Y r0² over kBT and its error from the smallest l, the softening of the mesh taken off."""
+    """Y r0² over N kBT and its error from the smallest l, see `mesh_corrections.py`."""
     l, ratio, error = ratio_of(found, point)
     chosen = slice(0, LARGEST_FITTED - 1)
     return fit_shear(point.num_vertices, point.rigidity, l[chosen], ratio[chosen], error[chosen])
@@ -230,13 +230,12 @@ def check(figure, size, spectra):
 
 def note_common_fit(figure, soft_meshes):
     """The fluid's rigidity that all soft meshes together have, and their corrections."""
-    (rigidity, soft, softer, young), errors, quality = fit_meshes(soft_meshes)
-    figure.check("fluid rigidity over κ, all soft meshes", rigidity, 1, 0.05, errors[0])
+    (rigidity, c, young), errors, quality = fit_meshes(soft_meshes)
+    figure.check("rigidity in all soft spectra over κ", rigidity, 1, 0.05, errors[0])
     figure.note(
-        f"All soft meshes, l ≤ √N/3: kBT/⟨|u|²⟩ = a κ (l+2)(l+1)l(l−1) / (1 + c x + c' x²) + "
-        f"y N kBT 3(n−2)/(3n−2), n = l(l+1), x = n/N, with a = {rigidity:.3f} ± {errors[0]:.3f}, "
-        f"c = {soft:.2f} ± {errors[1]:.2f}, c' = {softer:.1f} ± {errors[2]:.1f}, "
-        f"y = {young:.3f} ± {errors[3]:.3f}; χ² per degree of freedom at most {quality:.1f}"
+        "All soft meshes, l ≤ √N/3, formula of mesh_corrections.py: "
+        f"a = {rigidity:.3f} ± {errors[0]:.3f}, c = {c:.2f} ± {errors[1]:.2f}, "
+        f"y = {young:.3f} ± {errors[2]:.3f}, χ² per degree of freedom {quality:.2f}"
     )
 
 
@@ -245,7 +244,7 @@ def note(figure, runs, spectra):
     for point, found in spectra.items():
         _, ratio, error = ratio_of(found, point)
         _, sums, _ = ratio_of(pooled(runs[point], "vertices"), point)
-        young, young_error = (value / point.num_vertices for value in young_of(found, point))
+        young, young_error = young_of(found, point)
         temperature = np.mean([run["temperature"] for run in runs[point]])
         values = ", ".join(f"{r:.3f} ± {e:.3f}" for r, e in zip(ratio, error, strict=True))
         figure.note(
@@ -291,13 +290,13 @@ def draw(figure, size, spectra):
         axis.legend(fontsize=8, loc="lower right")
     found = {x: base._replace(softness=x) for x in SOFTNESS if base._replace(softness=x) in spectra}
     young = np.array([young_of(spectra[point], point) for point in found.values()])
-    e.errorbar(list(found), *(young.T / base.num_vertices), fmt="o", label="(A18) and softening")
+    e.errorbar(list(found), *young.T, fmt="o", label="measured")
     grid = np.geomspace(0.02, 0.8, 50)
     e.plot(grid, theory.young_modulus(grid) * 1e6 / 1002, color="black", lw=0.8, label="(45)")
     e.set(xscale="log", yscale="log", xlabel="Ξ", ylabel="Y r0² / N kBT")
     e.set_title("e  Young modulus", loc="left")
     e.legend(fontsize=8)
-    figure.save(page, caption="Spectra over (A17), thin lines (A18) with fitted Y")
+    figure.save(page, caption="Spectra over (A17), thin lines: mesh_corrections.py")
 
 
 def show(axis, found, point, label, shift):
@@ -307,7 +306,8 @@ def show(axis, found, point, label, shift):
     axis.errorbar(l, ratio, error, fmt="o", ms=3.5, color=color, label=label)
     young, _ = young_of(found, point)
     grid = np.linspace(2, l[-1], 100)
-    curve = spectrum_ratio(point.num_vertices, point.rigidity, grid, young / point.num_vertices)
+    vesicle = (point.num_vertices, point.rigidity, grid)
+    curve = 1 / (bending_ratio(*vesicle) + young * shear_ratio(*vesicle))
     axis.plot(grid, curve, color=color, linewidth=0.7)
 
 

@@ -1,106 +1,88 @@
-"""How spectra of meshes differ from those of a continuous fluid, fitted to many of them at once."""
+"""How spectra of meshes differ from (A17), the spectrum of a continuous fluid at low temperature.
+
+kBT/⟨|u_lm|²⟩ = a κ_l (l+2)(l+1) l (l−1) / (1 + c n / N) + y N kBT · 3 (n−2) / (3n−2),   n = l (l+1)
+
+- κ_l = κ − (3/4π) kBT ln(√N / l): undulations of shorter wave length soften the membrane. Peliti
+  and Leibler, doi:10.1103/PhysRevLett.54.1690.
+- c: waves that come near to the spacing of the vertices cost less than those of a continuum. The
+  cotangent Laplacian of an even triangular lattice has c = 1.8, an uneven mesh more.
+- y: vertices that keep their neighbours resist shear, Y r0² = y N kBT in (A18).
+- a: the rigidity that is left, over the one that was put in. It should be 1.
+"""
 
 import numpy as np
 from scipy.optimize import curve_fit
 
-# a, c and c' of `fit_meshes` at full size, Ξ = 0.037. a is below 1, as undulations of small wave
-# length soften a membrane for longer ones, by some (3/4π) kBT ln(√N / l): Peliti and Leibler,
-# doi:10.1103/PhysRevLett.54.1690.
-RIGIDITY_SHARE = 0.97
-SOFTENING = (2.9, 0.0)
+# c of soft meshes, as `fit_meshes` finds it at full size.
+SOFTENING = 2.9
 
 
-def spectrum_ratio(num_vertices, rigidity, l, young):
-    """⟨|u_lm|²⟩ over (A17) of a mesh with the corrections above and Y r0² = `young` N kBT.
+def bending_ratio(num_vertices, rigidity, l, c=SOFTENING):
+    """Bending stiffness of a mode over that of (A17): the first term above, with a = 1."""
+    renormalised = 1 - 3 / (4 * np.pi * rigidity) * np.log(np.sqrt(num_vertices) / l)
+    return renormalised / (1 + c * l * (l + 1) / num_vertices)
 
-    Parameters
-    ----------
-    num_vertices : int
-        N.
-    rigidity : float
-        κ over kBT.
-    l : array_like
-        2 or more.
-    young : float
-        y of `fit_meshes`.
 
-    Returns
-    -------
-    ndarray
-        Shape of l.
-    """
+def shear_ratio(num_vertices, rigidity, l):
+    """Stiffness of a mode by shear, the second term above for y = 1, over that of (A17)."""
     n = l * (l + 1)
-    return 1 / (
-        RIGIDITY_SHARE / softening(n / num_vertices, *SOFTENING)
-        + young * num_vertices * 3 / (3 * n - 2) / (rigidity * n)
-    )
-
-
-def softening(x, c, c2):
-    """By how much modes exceed those of a continuum, x = l (l+1) / N."""
-    return 1 + c * x + c2 * x**2
-
-
-def fit_shear(num_vertices, rigidity, l, ratio, error):
-    """Y r0² over kBT of one mesh, and its error, by least squares to `spectrum_ratio`.
-
-    Parameters
-    ----------
-    num_vertices, rigidity
-        As for `spectrum_ratio`.
-    l, ratio, error : array_like
-        ⟨|u_lm|²⟩ over (A17) and its error, for the l that are fitted.
-
-    Returns
-    -------
-    tuple of float
-    """
-
-    def model(modes, young):
-        return np.log(np.abs(spectrum_ratio(num_vertices, rigidity, modes, young)))
-
-    found, covariance = curve_fit(
-        model, l, np.log(ratio), [0.1], sigma=error / ratio, absolute_sigma=True
-    )
-    return num_vertices * found[0], num_vertices * np.sqrt(covariance[0, 0])
+    return num_vertices * 3 / (3 * n - 2) / (rigidity * n)
 
 
 def fit_meshes(spectra):
-    """What spectra of soft meshes have in common, by least squares.
-
-    kBT/⟨|u_lm|²⟩ = a κ (l+2)(l+1) l (l−1) / (1 + c x + c' x²) + y N kBT · 3 (n−2) / (3n−2)
-
-    n = l (l+1) and x = n / N: a fluid of rigidity a κ, softer where waves come near to the spacing
-    of the vertices, with a shear modulus Y r0² = y N kBT as in (A18). Modes up to √N / 3 are used.
+    """What spectra of soft meshes have in common, by least squares to the formula above.
 
     Parameters
     ----------
     spectra : sequence of tuple
-        N, κ / kBT, and the arrays l, ratio of ⟨|u_lm|²⟩ to (A17), and error of the ratio.
+        N, κ / kBT, and the arrays l, ratio of ⟨|u_lm|²⟩ to (A17), and error of the ratio. Modes up
+        to √N / 3 are used.
 
     Returns
     -------
     values, errors : ndarray
-        a, c, c', y and their standard errors, shape (4,).
+        a, c, y and their standard errors, shape (3,).
     float
         χ² per degree of freedom. Errors are scaled with its root where it is above 1.
     """
     columns = []
     for num_vertices, rigidity, l, ratio, error in spectra:
         chosen = l <= num_vertices**0.5 / 3
-        n = l[chosen] * (l[chosen] + 1)
-        shear = num_vertices * 3 / (3 * n - 2) / (rigidity * n)
-        x = n / num_vertices
-        columns.append(np.stack([x, shear, ratio[chosen], error[chosen] / ratio[chosen]]))
-    x, shear, ratio, error = np.concatenate(columns, axis=1)
+        l = l[chosen]
+        ones = np.ones(len(l))
+        columns.append(
+            np.stack([num_vertices * ones, rigidity * ones, l, ratio[chosen], error[chosen]])
+        )
+    num_vertices, rigidity, l, ratio, error = np.concatenate(columns, axis=1)
 
-    def model(_, a, c, c2, y):
+    def model(_, a, c, y):
         # Logarithms, because what a run fixes is the relative error of a mean square.
-        return -np.log(a / softening(x, c, c2) + y * shear)
+        bending = a * bending_ratio(num_vertices, rigidity, l, c)
+        return -np.log(bending + y * shear_ratio(num_vertices, rigidity, l))
 
     found, covariance = curve_fit(
-        model, x, np.log(ratio), (1.0, 2.0, 0.0, 0.1), sigma=error, absolute_sigma=True
+        model, l, np.log(ratio), (1.0, 2.0, 0.1), sigma=error / ratio, absolute_sigma=True
     )
-    deviations = (np.log(ratio) - model(x, *found)) / error
-    quality = float(deviations @ deviations / (len(x) - len(found)))
+    deviations = (np.log(ratio) - model(l, *found)) / (error / ratio)
+    quality = float(deviations @ deviations / (len(l) - len(found)))
     return found, np.sqrt(max(1.0, quality) * np.diag(covariance)), quality
+
+
+def fit_shear(num_vertices, rigidity, l, ratio, error):
+    """The y of one mesh, with a = 1 and c = SOFTENING, and its error.
+
+    Parameters
+    ----------
+    num_vertices, rigidity, l, ratio, error
+        As for `fit_meshes`; all l are used.
+
+    Returns
+    -------
+    tuple of float
+    """
+    bending = bending_ratio(num_vertices, rigidity, l)
+    shear = shear_ratio(num_vertices, rigidity, l)
+    # A mean square has the relative error of its inverse, in which the problem is linear.
+    weights = (ratio**2 / error) * shear
+    rest = (ratio**2 / error) * (1 / ratio - bending)
+    return float(weights @ rest / (weights @ weights)), float((weights @ weights) ** -0.5)
