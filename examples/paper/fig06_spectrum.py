@@ -200,7 +200,8 @@ def check(figure, size, spectra):
         "GK barycentric": base._replace(scheme="GompperKrollBarycentric"),
         **{f"r0 = {r:g} nm": base._replace(radius=r) for r in size["radii"] if r != base.radius},
     }
-    last = min(10, spectra[base].l[-1])
+    # The largest l that a mesh resolves within a third or so: 10 for N = 1002.
+    last = int(base.num_vertices**0.5 / 3)
     means = {
         name: mean_ratio(spectra[point], point, 2, last)
         for name, point in named.items()
@@ -214,8 +215,10 @@ def check(figure, size, spectra):
     reference, reference_error = means.pop("Jülicher")
     for name, (mean, error) in means.items():
         both = np.hypot(error, reference_error)
+        # Radii are the same vesicle in other units; schemes differ where the mesh is coarse.
+        tolerance = 3 * both if name.startswith("r0") else max(3 * both, 0.1)
         figure.check(
-            f"the same, {name} less Jülicher at 1000 nm", mean - reference, 0, 2 * both, both
+            f"the same, {name} less Jülicher at 1000 nm", mean - reference, 0, tolerance, both
         )
     hardest = base._replace(softness=SOFTNESS[-1])
     if hardest not in spectra:
@@ -306,8 +309,8 @@ def show(axis, found, point, label, shift):
     axis.errorbar(l, ratio, error, fmt="o", ms=3.5, color=color, label=label)
     young, _ = young_of(found, point)
     grid = np.linspace(2, l[-1], 100)
-    vesicle = (point.num_vertices, point.rigidity, grid)
-    curve = 1 / (bending_ratio(*vesicle) + young * shear_ratio(*vesicle))
+    shear = young * shear_ratio(point.num_vertices, point.rigidity, grid)
+    curve = 1 / (bending_ratio(point.num_vertices, grid) + shear)
     axis.plot(grid, curve, color=color, linewidth=0.7)
 
 

@@ -1,13 +1,13 @@
 """How spectra of meshes differ from (A17), the spectrum of a continuous fluid at low temperature.
 
-kBT/⟨|u_lm|²⟩ = a κ_l (l+2)(l+1) l (l−1) / (1 + c n / N) + y N kBT · 3 (n−2) / (3n−2),   n = l (l+1)
+kBT/⟨|u_lm|²⟩ = a κ (l+2)(l+1) l (l−1) / (1 + c n / N) + y N kBT · 3 (n−2) / (3n−2),   n = l (l+1)
 
-- κ_l = κ − (3/4π) kBT ln(√N / l): undulations of shorter wave length soften the membrane. Peliti
-  and Leibler, doi:10.1103/PhysRevLett.54.1690.
 - c: waves that come near to the spacing of the vertices cost less than those of a continuum. The
   cotangent Laplacian of an even triangular lattice has c = 1.8, an uneven mesh more.
 - y: vertices that keep their neighbours resist shear, Y r0² = y N kBT in (A18).
-- a: the rigidity that is left, over the one that was put in. It should be 1.
+- a: the rigidity that is left, over the one that was put in. It should be 1, less some 3 % by
+  which undulations of shorter wave length soften a membrane of 20 kBT, (3/4π) kBT ln(√N / l):
+  Peliti and Leibler, doi:10.1103/PhysRevLett.54.1690.
 """
 
 import numpy as np
@@ -17,10 +17,9 @@ from scipy.optimize import curve_fit
 SOFTENING = 2.9
 
 
-def bending_ratio(num_vertices, rigidity, l, c=SOFTENING):
+def bending_ratio(num_vertices, l, c=SOFTENING):
     """Bending stiffness of a mode over that of (A17): the first term above, with a = 1."""
-    renormalised = 1 - 3 / (4 * np.pi * rigidity) * np.log(np.sqrt(num_vertices) / l)
-    return renormalised / (1 + c * l * (l + 1) / num_vertices)
+    return 1 / (1 + c * l * (l + 1) / num_vertices)
 
 
 def shear_ratio(num_vertices, rigidity, l):
@@ -57,7 +56,7 @@ def fit_meshes(spectra):
 
     def model(_, a, c, y):
         # Logarithms, because what a run fixes is the relative error of a mean square.
-        bending = a * bending_ratio(num_vertices, rigidity, l, c)
+        bending = a * bending_ratio(num_vertices, l, c)
         return -np.log(bending + y * shear_ratio(num_vertices, rigidity, l))
 
     found, covariance = curve_fit(
@@ -80,7 +79,7 @@ def fit_shear(num_vertices, rigidity, l, ratio, error):
     -------
     tuple of float
     """
-    bending = bending_ratio(num_vertices, rigidity, l)
+    bending = bending_ratio(num_vertices, l)
     shear = shear_ratio(num_vertices, rigidity, l)
     # A mean square has the relative error of its inverse, in which the problem is linear.
     weights = (ratio**2 / error) * shear

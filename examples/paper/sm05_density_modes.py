@@ -78,7 +78,8 @@ def check(figure, num_vertices, factors):
     figure.check("S of short waves, l ≥ 2.5 √N, Ξ = 0.037", mean, 1, 0.1, error)
     figure.note(
         "The paper's curves go to 1 at small Ξ. Here S of short waves does; that of long waves "
-        f"stays at {levels[0][0]:.2f}, which is 1 / (3/2 + 4π μ r0²/N kBT) within a few per cent."
+        f"stays at {levels[0][0]:.2f}, near the 0.44 of 1 / (3/2 + 4π μ r0²/N kBT) "
+        "with μ from fig06_shear.py"
     )
 
 

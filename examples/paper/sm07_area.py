@@ -15,6 +15,7 @@ import numpy as np
 from _paper import Figure, mean_and_error
 from fig06_spectrum import FULL, QUICK, Point, measure, points_of
 from fluctuations import AREA_MODULUS, RADIUS, SOFTNESS, heights_virial, vesicle_of
+from openmmhelfrich.analysis import autocorrelation_time
 from openmmhelfrich.vesicle import KBT
 
 
@@ -22,13 +23,18 @@ def main():
     figure = Figure("sm07", "SM 7", "Mean area of fluctuating vesicles", __doc__)
     size = figure.choose(FULL, QUICK)
     runs = measure(points_of(size), figure)
-    areas = {
-        point: mean_and_error([run["area"].mean() for run in of]) for point, of in runs.items()
-    }
+    areas = {point: mean_area(of_point) for point, of_point in runs.items()}
     figure.parameters("the runs of Fig. 6; targets A0 are the areas of the ordered meshes")
     check(figure, size, runs, areas)
     draw(figure, size, areas)
     figure.finish()
+
+
+def mean_area(runs):
+    """⟨A⟩/4π r0² and its error, from the frames of all samples."""
+    frames = np.concatenate([run["area"] for run in runs])
+    time = autocorrelation_time(frames)
+    return frames.mean(), np.sqrt(2 * time * frames.var() / len(frames))
 
 
 def strain(point, area):
