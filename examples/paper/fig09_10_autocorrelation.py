@@ -13,6 +13,7 @@ import numpy as np
 from _paper import Figure
 from fluctuations import MASS, RADIUS, RIGIDITY, VERSION, relax
 from openmmhelfrich.analysis import autocorrelation, theory
+from openmmhelfrich.sweep import Cache
 from openmmhelfrich.vesicle import KBT
 from two_modes import two_mode_autocorrelation
 
@@ -42,6 +43,15 @@ def main():
     figure = Figure("fig09_10", "Figs. 9, 10", "Autocorrelations of the modes", __doc__)
     num_vertices = figure.choose(1002, 252)
     settings = figure.choose(FULL, QUICK)
+    if figure.plot_only:
+        store = Cache(figure.results / "cache")
+        stored = [
+            store.path(relax.__name__, store.key(relax.__name__, point, VERSION)).exists()
+            for point in points_of(num_vertices, settings)
+        ]
+        if not all(stored):
+            figure.reduced(f"{sum(stored)} of {len(stored)} runs")
+        settings = [row for row, there in zip(settings, stored, strict=True) if there]
     runs = figure.sweep(relax, points_of(num_vertices, settings), VERSION)
     figure.parameters(
         f"N = {num_vertices}, κ = 20 kBT, r0 = 1000 nm, Ξ = 0.037, Jülicher, kV = 0, 300 K; "
@@ -136,7 +146,12 @@ def rms(values):
 def draw(figure, num_vertices, measured):
     kinds = list(dict.fromkeys((name, friction) for name, friction, _ in measured))
     page, axes = plt.subplots(
-        len(kinds), len(MODES), figsize=(13, 8), layout="constrained", sharey=True
+        len(kinds),
+        len(MODES),
+        figsize=(13, 1 + 1.8 * len(kinds)),
+        layout="constrained",
+        sharey=True,
+        squeeze=False,
     )
     for row, (name, friction) in zip(axes, kinds, strict=True):
         for axis, l in zip(row, MODES, strict=True):
