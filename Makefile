@@ -18,7 +18,7 @@ CPP := $(wildcard $(foreach any,wrappers/* wrappers/*/* wrappers/*/*/* tests/cpp
 PY := $(wildcard setup.py python tests examples benches)
 
 .DEFAULT_GOAL := build
-.PHONY: build test lint format demo bench clean help check-tools test-rust test-package test-python FORCE
+.PHONY: build test lint format demo paper bench clean help check-tools test-rust test-package test-python FORCE
 
 build: $(VENV)/.installed ## build everything and install it in .venv (the default)
 	@echo "openmm-helfrich is installed in .venv; try: make demo"
@@ -54,6 +54,13 @@ test-python: build # what a user sees
 
 demo: build ## simulate a vesicle and draw it with its fluctuation spectrum (about two minutes)
 	@$(VENV)/bin/python examples/vesicle.py
+
+paper: build ## make the paper's figures in small versions, and a report of them, in out/paper
+	@failed=; for script in examples/paper/fig*.py examples/paper/sm*.py; do \
+	    $(VENV)/bin/python $$script --quick || failed="$$failed $$script"; \
+	done; \
+	$(VENV)/bin/python examples/paper/report.py --results out/paper/quick --out out/paper && \
+	if [ -n "$$failed" ]; then echo "paper: failed or outside of their tolerances:$$failed" >&2; exit 1; fi
 
 bench: build ## measure the cost of an evaluation and of a time step
 	@$(CARGO) bench -q --locked --bench evaluate -- --output-format bencher --warm-up-time 0.5 --measurement-time 2

@@ -20,7 +20,7 @@
 //! let topology = Arc::new(Topology::new(&triangles, 6)?);
 //! let area = Term::new("SurfaceAreaForce", 0, &[1.0, 2.0 * 3f64.sqrt()])?;
 //! let (mut energy, mut forces) = ([Contribution::default()], [0.0; 18]);
-//! CpuEvaluator::new(topology).evaluate([&area].into_iter(), &positions, &mut energy, Some(&mut forces))?;
+//! CpuEvaluator::new(topology).evaluate(&[&area], &positions, &mut energy, Some(&mut forces))?;
 //! assert!((energy[0].energy - 3f64.sqrt()).abs() < 1e-12);
 //! assert!(forces[0] < 0.0);
 //! # Ok::<(), openmm_helfrich::error::Error>(())
@@ -38,6 +38,8 @@ pub mod membrane;
 pub mod mesh;
 pub mod openmm;
 pub mod potentials;
+pub mod real;
+pub mod team;
 
 #[cfg(test)]
 mod test_meshes;

@@ -4,6 +4,7 @@ use crate::error::{Error, Result};
 use crate::evaluator::CpuEvaluator;
 use crate::mesh::Topology;
 use crate::potentials::{Contribution, Element, Term};
+use smallvec::SmallVec;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, Ordering};
 
@@ -40,7 +41,7 @@ impl Membrane {
     }
 
     /// Evaluate terms together. Positions (nm) and forces (kJ/mol/nm) are those of all particles of the
-    /// System, x y z of one after the other; forces are added.
+    /// System, x y z of one after the other; forces are added. Without contributions no energies are summed.
     ///
     /// # Errors
     /// Those of [`CpuEvaluator::evaluate`], and a parameter outside its domain, as a Context parameter
@@ -54,16 +55,18 @@ impl Membrane {
     ) -> Result<()> {
         let length = 3 * self.num_particles;
         let fits = forces.as_ref().is_none_or(|forces| forces.len() == length);
-        if positions.len() != length || !fits || contributions.len() != terms.len() {
+        let counts = contributions.is_empty() || contributions.len() == terms.len();
+        if positions.len() != length || !fits || !counts {
             return Err(Error::Contract(format!(
-                "needs positions and forces of {} particles and one contribution a term",
+                "needs positions and forces of {} particles and one contribution a term, or none",
                 self.num_particles
             )));
         }
         for term in terms {
             self.check(term)?;
         }
-        self.evaluator.evaluate(terms.iter(), positions, contributions, forces)
+        let terms: SmallVec<[&Term; 8]> = terms.iter().collect();
+        self.evaluator.evaluate(&terms, positions, contributions, forces)
     }
 
     /// Refuse a term with values outside their domains, or with more or fewer values for single

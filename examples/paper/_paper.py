@@ -47,13 +47,17 @@ class Figure:
         parser = argparse.ArgumentParser(
             description=description, formatter_class=argparse.RawDescriptionHelpFormatter
         )
-        parser.add_argument(
+        size = parser.add_mutually_exclusive_group()
+        size.add_argument(
             "--quick", action="store_true", help="smaller and fewer runs, seconds to minutes"
+        )
+        size.add_argument(
+            "--medium", action="store_true", help="the sizes of docs/reproduction.md, minutes"
         )
         parser.add_argument(
             "--results",
             type=Path,
-            help="folder of stored results, pictures, numbers (default: out/paper/full or quick)",
+            help="folder of stored results, pictures, numbers (default: out/paper/SIZE)",
         )
         parser.add_argument(
             "--plot-only", action="store_true", help="draw and check again what is stored"
@@ -72,7 +76,8 @@ class Figure:
             parser.error(f"--workers: need 0 or more, got {options.workers}")
         self.name, self.target, self.title = name, target, title
         self.quick = options.quick
-        self.results = options.results or Path("out/paper") / ("quick" if self.quick else "full")
+        self.size = "quick" if options.quick else "medium" if options.medium else "full"
+        self.results = options.results or Path("out/paper") / self.size
         self._options = options
         self._rows: list[dict] = []
         self._notes: list[str] = []
@@ -86,8 +91,10 @@ class Figure:
         """Whether nothing is to be computed."""
         return self._options.plot_only
 
-    def choose(self, full, quick):
-        """One of two values: of the full size, or of the quick one."""
+    def choose(self, full, quick, medium=None):
+        """One of three values: of the full size, the quick one, or the medium one (or full)."""
+        if self.size == "medium" and medium is not None:
+            return medium
         return quick if self.quick else full
 
     def sweep(self, function, points, version=1, description=None):
@@ -115,7 +122,7 @@ class Figure:
         self._parameters = text
 
     def reduced(self, text):
-        """Say in what the full run is smaller than the paper's."""
+        """Say in what this run is smaller than the paper's."""
         self._reduced.append(text)
 
     def note(self, text):
@@ -160,6 +167,7 @@ class Figure:
             "target": self.target,
             "title": self.title,
             "quick": self.quick,
+            "size": self.size,
             "parameters": self._parameters,
             "reduced": self._reduced,
             "rows": self._rows,

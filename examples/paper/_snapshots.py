@@ -6,12 +6,15 @@ import math
 
 import numpy as np
 from _paper import shrink
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
 
-MISSING = "the snapshots need PyVista: install openmm-helfrich[paper]"
+COLOURS = "RdYlBu_r"
 
 
 def draw_meshes(path, panels, columns, label=None, size=300, views=None, edges=True):
-    """Write a picture of several meshes side by side.
+    """Write a picture of several meshes side by side, all at the same scale in a row.
 
     Parameters
     ----------
@@ -26,60 +29,28 @@ def draw_meshes(path, panels, columns, label=None, size=300, views=None, edges=T
     size : int
         Width of a panel, pixels.
     views : list of str, optional
-        For each panel "tilted" (default) or "cut": the half behind a plane through the axis that is
-        shortest, seen from the side.
+        For each panel "tilted" (default) or "cut": the half behind the plane of x and z.
     edges : bool
         Whether to draw the edges of the triangles.
     """
-    try:
-        import pyvista
-    except ImportError:
-        raise ImportError(MISSING) from None
-    rows = math.ceil(len(panels) / columns)
-    plotter = pyvista.Plotter(
-        off_screen=True,
-        shape=(rows, columns),
-        window_size=(columns * size, rows * size),
-        border=False,
-    )
-    plotter.set_background("white")
+    views = views or ["tilted"] * len(panels)
     values = [scalars for _, _, scalars in panels if scalars is not None]
-    limits = _limits(np.concatenate(values)) if values else None
-    for index, (title, mesh, scalars) in enumerate(panels):
-        plotter.subplot(index // columns, index % columns)
-        surface = _surface(pyvista, mesh, scalars)
-        view = views[index] if views else "tilted"
-        if view == "cut":
-            surface = surface.clip(normal="y", origin=(0, 0, 0), invert=False)
-        plotter.add_mesh(
-            surface,
-            scalars=None if scalars is None else "values",
-            clim=limits,
-            cmap="RdYlBu_r",
-            color="#d9b08c" if scalars is None else None,
-            show_edges=edges,
-            edge_color="#444444",
-            line_width=0.6,
-            smooth_shading=False,
-            show_scalar_bar=label is not None and index == len(panels) - 1,
-            scalar_bar_args={"title": label, "color": "black", "vertical": False, "n_labels": 3}
-            if label
-            else None,
+    limits = tuple(np.percentile(np.concatenate(values), (3, 97))) if values else None
+    rows = math.ceil(len(panels) / columns)
+    # Labels are drawn by matplotlib, whose fonts have Greek letters.
+    picture = Figure(figsize=(columns * size / 100, rows * (size + 20) / 100), layout="constrained")
+    axes = np.atleast_1d(picture.subplots(rows, columns)).ravel()
+    for axis in axes:
+        axis.axis("off")
+    for axis, (title, mesh, scalars), view in zip(axes, panels, views, strict=False):
+        axis.imshow(_render(mesh, scalars, limits, view, size, edges))
+        axis.set_title(title, fontsize=max(5, size / 28))
+    if label:
+        bar = picture.colorbar(
+            ScalarMappable(Normalize(*limits), COLOURS), ax=list(axes), shrink=0.6
         )
-        place = {"position": (0.03, 0.9), "viewport": True}
-        plotter.add_text(title, font_size=9, color="black", **place)
-        extent = 1.15 * np.linalg.norm(mesh.vertices - mesh.vertices.mean(axis=0), axis=1).max()
-        direction = (0.0, -1.0, 0.0) if view == "cut" else (0.35, -1.0, 0.45)
-        plotter.camera.focal_point = (0, 0, 0)
-        plotter.camera.position = tuple(
-            5 * extent * np.array(direction) / np.linalg.norm(direction)
-        )
-        plotter.camera.up = (0, 0, 1)
-        plotter.camera.parallel_projection = True
-        plotter.camera.parallel_scale = extent
-        plotter.camera.clipping_range = (0.1 * extent, 20 * extent)
-    plotter.screenshot(path)
-    plotter.close()
+        bar.set_label(label)
+    picture.savefig(path, dpi=100)
     shrink(path)
 
 
@@ -92,14 +63,44 @@ def along_axes(mesh):
     return mesh.translated(-mesh.vertices.mean(axis=0)).rotated(axes)
 
 
-def _surface(pyvista, mesh, scalars):
-    faces = np.insert(mesh.triangles, 0, 3, axis=1).ravel()
-    surface = pyvista.PolyData(mesh.vertices - mesh.vertices.mean(axis=0), faces)
+def _render(mesh, scalars, limits, view, size, edges):
+    """One mesh as an image, shape (size, size, 3)."""
+    try:
+        import pyvista
+    except ImportError:
+        raise SystemExit("the pictures need PyVista: install openmm-helfrich[paper]") from None
+    middle = (mesh.vertices.min(axis=0) + mesh.vertices.max(axis=0)) / 2
+    points = mesh.vertices - middle
+    surface = pyvista.PolyData(points, np.insert(mesh.triangles, 0, 3, axis=1).ravel())
     if scalars is not None:
         data = surface.point_data if len(scalars) == mesh.num_vertices else surface.cell_data
         data["values"] = scalars
-    return surface
-
-
-def _limits(values):
-    return tuple(np.percentile(values, (3, 97)))
+    if view == "cut":
+        surface = surface.clip(normal="y", origin=(0, 0, 0), invert=False)
+    plotter = pyvista.Plotter(off_screen=True, window_size=(size, size))
+    plotter.set_background("white")
+    plotter.enable_anti_aliasing("ssaa")
+    plotter.add_mesh(
+        surface,
+        scalars=None if scalars is None else "values",
+        clim=limits,
+        cmap=COLOURS,
+        color="#d9b08c" if scalars is None else None,
+        show_edges=edges,
+        edge_color="#333333",
+        line_width=0.8,
+        show_scalar_bar=False,
+    )
+    extent = 1.06 * np.linalg.norm(points, axis=1).max()
+    direction = np.array((0.0, -1.0, 0.0) if view == "cut" else (0.3, -1.0, 0.55))
+    direction /= np.linalg.norm(direction)
+    camera = plotter.camera
+    camera.focal_point = (0, 0, 0)
+    camera.position = tuple(5 * extent * direction)
+    camera.up = (0, 0, 1)
+    camera.parallel_projection = True
+    camera.parallel_scale = extent
+    camera.clipping_range = (0.1 * extent, 20 * extent)
+    image = plotter.screenshot(return_img=True)
+    plotter.close()
+    return image

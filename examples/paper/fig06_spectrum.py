@@ -19,21 +19,27 @@ from mesh_corrections import bending_ratio, fit_meshes, fit_shear, shear_ratio
 from openmmhelfrich.analysis import Spectrum, fit_young, spectrum, theory
 from openmmhelfrich.sweep import Cache
 
-# Fewer vertices make cheaper steps and shorter periods, so a few more samples cost little there.
+# Numbers of samples: at the paper's parameters, of small meshes, of other radii and schemes, and of
+# all other points.
 FULL = {
     "base": 1002,
-    "vertices": (252, 492, 1002, 1962),
+    "vertices": (252, 492, 1002, 1962, 4002),
     "rigidities": (10.0, 20.0, 40.0),
     "radii": (500.0, 1000.0, 2000.0),
     "samples": 10,
+    "small": 10,
+    "same": 10,
     "few": 4,
 }
+MEDIUM = {**FULL, "vertices": (252, 492, 1002, 1962), "small": 4, "same": 2, "few": 2}
 QUICK = {
     "base": 252,
     "vertices": (252,),
     "rigidities": (20.0, 40.0),
     "radii": (500.0, 1000.0),
     "samples": 2,
+    "small": 2,
+    "same": 2,
     "few": 2,
 }
 PERIODS = 10
@@ -55,14 +61,17 @@ class Point(NamedTuple):
 
 def main():
     figure = Figure("fig06", "Fig. 6 a–f", "Fluctuation spectra of vesicles", __doc__)
-    size = figure.choose(FULL, QUICK)
+    size = figure.choose(FULL, QUICK, MEDIUM)
     runs = measure(points_of(size), figure)
     spectra = {point: pooled(of_point, "fit") for point, of_point in runs.items()}
     figure.parameters(
         f"N = {size['base']}, κ = 20 kBT, r0 = 1000 nm, Ξ = 0.037, Jülicher where not varied; "
         f"kV = 0; LangevinMiddle, 300 K, γ = ω_2, Δt = 0.075 √Ξ τ_fastest, ordered meshes; "
-        f"{size['samples']} samples of {PERIODS} τ_2 ({size['few']} of varied N ≥ 1000, κ, Ξ)"
+        f"{size['samples']} samples of {PERIODS} τ_2 ({size['same']} of other r0 and schemes, "
+        f"{size['small']} of N < 1000, {size['few']} of other N, κ, Ξ)"
     )
+    if figure.size == "medium":
+        figure.reduced("Fewer samples of all points but the first, and no N = 4002.")
     check(figure, size, spectra)
     note(figure, runs, spectra)
     draw(figure, size, spectra)
@@ -81,12 +90,13 @@ def points_of(size):
         point = base._replace(**changes)
         wanted[point] = max(samples, wanted.get(point, 0))
 
+    add(size["samples"])
     for scheme in SCHEMES:
-        add(size["samples"], scheme=scheme)
+        add(size["same"], scheme=scheme)
     for radius in size["radii"]:
-        add(size["samples"], radius=radius)
+        add(size["same"], radius=radius)
     for num_vertices in size["vertices"]:
-        add(size["samples"] if num_vertices < 1000 else size["few"], num_vertices=num_vertices)
+        add(size["small"] if num_vertices < 1000 else size["few"], num_vertices=num_vertices)
     for rigidity in size["rigidities"]:
         add(size["few"], rigidity=rigidity)
     for softness in SOFTNESS:

@@ -70,12 +70,14 @@ def main():
     import openmmhelfrich as helfrich
 
     figure = Figure("fig07", "Fig. 7, SM 8", "Vesicles of reduced volume 1 to 0.1", __doc__)
-    volumes = figure.choose([1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1], [1.0, 0.6, 0.3])
+    volumes = figure.choose(
+        np.arange(10, 0, -1) / 10, [1.0, 0.6, 0.3], [1.0, 0.8, 0.6, 0.4, 0.2, 0.1]
+    )
     softnesses = figure.choose([0.037, 0.15, 0.33, 0.59], [0.037, 0.59])
-    duration = figure.choose(100_000.0, 10_000.0)
+    duration = figure.choose(100_000.0, 10_000.0, 10_000.0)
     common = {
         "duration": [duration],
-        "time_step": [1.0],
+        "time_step": [figure.choose(0.2, 1.0, 0.5)],
         "subdivision": [figure.choose(10, 5)],
         "seed": [1],
     }
@@ -88,9 +90,13 @@ def main():
     count = 10 * common["subdivision"][0] ** 2 + 2
     figure.parameters(
         f"N = {count}, κ = 50 kJ/mol, GKB, kA and kV of the paper, LangevinMiddle, γ = 0.01/ps, "
-        f"300 K, {duration / 1000:g} ns, of which a fifth is the ramp of d, Δt = 1 ps."
+        f"300 K, {duration / 1000:g} ns, of which a fifth is the ramp of d, "
+        f"Δt = {common['time_step'][0]:g} ps."
     )
-    figure.reduced("One run per point, with Δt = 1 ps in place of 0.2 ps.")
+    if figure.size == "medium":
+        figure.reduced(
+            "Six reduced volumes, 10 ns in place of 100 ns, Δt = 0.5 ps in place of 0.2 ps."
+        )
 
     stable = [key for key, result in table.items() if not result["failed"]]
     soft = [key for key in table if key[1] <= 0.15]
@@ -131,6 +137,10 @@ def main():
             for volume in volumes
         )
         figure.note(f"⟨E_b⟩ at Ξ = {softness:g}, kJ/mol: {bending}.")
+    figure.note(
+        "Nothing keeps distant parts of a membrane apart, so that at small ν opposite sides touch "
+        "and pass through each other."
+    )
     for key, result in table.items():
         if result["failed"]:
             figure.note(f"ν = {key[0]:g}, Ξ = {key[1]:g} failed: {result['failed'][:120]}")
@@ -157,12 +167,12 @@ def main():
                 mesh = helfrich.Mesh(
                     table[volume, softness]["shape"], table[volume, softness]["triangles"]
                 )
-                panels.append((f"ν {volume:g}  Ξ {softness:g}", along_axes(mesh), None))
+                panels.append((f"ν = {volume:g}, Ξ = {softness:g}", along_axes(mesh), None))
                 views.append(view)
     path = figure.picture(
         "", f"Last shapes at Ξ = {softest:g} (above) and {hard:g} (below), whole and cut in halves."
     )
-    draw_meshes(path, panels, len(volumes), views=views, edges=False, size=figure.choose(140, 250))
+    draw_meshes(path, panels, len(volumes), views=views, edges=False, size=figure.choose(150, 250))
     figure.finish()
 
 

@@ -13,7 +13,7 @@ vertex, the factor of the paper's (20), and the resistance to shear adds 4π μ 
 import matplotlib.pyplot as plt
 import numpy as np
 from _paper import Figure, mean_and_error
-from fig06_spectrum import FULL, QUICK, Point, measure
+from fig06_spectrum import FULL, MEDIUM, QUICK, Point, measure
 from fluctuations import SOFTNESS
 from openmmhelfrich.analysis import density_modes
 
@@ -23,7 +23,7 @@ GAS_AND_HEIGHTS = 2 / 3
 
 def main():
     figure = Figure("sm05", "SM 5", "Density modes of the vertices", __doc__)
-    size = figure.choose(FULL, QUICK)
+    size = figure.choose(FULL, QUICK, MEDIUM)
     points = {Point(size["base"], softness=softness): size["few"] for softness in SOFTNESS}
     # The softest point is that of Fig. 6 with all of its samples.
     points[Point(size["base"])] = size["samples"]
@@ -32,7 +32,7 @@ def main():
     factors = {point.softness: structure(of_point, lmax) for point, of_point in runs.items()}
     figure.parameters(
         f"N = {size['base']}, κ = 20 kBT, r0 = 1000 nm, Jülicher, kV = 0; 20 frames of each of "
-        f"{size['samples']} samples at Ξ = 0.037, {size['few']} at others"
+        f"{len(runs[Point(size['base'])])} samples at Ξ = 0.037, {size['few']} at others"
     )
     check(figure, size["base"], factors)
     draw(figure, size["base"], factors)

@@ -13,7 +13,7 @@ those of `fig06_spectrum.py`.
 import matplotlib.pyplot as plt
 import numpy as np
 from _paper import Figure, mean_and_error
-from fig06_spectrum import FULL, QUICK, Point, measure, points_of
+from fig06_spectrum import FULL, MEDIUM, QUICK, Point, measure, points_of
 from fluctuations import AREA_MODULUS, RADIUS, SOFTNESS, heights_virial, vesicle_of
 from openmmhelfrich.analysis import autocorrelation_time
 from openmmhelfrich.vesicle import KBT
@@ -21,7 +21,7 @@ from openmmhelfrich.vesicle import KBT
 
 def main():
     figure = Figure("sm07", "SM 7", "Mean area of fluctuating vesicles", __doc__)
-    size = figure.choose(FULL, QUICK)
+    size = figure.choose(FULL, QUICK, MEDIUM)
     runs = measure(points_of(size), figure)
     areas = {point: mean_area(of_point) for point, of_point in runs.items()}
     figure.parameters("the runs of Fig. 6; targets A0 are the areas of the ordered meshes")

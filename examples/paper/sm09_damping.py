@@ -3,13 +3,13 @@
 The damped oscillation (A35–A37) is fitted to the autocorrelations of u_lm in the Verlet run of
 `fig09_10_autocorrelation.py`, over three periods. The paper finds γ_l ≈ 0.15 ω_l at Ξ = 0.037. The
 same fit to the two coupled oscillators of `two_modes.py`, which have no friction at all, tells how
-much of that is flow of the vertices within the surface.
+much of that is the beat with flow of the vertices within the surface: most of it for l = 2 and 3.
 """
 
 import matplotlib.pyplot as plt
 import numpy as np
 from _paper import Figure
-from fig09_10_autocorrelation import FULL, MODES, QUICK, frequency_of, points_of
+from fig09_10_autocorrelation import FULL, MEDIUM, MODES, QUICK, frequency_of, points_of
 from fluctuations import VERSION, relax
 from openmmhelfrich.analysis import fit_damping, theory
 from scipy.optimize import curve_fit
@@ -22,7 +22,7 @@ PERIODS = 3
 def main():
     figure = Figure("sm09", "SM 9", "Internal friction of soft meshes", __doc__)
     num_vertices = figure.choose(1002, 252)
-    settings = [row for row in figure.choose(FULL, QUICK) if row[0] == "verlet"]
+    settings = [row for row in figure.choose(FULL, QUICK, MEDIUM) if row[0] == "verlet"]
     (run,) = figure.sweep(relax, points_of(num_vertices, settings), VERSION)
     figure.parameters(
         f"N = {num_vertices}, κ = 20 kBT, r0 = 1000 nm, Ξ = 0.037, Jülicher, kV = 0; Verlet, "

@@ -138,7 +138,7 @@ class ModeReporter(_TableReporter):
         triangles,
         lmax,
         quadrature="fit",
-        centre="mass",
+        centre=None,
         *,
         offset=0,
         append=False,

@@ -7,6 +7,7 @@
 //! Everything here is a scalar function of one triangle, one edge or one vertex; which of them are
 //! evaluated, in which order and on how many threads is the evaluator's business.
 
+use crate::real::Real;
 use nalgebra::Vector3;
 
 /// A vector in space.
@@ -59,8 +60,8 @@ pub struct EdgeGeometry {
 const POLYNOMIAL_RANGE: f64 = 0.171_572_875_253_809_9;
 
 /// arctan(t) / t for t² = `z` ≤ [`POLYNOMIAL_RANGE`], to 2e-18: the Chebyshev fit of degree 11 in z.
-#[inline]
-fn arctan_over_argument(z: f64) -> f64 {
+#[inline(always)]
+pub fn arctan_over_argument<R: Real>(z: R) -> R {
     const C: [f64; 12] = [
         1.0,
         -0.333_333_333_333_331_2,
@@ -76,12 +77,11 @@ fn arctan_over_argument(z: f64) -> f64 {
         -0.017_805_397_205_419_446,
     ];
     // Estrin's scheme: the pairs do not wait for each other, as the steps of Horner's would.
+    let pair = |k: usize| z.mul_add(z.of(C[k + 1]), z.of(C[k]));
     let z2 = z * z;
     let z4 = z2 * z2;
-    let low = (C[0] + z * C[1]) + z2 * (C[2] + z * C[3]);
-    let middle = (C[4] + z * C[5]) + z2 * (C[6] + z * C[7]);
-    let high = (C[8] + z * C[9]) + z2 * (C[10] + z * C[11]);
-    low + z4 * (middle + z4 * high)
+    let four = |k: usize| z2.mul_add(pair(k + 2), pair(k));
+    z4.mul_add(z4.mul_add(four(8), four(4)), four(0))
 }
 
 impl EdgeGeometry {

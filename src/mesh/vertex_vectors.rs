@@ -12,7 +12,7 @@
 use super::geometry::{EdgeTension, TriangleGeometry, Vec3, VertexGeometry, corner_forces};
 
 /// 1/√3, the cotangent of 60°.
-const COT_60: f64 = 0.577_350_269_189_625_8;
+pub const COT_60: f64 = 0.577_350_269_189_625_8;
 
 /// Forward: the vectors of one vertex. Backward: derivatives of the energy with respect to them.
 #[derive(Debug, Clone, Copy)]

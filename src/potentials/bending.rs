@@ -16,10 +16,10 @@
 //! zero on obtuse meshes; the energy is then large, of either sign, as the formula says.
 
 use super::{
-    Contribution, Domain, Element, Needs, Parameter, Potential, Term, VertexSlopes, Vertices,
+    Contribution, Domain, Element, Needs, Parameter, Place, Potential, Sums, Term, Vertex,
+    VertexFormula, Vertices,
 };
-use crate::mesh::geometry::Vec3;
-use crate::mesh::vertex_vectors::VertexVectors;
+use crate::real::{Real, dot, plus_scaled};
 use std::ffi::CStr;
 
 /// Curvature elasticity.
@@ -104,162 +104,138 @@ impl Potential for Bending {
         needs
     }
 
-    fn vertices(&self, term: &Term, vertices: Vertices, slopes: VertexSlopes) -> Contribution {
+    fn vertices(&self, term: &Term, run: Vertices) -> Contribution {
+        const J: u8 = Numerator::Julicher as u8;
+        const S: u8 = Numerator::Cotangent as u8;
+        const U: u8 = Numerator::Umbrella as u8;
+        let (numerator, area) = SCHEMES[term.form];
         let unsigned = term.switches & UNSIGNED != 0;
-        match SCHEMES[term.form].0 {
-            Numerator::Julicher => sum(term, vertices, slopes, &Integrated { unsigned }),
-            Numerator::Cotangent => sum(term, vertices, slopes, &Vector::<COTANGENT> { unsigned }),
-            Numerator::Umbrella => sum(term, vertices, slopes, &Vector::<UMBRELLA> { unsigned }),
+        let linear = !term.vanishes(SPONTANEOUS) || term.wants_derivatives;
+        match (numerator, area) {
+            (Numerator::Julicher, Area::Barycentric) => {
+                run.apply(term, &Curvature::<J, false> { unsigned, linear })
+            }
+            (Numerator::Julicher, Area::Voronoi) => {
+                run.apply(term, &Curvature::<J, true> { unsigned, linear })
+            }
+            (Numerator::Cotangent, Area::Barycentric) => {
+                run.apply(term, &Curvature::<S, false> { unsigned, linear })
+            }
+            (Numerator::Cotangent, Area::Voronoi) => {
+                run.apply(term, &Curvature::<S, true> { unsigned, linear })
+            }
+            (Numerator::Umbrella, _) => {
+                run.apply(term, &Curvature::<U, false> { unsigned, linear })
+            }
         }
     }
 }
 
-/// A numerator: c² and the linear term (n·c or |c|) of a vertex, and the way back from the derivatives
-/// with respect to them.
-trait Curvature {
-    fn measure(&self, vertices: &Vertices, index: usize) -> (f64, f64);
-    fn spread(
-        &self,
-        vertices: &Vertices,
-        index: usize,
-        slopes: &mut VertexSlopes,
-        by_square: f64,
-        by_linear: f64,
-    );
+/// The formula for a numerator and an area.
+struct Curvature<const NUMERATOR: u8, const VORONOI: bool> {
+    /// Whether the linear term takes |c| for c or n·c.
+    unsigned: bool,
+    /// Whether there is a linear term at all.
+    linear: bool,
 }
 
-/// The energy and its derivatives, for any numerator and area.
-fn sum(
-    term: &Term,
-    vertices: Vertices,
-    mut slopes: VertexSlopes,
-    curvature: &impl Curvature,
-) -> Contribution {
-    let voronoi = SCHEMES[term.form].1 == Area::Voronoi;
-    let mut total = Contribution::default();
-    for (index, vertex) in vertices.scalars.iter().enumerate() {
-        let rigidity = term.value(RIGIDITY, vertices.first + index);
-        let spontaneous = term.value(SPONTANEOUS, vertices.first + index);
-        let area = if voronoi { vertex.voronoi_area } else { vertex.area };
-        let (square, linear) = curvature.measure(&vertices, index);
-        let density = square / area;
-        let by_rigidity = 0.5 * (density + spontaneous * (spontaneous * area - 2.0 * linear));
-        total.energy += rigidity * by_rigidity;
-        total.by_parameter[RIGIDITY] += by_rigidity;
-        total.by_parameter[SPONTANEOUS] += rigidity * (spontaneous * area - linear);
-        let by_area = 0.5 * rigidity * (spontaneous * spontaneous - density / area);
-        let slot = &mut slopes.scalars[index];
-        *if voronoi { &mut slot.voronoi_area } else { &mut slot.area } += by_area;
-        let by_square = 0.5 * rigidity / area;
-        curvature.spread(&vertices, index, &mut slopes, by_square, -rigidity * spontaneous);
+impl<const NUMERATOR: u8, const VORONOI: bool> VertexFormula for Curvature<NUMERATOR, VORONOI> {
+    #[inline(always)]
+    fn apply<R: Real>(&self, place: Place, vertex: &Vertex<R>, slopes: &mut Vertex<R>) -> Sums<R> {
+        let area = if VORONOI { vertex.voronoi_area } else { vertex.area };
+        let [rigidity, spontaneous] = [RIGIDITY, SPONTANEOUS].map(|p| place.value(p, area));
+        let (square, linear) = self.measure(vertex);
+        let per_area = area.of(1.0) / area;
+        let density = square * per_area;
+        let by_rigidity = (density + spontaneous * (spontaneous * area - linear - linear)) * 0.5;
+        let by_spontaneous = rigidity * (spontaneous * area - linear);
+        let half = rigidity * 0.5;
+        let by_area = half * (spontaneous * spontaneous - density * per_area);
+        let slot = if VORONOI { &mut slopes.voronoi_area } else { &mut slopes.area };
+        *slot = *slot + by_area;
+        let by_linear = area.zero() - rigidity * spontaneous;
+        self.spread(vertex, slopes, half * per_area, by_linear);
+        Sums { energy: rigidity * by_rigidity, by_parameter: [by_rigidity, by_spontaneous] }
     }
-    for parameter in [RIGIDITY, SPONTANEOUS] {
-        // A field hides the scalar, on which nothing depends then.
-        if !term.is_scalar(parameter) {
-            total.by_parameter[parameter] = 0.0;
+}
+
+impl<const NUMERATOR: u8, const VORONOI: bool> Curvature<NUMERATOR, VORONOI> {
+    const IS_SCALAR: bool = NUMERATOR == Numerator::Julicher as u8;
+
+    #[inline(always)]
+    fn vector<R: Real>(vertex: &Vertex<R>) -> [R; 3] {
+        if NUMERATOR == Numerator::Cotangent as u8 { vertex.cotangent } else { vertex.umbrella }
+    }
+
+    /// c² and the linear term: c or |c|, n·c or |c|.
+    #[inline(always)]
+    fn measure<R: Real>(&self, vertex: &Vertex<R>) -> (R, R) {
+        if Self::IS_SCALAR {
+            let c = vertex.curvature;
+            return (c * c, if self.unsigned { c.max(c.zero() - c) } else { c });
         }
-    }
-    total
-}
-
-/// Jülicher's J.
-struct Integrated {
-    unsigned: bool,
-}
-
-impl Curvature for Integrated {
-    #[inline]
-    fn measure(&self, vertices: &Vertices, index: usize) -> (f64, f64) {
-        let curvature = vertices.scalars[index].curvature;
-        (curvature * curvature, if self.unsigned { curvature.abs() } else { curvature })
-    }
-
-    #[inline]
-    fn spread(
-        &self,
-        vertices: &Vertices,
-        index: usize,
-        slopes: &mut VertexSlopes,
-        by_square: f64,
-        by_linear: f64,
-    ) {
-        let curvature = vertices.scalars[index].curvature;
-        let sign = if self.unsigned { sign(curvature) } else { 1.0 };
-        slopes.scalars[index].curvature += 2.0 * curvature * by_square + sign * by_linear;
-    }
-}
-
-/// −1, 0 or 1; at 0, where |x| has no derivative, the mean of those on its two sides.
-fn sign(x: f64) -> f64 {
-    if x == 0.0 { 0.0 } else { x.signum() }
-}
-
-const COTANGENT: u8 = 0;
-const UMBRELLA: u8 = 1;
-
-/// The vectors of Gompper and Kroll (`COTANGENT`) and of Espriu (`UMBRELLA`).
-struct Vector<const KIND: u8> {
-    unsigned: bool,
-}
-
-impl<const KIND: u8> Vector<KIND> {
-    #[inline]
-    fn pick(vectors: &VertexVectors) -> &Vec3 {
-        if KIND == COTANGENT { &vectors.cotangent } else { &vectors.umbrella }
-    }
-}
-
-impl<const KIND: u8> Curvature for Vector<KIND> {
-    #[inline]
-    fn measure(&self, vertices: &Vertices, index: usize) -> (f64, f64) {
-        let vectors = &vertices.vectors[index];
-        let vector = Self::pick(vectors);
-        let square = vector.norm_squared();
+        let vector = Self::vector(vertex);
+        let square = dot(vector, vector);
+        if !self.linear {
+            return (square, square.zero());
+        }
         if self.unsigned {
             return (square, square.sqrt());
         }
-        // Where nobody asked for normals their sums are zero, and so is what the linear term is for.
-        let length = vectors.normal_sum.norm();
-        let linear = if length > 0.0 { vector.dot(&vectors.normal_sum) / length } else { 0.0 };
-        (square, linear)
+        // A vertex whose normals cancel has no normal.
+        let length = dot(vertex.normal_sum, vertex.normal_sum).sqrt();
+        let along = dot(vector, vertex.normal_sum) / length;
+        (square, along.or_else(length.above(length.zero()), length))
     }
 
-    #[inline]
-    fn spread(
+    /// The way back, from the derivatives with respect to c² and to the linear term.
+    #[inline(always)]
+    fn spread<R: Real>(
         &self,
-        vertices: &Vertices,
-        index: usize,
-        slopes: &mut VertexSlopes,
-        by_square: f64,
-        by_linear: f64,
+        vertex: &Vertex<R>,
+        slopes: &mut Vertex<R>,
+        by_square: R,
+        by_linear: R,
     ) {
-        let vectors = &vertices.vectors[index];
-        let vector = Self::pick(vectors);
-        let mut slope = 2.0 * by_square * vector;
-        let out = &mut slopes.vectors[index];
-        if by_linear != 0.0 {
-            let length = if self.unsigned { vector.norm() } else { vectors.normal_sum.norm() };
-            // |c| has no derivative at 0, where the mean over all directions is 0; and a vertex whose
-            // normals cancel has no normal.
-            if length > 0.0 {
-                if self.unsigned {
-                    slope += vector * (by_linear / length);
-                } else {
-                    let normal = vectors.normal_sum / length;
-                    slope += normal * by_linear;
-                    let across = vector - normal * normal.dot(vector);
-                    out.normal_sum += across * (by_linear / length);
-                }
+        let zero = by_square.zero();
+        if Self::IS_SCALAR {
+            let c = vertex.curvature;
+            // At 0, where |c| has no derivative, the mean of those on its two sides.
+            let sign = if self.unsigned {
+                let one = zero.of(1.0);
+                one.or_else(c.above(zero), (zero - one).or_else(zero.above(c), zero))
+            } else {
+                zero.of(1.0)
+            };
+            slopes.curvature = slopes.curvature + (c + c) * by_square + sign * by_linear;
+            return;
+        }
+        let vector = Self::vector(vertex);
+        let mut slope = plus_scaled([zero; 3], by_square + by_square, vector);
+        if self.linear {
+            // |c| has no derivative at 0, where the mean over all directions is 0; and a vertex whose normals
+            // cancel has no normal.
+            let direction = if self.unsigned { vector } else { vertex.normal_sum };
+            let length = dot(direction, direction).sqrt();
+            let inverse = (zero.of(1.0) / length).or_else(length.above(zero), zero);
+            let unit = direction.map(|component| component * inverse);
+            slope = plus_scaled(slope, by_linear, unit);
+            if !self.unsigned {
+                let across = plus_scaled(vector, zero - dot(unit, vector), unit);
+                slopes.normal_sum = plus_scaled(slopes.normal_sum, by_linear * inverse, across);
             }
         }
-        *if KIND == COTANGENT { &mut out.cotangent } else { &mut out.umbrella } += slope;
+        let cotangent = NUMERATOR == Numerator::Cotangent as u8;
+        let slot = if cotangent { &mut slopes.cotangent } else { &mut slopes.umbrella };
+        *slot = plus_scaled(*slot, zero.of(1.0), slope);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::geometry::{VertexGeometry, VertexPartials};
+    use crate::mesh::geometry::{Vec3, VertexGeometry, VertexPartials};
+    use crate::mesh::vertex_vectors::VertexVectors;
     use crate::test_meshes::noise;
 
     type State = (VertexGeometry, VertexVectors);
@@ -275,11 +251,15 @@ mod tests {
         term.switches = switches;
         let (scalars, vectors) = ([state.0], [state.1]);
         let mut slopes = ([VertexPartials::default()], [VertexVectors::default()]);
-        let sum = Bending.vertices(
-            &term,
-            Vertices { first: 0, total: 1, scalars: &scalars, vectors: &vectors },
-            VertexSlopes { scalars: &mut slopes.0, vectors: &mut slopes.1 },
-        );
+        let run = Vertices::Plain {
+            first: 0,
+            total: 1,
+            scalars: &scalars,
+            vectors: &vectors,
+            scalar_partials: &mut slopes.0,
+            vector_partials: &mut slopes.1,
+        };
+        let sum = Bending.vertices(&term, run);
         (sum, (slopes.0[0], slopes.1[0]))
     }
 
@@ -371,11 +351,15 @@ mod tests {
         term.fields[..2].copy_from_slice(&[&rigidities, &spontaneous]);
         let scalars = [state().0; 2];
         let mut slopes = [VertexPartials::default(); 2];
-        let sum = Bending.vertices(
-            &term,
-            Vertices { first: 1, total: 3, scalars: &scalars, vectors: &[] },
-            VertexSlopes { scalars: &mut slopes, vectors: &mut [] },
-        );
+        let run = Vertices::Plain {
+            first: 1,
+            total: 3,
+            scalars: &scalars,
+            vectors: &[],
+            scalar_partials: &mut slopes,
+            vector_partials: &mut [],
+        };
+        let sum = Bending.vertices(&term, run);
         let one = |k, c0| evaluate(&state(), 0, 0, [k, c0]).0.energy;
         assert!((sum.energy - one(2.0, 0.1) - one(3.0, -0.2)).abs() < 1e-14);
         assert_eq!(sum.by_parameter, [0.0; 4]);

@@ -11,8 +11,9 @@
 //!
 //! (B5): doi:10.1103/PhysRevE.108.015301.
 
-use super::{Contribution, Domain, Needs, Parameter, Potential, Term};
-use crate::mesh::geometry::{EdgeGeometry, EdgePartials};
+use super::{
+    Contribution, Domain, EdgeFormula, Edges, Needs, Parameter, Potential, Sums, Term,
+};
 use std::ffi::CStr;
 
 /// Stiffness of hinges, which depends on the mesh as curvature elasticity does not.
@@ -74,21 +75,21 @@ impl Potential for Dihedral {
         Needs::EDGES
     }
 
-    fn edges(
-        &self,
-        term: &Term,
-        edges: &[EdgeGeometry],
-        partials: &mut [EdgePartials],
-    ) -> Contribution {
-        let stiffness = term.values[0];
-        let form = FORMS[term.form];
-        let mut sum = 0.0;
-        for (edge, partial) in edges.iter().zip(partials) {
-            let (value, slope) = form(edge.bend * edge.length_squared.sqrt());
-            sum += value;
-            partial.angle += stiffness * slope;
-        }
-        Contribution { energy: stiffness * sum, by_parameter: [sum, 0.0, 0.0, 0.0] }
+    fn edges(&self, term: &Term, run: Edges) -> Contribution {
+        run.apply(&Hinge { stiffness: term.values[0], form: FORMS[term.form] })
+    }
+}
+
+struct Hinge {
+    stiffness: f64,
+    form: Form,
+}
+
+impl EdgeFormula for Hinge {
+    fn apply(&self, angle: f64) -> (Sums<f64>, f64) {
+        let (value, slope) = (self.form)(angle);
+        let sums = Sums { energy: self.stiffness * value, by_parameter: [value, 0.0] };
+        (sums, self.stiffness * slope)
     }
 }
 

@@ -30,8 +30,8 @@ impl Potential for EnclosedVolume {
         totals: &Totals,
         partials: &mut TotalPartials,
     ) -> Contribution {
-        let (contribution, slope) = relative_spring(modulus, target, totals.volume);
+        let (sums, slope) = relative_spring(modulus, target, totals.volume);
         partials.volume += slope;
-        contribution
+        Contribution::from(sums)
     }
 }

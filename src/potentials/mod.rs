@@ -6,6 +6,7 @@
 
 mod bending;
 mod dihedral;
+mod elements;
 mod enclosed_volume;
 mod plaquette_area;
 mod surface_area;
@@ -14,12 +15,10 @@ mod triangle_area_repulsion;
 mod triangle_height;
 
 use crate::error::{Error, Result};
-use crate::mesh::geometry::{
-    EdgeGeometry, EdgePartials, TotalPartials, Totals, TriangleGeometry, TrianglePartials,
-    VertexGeometry, VertexPartials,
-};
-use crate::mesh::vertex_vectors::VertexVectors;
+use crate::mesh::geometry::{TotalPartials, Totals};
+use crate::real::Real;
 use bitflags::bitflags;
+pub use elements::*;
 use std::ffi::CStr;
 
 /// All potentials, by the names of their OpenMM classes.
@@ -148,29 +147,8 @@ impl std::ops::AddAssign for Contribution {
 /// The values that a potential is evaluated with.
 pub type Values = [f64; MAX_PARAMETERS];
 
-/// A run of vertices.
-#[derive(Clone, Copy)]
-pub struct Vertices<'a> {
-    /// The index of the first one in the mesh.
-    pub first: usize,
-    /// How many the mesh has.
-    pub total: usize,
-    /// Areas and curvatures.
-    pub scalars: &'a [VertexGeometry],
-    /// Curvature vectors and normals; empty unless the potential wants them.
-    pub vectors: &'a [VertexVectors],
-}
-
-/// The derivatives of the energy with respect to a run of [`Vertices`], to be added to.
-pub struct VertexSlopes<'a> {
-    /// With respect to the scalars.
-    pub scalars: &'a mut [VertexPartials],
-    /// With respect to the vectors; empty unless the potential wants them.
-    pub vectors: &'a mut [VertexVectors],
-}
-
-/// One kind of energy. The methods for elements get a run of them, `first` being the index of the
-/// first, and add to their partial derivatives; a potential implements those that it [`Needs`].
+/// One kind of energy. The methods for elements get a run of them to apply a formula to; a potential
+/// implements those that it [`Needs`].
 pub trait Potential: Sync {
     /// The name of the OpenMM class.
     fn name(&self) -> &'static str;
@@ -197,23 +175,17 @@ pub trait Potential: Sync {
     }
 
     /// Energy of a run of triangles.
-    fn triangles(
-        &self,
-        _: &Term,
-        _first: usize,
-        _: &[TriangleGeometry],
-        _: &mut [TrianglePartials],
-    ) -> Contribution {
+    fn triangles(&self, _: &Term, _: Triangles) -> Contribution {
         Contribution::default()
     }
 
     /// Energy of a run of edges.
-    fn edges(&self, _: &Term, _: &[EdgeGeometry], _: &mut [EdgePartials]) -> Contribution {
+    fn edges(&self, _: &Term, _: Edges) -> Contribution {
         Contribution::default()
     }
 
     /// Energy of a run of vertices.
-    fn vertices(&self, _: &Term, _: Vertices, _: VertexSlopes) -> Contribution {
+    fn vertices(&self, _: &Term, _: Vertices) -> Contribution {
         Contribution::default()
     }
 }
@@ -303,22 +275,21 @@ pub fn find(name: &str) -> Result<&'static dyn Potential> {
 
 /// Energy of the kind of Weeks, Chandler and Andersen, ε (x − ½)² = ε (x² − x + ¼) with x = (d/h)⁴, of
 /// the repulsion below a distance: (x − ½)² and its derivative with respect to x, 0 below x = ½.
-#[inline]
-fn repulsion(x: f64) -> Option<(f64, f64)> {
-    let excess = x - 0.5;
-    (excess > 0.0).then_some((excess * excess, 2.0 * excess))
+#[inline(always)]
+fn repulsion<R: Real>(x: R) -> (R, R) {
+    let excess = (x - 0.5).max(x.zero());
+    (excess * excess, excess + excess)
 }
 
-/// Energy ½ k (x − x₀)² / x₀ of a quantity x around its target, and its derivative with respect to x.
-/// The derivatives with respect to k and x₀ are those of the contribution, in this order.
-fn relative_spring(modulus: f64, target: f64, value: f64) -> (Contribution, f64) {
-    let strain = (value - target) / target;
-    let energy = 0.5 * modulus * strain * (value - target);
-    let by_modulus = 0.5 * strain * (value - target);
-    let by_target = -modulus * (strain + 0.5 * strain * strain);
-    let mut by_parameter = [0.0; MAX_PARAMETERS];
-    by_parameter[..2].copy_from_slice(&[by_modulus, by_target]);
-    (Contribution { energy, by_parameter }, modulus * strain)
+/// Energy ½ k (x − x₀)² / x₀ of a quantity x around its target, with its derivatives with respect to k and
+/// x₀, and its derivative with respect to x.
+#[inline(always)]
+fn relative_spring<R: Real>(modulus: R, target: R, value: R) -> (Sums<R>, R) {
+    let stretch = value - target;
+    let strain = stretch / target;
+    let by_modulus = strain * stretch * 0.5;
+    let by_target = (value.zero() - modulus) * (strain + strain * strain * 0.5);
+    (Sums { energy: modulus * by_modulus, by_parameter: [by_modulus, by_target] }, modulus * strain)
 }
 
 #[cfg(test)]
@@ -351,7 +322,7 @@ mod tests {
         let (k, x0, x, h) = (1.7, 3.0, 3.4, 1e-6);
         let energy = |k, x0, x| relative_spring(k, x0, x).0.energy;
         let (contribution, slope) = relative_spring(k, x0, x);
-        let [by_k, by_x0, ..] = contribution.by_parameter;
+        let [by_k, by_x0] = contribution.by_parameter;
         let central = |f: &dyn Fn(f64) -> f64| (f(h) - f(-h)) / (2.0 * h);
         assert!((slope - central(&|s| energy(k, x0, x + s))).abs() < 1e-9);
         assert!((by_k - central(&|s| energy(k + s, x0, x))).abs() < 1e-9);

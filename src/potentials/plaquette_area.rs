@@ -2,7 +2,11 @@
 //! area of a vertex (its plaquette) and A₀ the target of the total area. Equation (20) of
 //! doi:10.1103/PhysRevE.108.015301 with k = (3/2) k_B T.
 
-use super::{Contribution, Domain, Needs, Parameter, Potential, Term, VertexSlopes, Vertices};
+use super::{
+    Contribution, Domain, Needs, Parameter, Place, Potential, Sums, Term, Vertex, VertexFormula,
+    Vertices,
+};
+use crate::real::Real;
 
 /// Keeps the areas of all vertices alike.
 pub struct PlaquetteArea;
@@ -25,21 +29,28 @@ impl Potential for PlaquetteArea {
         Needs::VERTICES
     }
 
-    fn vertices(&self, term: &Term, vertices: Vertices, slopes: VertexSlopes) -> Contribution {
+    fn vertices(&self, term: &Term, run: Vertices) -> Contribution {
         let [stiffness, target, ..] = term.values;
-        let scale = vertices.total as f64 / target;
-        let mut squares = 0.0;
-        let mut by_target = 0.0;
-        for (vertex, partial) in vertices.scalars.iter().zip(slopes.scalars) {
-            let strain = scale * vertex.area - 1.0;
-            squares += strain * strain;
-            by_target -= strain * (strain + 1.0);
-            partial.area += stiffness * scale * strain;
-        }
-        Contribution {
-            energy: 0.5 * stiffness * squares,
-            by_parameter: [0.5 * squares, stiffness * by_target / target, 0.0, 0.0],
-        }
+        let scale = run.total() as f64 / target;
+        run.apply(term, &Plaquette { stiffness, target, scale })
+    }
+}
+
+struct Plaquette {
+    stiffness: f64,
+    target: f64,
+    /// N / A₀
+    scale: f64,
+}
+
+impl VertexFormula for Plaquette {
+    #[inline(always)]
+    fn apply<R: Real>(&self, _: Place, vertex: &Vertex<R>, slopes: &mut Vertex<R>) -> Sums<R> {
+        let strain = vertex.area * self.scale - 1.0;
+        slopes.area = slopes.area + strain * (self.stiffness * self.scale);
+        let half_square = strain * strain * 0.5;
+        let by_target = strain * (strain + 1.0) * (-self.stiffness / self.target);
+        Sums { energy: half_square * self.stiffness, by_parameter: [half_square, by_target] }
     }
 }
 
@@ -54,9 +65,15 @@ mod tests {
             let term = Term::new("PlaquetteAreaForce", 0, &[stiffness, target]).unwrap();
             let scalars = [VertexGeometry { area, ..Default::default() }];
             let mut partials = [VertexPartials::default()];
-            let vertices = Vertices { first: 0, total: 5, scalars: &scalars, vectors: &[] };
-            let slopes = VertexSlopes { scalars: &mut partials, vectors: &mut [] };
-            (PlaquetteArea.vertices(&term, vertices, slopes), partials[0].area)
+            let run = Vertices::Plain {
+                first: 0,
+                total: 5,
+                scalars: &scalars,
+                vectors: &[],
+                scalar_partials: &mut partials,
+                vector_partials: &mut [],
+            };
+            (PlaquetteArea.vertices(&term, run), partials[0].area)
         };
         let (a, k, t) = (1.3, 0.7, 6.0);
         let (sum, slope) = at(a, k, t);

@@ -30,8 +30,8 @@ impl Potential for SurfaceArea {
         totals: &Totals,
         partials: &mut TotalPartials,
     ) -> Contribution {
-        let (contribution, slope) = relative_spring(modulus, target, totals.area);
+        let (sums, slope) = relative_spring(modulus, target, totals.area);
         partials.area += slope;
-        contribution
+        Contribution::from(sums)
     }
 }

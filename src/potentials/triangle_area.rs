@@ -1,8 +1,11 @@
 //! Local area: E = Σ_t ½ k_A (a_t − a₀)² / a₀, which makes a membrane resist changes of each triangle's
 //! area, as the skeleton of a cell does.
 
-use super::{Contribution, Domain, Element, Needs, Parameter, Potential, Term, relative_spring};
-use crate::mesh::geometry::{TriangleGeometry, TrianglePartials};
+use super::{
+    Contribution, Domain, Element, Needs, Parameter, Place, Potential, Sums, Term, Triangle,
+    TriangleFormula, TriangleSlopes, Triangles, relative_spring,
+};
+use crate::real::Real;
 
 /// A spring on each triangle's area.
 pub struct TriangleArea;
@@ -25,31 +28,33 @@ impl Potential for TriangleArea {
         Needs::TRIANGLES
     }
 
-    fn triangles(
+    fn triangles(&self, term: &Term, run: Triangles) -> Contribution {
+        run.apply(term, &Spring)
+    }
+}
+
+struct Spring;
+
+impl TriangleFormula for Spring {
+    #[inline(always)]
+    fn apply<R: Real>(
         &self,
-        term: &Term,
-        first: usize,
-        triangles: &[TriangleGeometry],
-        partials: &mut [TrianglePartials],
-    ) -> Contribution {
-        let mut sum = Contribution::default();
-        for (index, (triangle, partial)) in triangles.iter().zip(partials).enumerate() {
-            let target = term.value(1, first + index);
-            let (contribution, slope) = relative_spring(term.values[0], target, triangle.area());
-            sum += contribution;
-            partial.area += slope;
-        }
-        if !term.is_scalar(1) {
-            sum.by_parameter[1] = 0.0;
-        }
-        sum
+        place: Place,
+        triangle: &Triangle<R>,
+        slopes: &mut TriangleSlopes<R>,
+    ) -> Sums<R> {
+        let area = triangle.area();
+        let [modulus, target] = [0, 1].map(|parameter| place.value(parameter, area));
+        let (sums, slope) = relative_spring(modulus, target, area);
+        slopes.area = slopes.area + slope;
+        sums
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::geometry::Vec3;
+    use crate::mesh::geometry::{TriangleGeometry, TrianglePartials, Vec3};
 
     #[test]
     fn each_triangle_can_have_its_own_target() {
@@ -62,7 +67,9 @@ mod tests {
         let targets = [9.0, 9.0, 2.0, 4.0];
         term.fields[1] = &targets;
         let mut partials = [TrianglePartials::default(); 2];
-        let sum = TriangleArea.triangles(&term, 2, &[triangle(2.5), triangle(3.0)], &mut partials);
+        let geometry = &[triangle(2.5), triangle(3.0)];
+        let run = Triangles::Plain { first: 2, geometry, partials: &mut partials };
+        let sum = TriangleArea.triangles(&term, run);
         assert!((sum.energy - 0.5 * 3.0 * (0.25 / 2.0 + 1.0 / 4.0)).abs() < 1e-15);
         assert!((partials[0].area - 3.0 * 0.5 / 2.0).abs() < 1e-15);
         assert!((partials[1].area + 3.0 * 1.0 / 4.0).abs() < 1e-15);

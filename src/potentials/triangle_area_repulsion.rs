@@ -2,8 +2,11 @@
 //! else 0: the purely repulsive potential of Weeks, Chandler and Andersen's kind that VCM offers for
 //! areas (`WCA`, `GWCA`) as it does for heights. Unlike VCM's it is continuous at the cutoff.
 
-use super::{Contribution, Domain, Needs, Parameter, Potential, Term, repulsion};
-use crate::mesh::geometry::{TriangleGeometry, TrianglePartials};
+use super::{
+    Contribution, Domain, Needs, Parameter, Place, Potential, Sums, Term, Triangle,
+    TriangleFormula, TriangleSlopes, Triangles, repulsion,
+};
+use crate::real::Real;
 
 /// A repulsion between the sides of a triangle that shrinks.
 pub struct TriangleAreaRepulsion;
@@ -26,34 +29,41 @@ impl Potential for TriangleAreaRepulsion {
         Needs::TRIANGLES
     }
 
-    fn triangles(
+    fn triangles(&self, term: &Term, run: Triangles) -> Contribution {
+        let [min_area, epsilon, ..] = term.values;
+        run.apply(term, &Repulsion { min_area, epsilon })
+    }
+}
+
+struct Repulsion {
+    min_area: f64,
+    epsilon: f64,
+}
+
+impl TriangleFormula for Repulsion {
+    #[inline(always)]
+    fn apply<R: Real>(
         &self,
-        &Term { values: [min_area, epsilon, ..], .. }: &Term,
-        _: usize,
-        triangles: &[TriangleGeometry],
-        partials: &mut [TrianglePartials],
-    ) -> Contribution {
-        let mut squares = 0.0;
-        let mut by_area = 0.0;
-        for (triangle, partial) in triangles.iter().zip(partials) {
-            let ratio = min_area / triangle.area();
-            let x = ratio * ratio * ratio * ratio;
-            let Some((square, by_x)) = repulsion(x) else { continue };
-            squares += square;
-            by_area += 4.0 * by_x * x / min_area;
-            partial.area -= 4.0 * epsilon * by_x * x / triangle.area();
-        }
-        Contribution {
-            energy: epsilon * squares,
-            by_parameter: [epsilon * by_area, squares, 0.0, 0.0],
-        }
+        _: Place,
+        triangle: &Triangle<R>,
+        slopes: &mut TriangleSlopes<R>,
+    ) -> Sums<R> {
+        let area = triangle.area();
+        let ratio = area.of(self.min_area) / area;
+        let x = (ratio * ratio) * (ratio * ratio);
+        let (square, by_x) = repulsion(x);
+        let slope = by_x * x * (4.0 * self.epsilon);
+        slopes.area = slopes.area - slope / area;
+        // With a_m = 0 there is no repulsion, and x is 0.
+        let by_min_area = if self.min_area > 0.0 { slope * (1.0 / self.min_area) } else { x };
+        Sums { energy: square * self.epsilon, by_parameter: [by_min_area, square] }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::geometry::Vec3;
+    use crate::mesh::geometry::{TriangleGeometry, TrianglePartials, Vec3};
 
     #[test]
     fn energy_and_derivatives_are_those_of_the_formula() {
@@ -62,10 +72,9 @@ mod tests {
                 TriangleGeometry { normal: Vec3::zeros(), twice_area: 2.0 * area, dots: [1.0; 3] };
             let term = Term::new("TriangleAreaRepulsionForce", 0, &[min_area, epsilon]).unwrap();
             let mut partials = [TrianglePartials::default()];
-            (
-                TriangleAreaRepulsion.triangles(&term, 0, &[triangle], &mut partials),
-                partials[0].area,
-            )
+            let run =
+                Triangles::Plain { first: 0, geometry: &[triangle], partials: &mut partials };
+            (TriangleAreaRepulsion.triangles(&term, run), partials[0].area)
         };
         let (a, m, e): (f64, f64, f64) = (1.1, 1.0, 2.0);
         let (sum, slope) = at(a, m, e);

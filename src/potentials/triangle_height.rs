@@ -2,8 +2,11 @@
 //! where h < 2^¼ d, else 0: the auxiliary potential of doi:10.1103/PhysRevE.108.015301. It keeps a
 //! fluid mesh from degenerating: no vertex can cross the side opposite it.
 
-use super::{Contribution, Domain, Needs, Parameter, Potential, Term, repulsion};
-use crate::mesh::geometry::{TriangleGeometry, TrianglePartials};
+use super::{
+    Contribution, Domain, Needs, Parameter, Place, Potential, Sums, Term, Triangle,
+    TriangleFormula, TriangleSlopes, Triangles, repulsion,
+};
+use crate::real::Real;
 
 /// A purely repulsive potential on the heights of triangles, of Weeks, Chandler and Andersen's kind.
 pub struct TriangleHeight;
@@ -26,47 +29,67 @@ impl Potential for TriangleHeight {
         Needs::TRIANGLES
     }
 
+    fn triangles(&self, term: &Term, run: Triangles) -> Contribution {
+        let [min_height, epsilon, ..] = term.values;
+        run.apply(term, &Heights { min_height, epsilon })
+    }
+}
+
+struct Heights {
+    min_height: f64,
+    epsilon: f64,
+}
+
+impl TriangleFormula for Heights {
     /// With h = 2a/l and x = (d/h)⁴ = (d l / 2a)⁴ the energy of a height is ε (x − ½)², for x > ½.
-    fn triangles(
+    #[inline(always)]
+    fn apply<R: Real>(
         &self,
-        &Term { values: [min_height, epsilon, ..], .. }: &Term,
-        _: usize,
-        triangles: &[TriangleGeometry],
-        partials: &mut [TrianglePartials],
-    ) -> Contribution {
-        let mut squares = 0.0;
-        let mut by_height = 0.0;
-        let min_height_squared = min_height * min_height;
-        let threshold = std::f64::consts::FRAC_1_SQRT_2;
-        for (triangle, partial) in triangles.iter().zip(partials) {
-            let scale = min_height_squared / (triangle.twice_area * triangle.twice_area);
-            let sides: [f64; 3] = std::array::from_fn(|k| triangle.length_squared(k));
-            let longest = sides[0].max(sides[1]).max(sides[2]);
-            if scale * longest <= threshold {
-                continue;
-            }
-            for (side, length_squared) in sides.into_iter().enumerate() {
-                let ratio_squared = scale * length_squared;
-                let x = ratio_squared * ratio_squared;
-                let Some((square, by_x)) = repulsion(x) else { continue };
-                squares += square;
-                let slope = by_x * x;
-                by_height += 4.0 * slope / min_height;
-                partial.area -= 8.0 * epsilon * slope / triangle.twice_area;
-                partial.length_squared[side] += 2.0 * epsilon * slope / length_squared;
-            }
+        _: Place,
+        triangle: &Triangle<R>,
+        slopes: &mut TriangleSlopes<R>,
+    ) -> Sums<R> {
+        let &Self { min_height, epsilon } = self;
+        let four_areas = triangle.twice_area * triangle.twice_area;
+        let (zero, threshold) = (four_areas.zero(), four_areas.of(std::f64::consts::FRAC_1_SQRT_2));
+        let sides: [R; 3] = std::array::from_fn(|k| triangle.length_squared(k));
+        let longest = sides[0].max(sides[1]).max(sides[2]);
+        // Most triangles are far from any repulsion; to see that takes no division.
+        let squared = min_height * min_height;
+        if !zero.any((longest * squared).above(threshold * four_areas)) {
+            return Sums { energy: zero, by_parameter: [zero; 2] };
         }
-        Contribution {
-            energy: epsilon * squares,
-            by_parameter: [epsilon * by_height, squares, 0.0, 0.0],
+        let scale = zero.of(squared) / four_areas;
+        let (mut squares, mut slope_sum) = (zero, zero);
+        for (side, length_squared) in sides.into_iter().enumerate() {
+            let ratio_squared = scale * length_squared;
+            let x = ratio_squared * ratio_squared;
+            let (square, by_x) = repulsion(x);
+            let slope = by_x * x;
+            squares = squares + square;
+            slope_sum = slope_sum + slope;
+            let by_length = slope * (2.0 * epsilon) / length_squared;
+            slopes.length_squared[side] = slopes.length_squared[side] + by_length;
         }
+        slopes.area = slopes.area - slope_sum * (8.0 * epsilon) / triangle.twice_area;
+        let by_height = slope_sum * (4.0 * epsilon / min_height);
+        Sums { energy: squares * epsilon, by_parameter: [by_height, squares] }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::geometry::Vec3;
+    use crate::mesh::geometry::{TriangleGeometry, TrianglePartials, Vec3};
+
+    fn one(
+        term: &Term,
+        triangle: TriangleGeometry,
+        partials: &mut [TrianglePartials; 1],
+    ) -> Contribution {
+        TriangleHeight
+            .triangles(term, Triangles::Plain { first: 0, geometry: &[triangle], partials })
+    }
 
     #[test]
     fn energy_is_that_of_the_formula() {
@@ -78,7 +101,7 @@ mod tests {
         );
         let mut partials = [TrianglePartials::default()];
         let term = Term::new("TriangleHeightForce", 0, &[d, epsilon]).unwrap();
-        let found = TriangleHeight.triangles(&term, 0, &[triangle], &mut partials);
+        let found = one(&term, triangle, &mut partials);
         let expected: f64 = (0..3)
             .map(|k| triangle.twice_area / triangle.length_squared(k).sqrt())
             .filter(|h| *h < 2f64.powf(0.25) * d)
@@ -96,7 +119,7 @@ mod tests {
             let triangle = TriangleGeometry { normal: Vec3::zeros(), twice_area: 2.0 * area, dots };
             let mut partials = [TrianglePartials::default()];
             let term = Term::new("TriangleHeightForce", 0, &[d, epsilon]).unwrap();
-            (TriangleHeight.triangles(&term, 0, &[triangle], &mut partials), partials[0])
+            (one(&term, triangle, &mut partials), partials[0])
         };
         let (area, sides, d, epsilon) = (0.7, [2.0, 1.0, 1.7], 1.0, 1.5);
         let (sum, partials) = at(area, sides, d, epsilon);

@@ -1,7 +1,7 @@
 //! The evaluator on whole meshes: gradients, symmetries, threads and bad input, for every potential.
 
 use openmm_helfrich::error::Error;
-use openmm_helfrich::evaluator::CpuEvaluator;
+use openmm_helfrich::evaluator::{CpuEvaluator, InstructionSet, ReferenceEvaluator};
 use openmm_helfrich::mesh::Topology;
 use openmm_helfrich::potentials::{Contribution, REGISTRY, Term};
 use proptest::prelude::*;
@@ -93,7 +93,8 @@ fn evaluate(
 ) -> (Vec<Contribution>, Vec<f64>) {
     let mut contributions = vec![Contribution::default(); terms.len()];
     let mut forces = vec![0.0; positions.len()];
-    evaluator.evaluate(terms.iter(), positions, &mut contributions, Some(&mut forces)).unwrap();
+    let borrowed: Vec<_> = terms.iter().collect();
+    evaluator.evaluate(&borrowed, positions, &mut contributions, Some(&mut forces)).unwrap();
     (contributions, forces)
 }
 
@@ -175,18 +176,77 @@ fn terms_add_up_however_they_are_grouped() {
 
 #[test]
 fn bits_do_not_depend_on_the_number_of_threads() {
-    // Enough triangles for the parallel path, and for several chunks of every array.
+    // Many tiles of every array, so that no number of threads divides them evenly.
     let mesh = spheroid(70, 90, &mut random(4));
     assert!(mesh.1.len() > 12_000);
     let terms = all_terms();
-    let results: Vec<_> = [1, 2, 3, 8]
-        .map(|threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| evaluate(&mut evaluator(&mesh), &terms, &mesh.0))
-        })
-        .into();
-    for other in &results[1..] {
-        assert_eq!(results[0], *other);
+    let topology = Arc::new(Topology::new(&mesh.1, mesh.0.len() / 3).unwrap());
+    for set in [InstructionSet::Best, InstructionSet::Scalar] {
+        let with = |threads| CpuEvaluator::with(topology.clone(), set, threads);
+        let results = [1, 2, 3, 8].map(|threads| evaluate(&mut with(threads), &terms, &mesh.0));
+        for other in &results[1..] {
+            assert_eq!(results[0], *other);
+        }
+    }
+}
+
+/// Two meshes beside each other, of an odd number of vertices and triangles each.
+fn two_components() -> Mesh {
+    let (mut positions, mut triangles) = spheroid(5, 7, &mut random(8));
+    let (others, more) = spheroid(9, 11, &mut random(9));
+    let count = (positions.len() / 3) as i64;
+    positions.extend(others.iter().map(|x| x + 40.0));
+    triangles.extend(more.iter().map(|triangle| triangle.map(|v| v + count)));
+    (positions, triangles)
+}
+
+#[test]
+fn every_instruction_set_agrees_with_the_reference() {
+    let terms = all_terms();
+    for mesh in [spheroid(6, 9, &mut random(10)), two_components()] {
+        let topology = Arc::new(Topology::new(&mesh.1, mesh.0.len() / 3).unwrap());
+        let mut reference = ReferenceEvaluator::new(topology.clone());
+        let mut check = |terms: &[&Term]| {
+            let mut expected = vec![Contribution::default(); terms.len()];
+            let mut expected_forces = vec![0.0; mesh.0.len()];
+            reference
+                .evaluate(terms, &mesh.0, &mut expected, Some(&mut expected_forces))
+                .unwrap();
+            let largest = expected_forces.iter().fold(0.0, |m: f64, f| m.max(f.abs()));
+            let near = |a: f64, b: f64, scale: f64| (a - b).abs() <= 1e-12 * scale;
+            for set in [InstructionSet::Best, InstructionSet::Avx2, InstructionSet::Scalar] {
+                let mut evaluator = CpuEvaluator::with(topology.clone(), set, 1);
+                let mut found = vec![Contribution::default(); terms.len()];
+                let mut forces = vec![0.0; mesh.0.len()];
+                evaluator.evaluate(terms, &mesh.0, &mut found, Some(&mut forces)).unwrap();
+                for ((term, a), b) in terms.iter().zip(&expected).zip(&found) {
+                    let what = format!("{} {} {set:?}", term.potential.name(), term.form);
+                    assert!(near(a.energy, b.energy, a.energy.abs()), "{what}: {a:?} {b:?}");
+                    for (x, y) in a.by_parameter.iter().zip(b.by_parameter) {
+                        assert!(near(*x, y, x.abs()), "{what}: {a:?} {b:?}");
+                    }
+                }
+                for (index, (a, b)) in expected_forces.iter().zip(&forces).enumerate() {
+                    let term = terms[0];
+                    let what = format!("{} {}", term.potential.name(), term.form);
+                    assert!(near(*a, *b, largest), "{what} {set:?} {index}: {a} {b} {largest}");
+                }
+                // Without energies the forces are the same.
+                let mut again = vec![0.0; mesh.0.len()];
+                evaluator.evaluate(terms, &mesh.0, &mut [], Some(&mut again)).unwrap();
+                assert_eq!(forces, again);
+            }
+        };
+        for term in &terms {
+            check(&[term]);
+        }
+        // All pairs, since what a term does not need must not reach it from another evaluation.
+        for (k, one) in terms.iter().enumerate() {
+            for other in &terms[k + 1..] {
+                check(&[one, other]);
+            }
+        }
+        check(&terms.iter().collect::<Vec<_>>());
     }
 }
 
@@ -243,16 +303,17 @@ fn degenerate_and_lost_meshes_are_named_and_change_nothing() {
     let mesh = spheroid(5, 7, &mut random(7));
     let mut evaluator = evaluator(&mesh);
     let terms = all_terms();
+    let terms: Vec<_> = terms.iter().collect();
     let mut contributions = vec![Contribution::default(); terms.len()];
     let mut forces = vec![1.0; mesh.0.len()];
 
     let mut lost = mesh.0.clone();
     lost[3 * 11 + 1] = f64::INFINITY;
-    let result = evaluator.evaluate(terms.iter(), &lost, &mut contributions, Some(&mut forces));
+    let result = evaluator.evaluate(&terms, &lost, &mut contributions, Some(&mut forces));
     assert!(matches!(result, Err(Error::NonFinitePosition { particle: 11, .. })), "{result:?}");
 
     let huge: Vec<f64> = mesh.0.iter().map(|x| x * 1e200).collect();
-    let result = evaluator.evaluate(terms.iter(), &huge, &mut contributions, Some(&mut forces));
+    let result = evaluator.evaluate(&terms, &huge, &mut contributions, Some(&mut forces));
     assert!(matches!(result, Err(Error::OverflownTriangle { .. })), "{result:?}");
 
     let mut flat = mesh.0.clone();
@@ -263,11 +324,11 @@ fn degenerate_and_lost_meshes_are_named_and_change_nothing() {
         flat[3 * b + axis] = 2.0;
         flat[3 * c + axis] = 4.0;
     }
-    let result = evaluator.evaluate(terms.iter(), &flat, &mut contributions, Some(&mut forces));
+    let result = evaluator.evaluate(&terms, &flat, &mut contributions, Some(&mut forces));
     assert!(matches!(result, Err(Error::DegenerateTriangle { triangle: 4, .. })), "{result:?}");
     assert!(forces.iter().all(|force| *force == 1.0));
 
-    let fine = evaluator.evaluate(terms.iter(), &mesh.0, &mut contributions, Some(&mut forces));
+    let fine = evaluator.evaluate(&terms, &mesh.0, &mut contributions, Some(&mut forces));
     assert_eq!(fine, Ok(()));
 }
 

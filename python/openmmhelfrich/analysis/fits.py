@@ -8,9 +8,6 @@ from scipy.optimize import curve_fit, least_squares
 from . import theory
 from .correlation import autocorrelation
 
-# Above this γ/ω an autocorrelation function is an exponential for all that can be seen.
-_MOST_OVERDAMPED = 100
-
 
 class ElasticFit(NamedTuple):
     """What `fit_young` finds."""
@@ -204,12 +201,6 @@ def fit_damping(series, interval, lags=None, frequency=None) -> DampingFit:
     times = interval * np.arange(lags)
     total = functions.sum(axis=1)
     best = _damped(times, total / total[0], frequency)
-    if frequency is None and best[0] > _MOST_OVERDAMPED * best[1]:
-        raise RuntimeError(
-            "fit_damping: the mode is overdamped, and of its two rates only "
-            f"ω²/γ = {best[1] ** 2 / best[0]:.4g} /ps "
-            "can be told from its autocorrelation; give the frequency"
-        )
     count = functions.shape[1]
     without = np.array(
         [
@@ -218,6 +209,14 @@ def fit_damping(series, interval, lags=None, frequency=None) -> DampingFit:
         ]
     )
     error = np.sqrt((count - 1) * without.var(axis=0))
+    overdamped = best[0] > 2 * best[1]
+    if frequency is None and overdamped and not error[0] < best[0]:
+        # The curve is an exponential for all that can be seen, which has one rate and not two.
+        raise RuntimeError(
+            "fit_damping: the mode is overdamped, and of its two rates only "
+            f"ω²/γ = {best[1] ** 2 / best[0]:.4g} /ps can be told from its autocorrelation; "
+            "give the frequency"
+        )
     return DampingFit(float(best[0]), float(error[0]), float(best[1]), float(error[1]))
 
 

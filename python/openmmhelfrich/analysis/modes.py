@@ -9,19 +9,23 @@ from .solid_angles import triangle_solid_angles, vertex_solid_angles
 # Harmonics of so many l above those asked for are fitted too, and take up what would else leak.
 _MARGIN = 4
 
-# The way to the centre of the surface gets shorter by about u_lm² a step.
-_MOST_STEPS = 50
-_CENTRED = 1e-12
+# Steps to the middle of the surface: some five for a vesicle near a sphere; in radii, the longest.
+_MOST_STEPS = 30
+_LONGEST_STEP = 0.2
+
+# Least eigenvalue of the Gram matrix with which a fit is taken for determined; it is 1 on an even
+# mesh, and 0.3 at l = 15 on a fluctuating one of 1002 vertices.
+_DETERMINED = 0.02
 
 
-def mode_amplitudes(vertices, triangles, lmax, quadrature="fit", centre="mass"):
+def mode_amplitudes(vertices, triangles, lmax, quadrature="fit", centre=None):
     """Amplitudes u_lm of a nearly spherical vesicle, r(θ, φ) = R_V [1 + Σ u_lm Y_lm(θ, φ)].
 
     u_lm = ∫ (r / R_V − 1) Y_lm dΩ,   R_V = (3V / 4π)^⅓
 
-    r is the distance from the centre of mass, **the mean of all vertices, which have equal
-    masses**. Y_lm are real and orthonormal, see `real_harmonics`. u_00 is the mean radius against
-    R_V, and u_1m the way from the centre to the middle of the surface. The integral is taken by
+    r is the distance from the centre. Y_lm are real and orthonormal, see `real_harmonics`. u_00 is
+    the mean radius against R_V, and u_1m the way from the centre to the middle of the surface. The
+    integral is taken by
 
     ``"fit"``
         least squares: the amplitudes that minimise Σ_i w_i [r_i/R_V − 1 − Σ u_lm Y_lm(θ_i, φ_i)]²,
@@ -51,11 +55,15 @@ def mode_amplitudes(vertices, triangles, lmax, quadrature="fit", centre="mass"):
         Largest l, 0 or more. A mesh resolves l up to about √num_vertices / 2.
     quadrature : {"fit", "vertices", "surface"}
         How the integral is taken.
-    centre : {"mass", "surface"}
-        The point from which r is measured: the mean of the vertices, or the point from which
-        u_1m = 0, which does not depend on how the vertices lie within the surface. In a fluid mesh
-        they drift: at N = 1002 their mean is some 1 % of the radius off the middle, and a mode l
-        seen from a centre that is off by δ has a share of about l δ/R of its neighbours l ± 1.
+    centre : {"surface", "mass"}, optional
+        The point from which r is measured. ``"surface"``, the default for the fit, is the middle of
+        the surface, where u_1m = 0: translations are removed whatever the vertices do within it.
+        ``"mass"``, the default for the others, is the mean of the vertices, which have equal
+        masses, as in the paper. A mode l seen from a centre that is off by δ has a share of about
+        l δ/R of its neighbours l ± 1, and the mean of the vertices *is* off: by a hundredth of R in
+        a fluid mesh of 1002 vertices, and by 1 % of u_5m R on an icosphere of any size, since its
+        vertices are denser at the twelve corners. It exists for any shape; the middle of the
+        surface takes five times as long, and strongly deformed shapes may have none.
 
     Returns
     -------
@@ -70,7 +78,8 @@ def mode_amplitudes(vertices, triangles, lmax, quadrature="fit", centre="mass"):
     ValueError
         A wrong shape, an index out of range, a coordinate that is not finite, a negative lmax, one
         with more harmonics than vertices for the fit, another quadrature or centre, a mesh whose
-        volume is not positive, or one so far from a sphere that no centre has u_1m = 0.
+        volume is not positive or with a vertex at its centre of mass, or one so far from a sphere
+        that it has no centre with u_1m = 0 or too few vertices in some directions for the fit.
 
     Notes
     -----
@@ -88,16 +97,17 @@ def mode_amplitudes(vertices, triangles, lmax, quadrature="fit", centre="mass"):
     The paper's sum picks up the large amplitudes of small l in those of large l; flat triangles cut
     off crests; and modes above the range of the fit leak into its last few.
 
-    That is a statement about the vertices. In a simulation their amplitudes are larger than theory
-    has it, since a mesh resists bending less than a smooth membrane: of a mode l on an even mesh of
-    1002 vertices `BendingForce` has 0.97 of the energy for l = 4, 0.88 for l = 8 and 0.76 for
-    l = 12. The flat triangles, whose bending that energy is, have amplitudes smaller by about the
-    same share, so that ``"surface"`` is the closest to (A17) there: 0.9 to 1.0 up to l = 15 at
-    Ξ = 0.037, where ``"fit"`` has 1.3 at l = 8.
+    That is a statement about the vertices. In a run at Ξ = 0.037 and N = 1002 their ⟨|u_lm|²⟩ is
+    1.3 times (A17) at l = 8, by the fit as by the sum, and that of the flat triangles, by
+    ``"surface"``, 0.9 to 1.0 times up to l = 15. The discrete energy is one reason: of a mode on an
+    even mesh of 1002 vertices `BendingForce` has 0.97 of the energy of a smooth membrane for l = 4,
+    0.88 for l = 8 and 0.76 for l = 12. Say which quadrature a spectrum was measured with.
     """
     lmax = count_of("lmax", lmax)
     if quadrature not in _QUADRATURES:
         raise ValueError(f"quadrature: need one of {tuple(_QUADRATURES)}, got {quadrature!r}")
+    if centre is None:
+        centre = "surface" if quadrature == "fit" else "mass"
     if centre not in ("mass", "surface"):
         raise ValueError(f"centre: need 'mass' or 'surface', got {centre!r}")
     integrate = _QUADRATURES[quadrature]
@@ -110,33 +120,76 @@ def mode_amplitudes(vertices, triangles, lmax, quadrature="fit", centre="mass"):
                 "fit them to; ask for fewer"
             )
         positions = frames - frames.mean(axis=1, keepdims=True)
-        _check_volume(positions, faces, first)
+        _check(positions, faces, first)
         if centre == "surface":
-            positions = _centred(positions, faces, integrate, first)
+            positions = _centred(positions, faces, integrate, lmax, first)
         return integrate(positions, faces, lmax)[0]
 
     # The surface has six Gauss points for each triangle, of which three are worked on at a time.
     return over_frames(work, vertices, triangles, lambda n, t: t * max(count, 30))
 
 
-def _centred(positions, faces, integrate, first):
-    """Positions about the point from which u_1m vanish."""
+def _centred(positions, faces, integrate, lmax, first):
+    """Positions about the point from which u_1m vanish.
+
+    Cheaply with few harmonics first, then with those that are asked for.
+    """
+    for degree, tolerance in ((1, 1e-5), (max(lmax, 1), 1e-9)):
+        positions, length = _without_first_modes(positions, faces, integrate, degree, tolerance)
+    if not (length < tolerance).all():
+        frame = np.argmin(length < tolerance)
+        raise ValueError(
+            f"vertices: frame {first + frame} has no centre with u_1m = 0, since it is far from a "
+            "sphere; use centre='mass'"
+        )
+    return positions
+
+
+def _without_first_modes(positions, faces, integrate, lmax, tolerance):
+    """Positions moved so that u_1m vanish, and what is left of them, in radii.
+
+    Broyden's method (doi:10.1090/S0025-5718-1965-0198670-6) on the vector from the origin to where
+    u_1m puts the middle of the surface. Its derivative by the origin is −1 for a sphere.
+    """
+    count = len(positions)
+    inverse = np.tile(-np.eye(3), (count, 1, 1))
+    step = change = None
     for _ in range(_MOST_STEPS):
-        amplitudes, radius = integrate(positions, faces, 1)
+        amplitudes, radius = integrate(positions, faces, lmax)
         # A shift of δ adds √(4π/3) δ/R to the amplitudes of Y_1−1, Y_10 and Y_11, along y, z and x.
-        shift = radius[:, np.newaxis] * np.sqrt(3 / (4 * np.pi)) * amplitudes[:, [3, 1, 2]]
-        positions = positions - shift[:, np.newaxis]
-        length = np.linalg.norm(shift, axis=1) / radius
-        if (length < _CENTRED).all():
-            return positions
-    frame = np.argmax(length)
-    raise ValueError(
-        f"vertices: frame {first + frame} has no centre with u_1m = 0, since it is far from a "
-        "sphere; use centre='mass'"
-    )
+        middle = radius[:, np.newaxis] * np.sqrt(3 / (4 * np.pi)) * amplitudes[:, [3, 1, 2]]
+        length = np.linalg.norm(middle, axis=1) / radius
+        if (length < tolerance).all():
+            break
+        if step is not None:
+            change = middle - change
+            moved = np.einsum("fij,fj->fi", inverse, change)
+            along = np.einsum("fi,fij->fj", step, inverse)
+            below = dot(along, change)
+            # Frames that have arrived move no more, and have nothing to learn from.
+            with np.errstate(divide="ignore", invalid="ignore"):
+                update = ((step - moved) / below[:, np.newaxis])[:, :, np.newaxis] * along[
+                    :, np.newaxis
+                ]
+            inverse += np.where(np.isfinite(update), update, 0)
+        change = middle
+        step = -np.einsum("fij,fj->fi", inverse, middle)
+        size = np.linalg.norm(step, axis=1) / radius
+        step *= (np.minimum(size, _LONGEST_STEP) / np.where(size > 0, size, 1))[:, np.newaxis]
+        step[length < tolerance] = 0
+        positions = positions - step[:, np.newaxis]
+    return positions, length
 
 
-def _check_volume(positions, faces, first):
+def _check(positions, faces, first):
+    """Refuse frames whose volume is not positive, or with a vertex where it has no direction."""
+    distance = np.linalg.norm(positions, axis=2)
+    if not distance.all():
+        frame, vertex = np.argwhere(distance == 0)[0]
+        raise ValueError(
+            f"vertices: vertex {vertex} of frame {first + frame} is at the centre of mass, where "
+            "it has no direction"
+        )
     volume = _volume(positions, faces)
     if not (volume > 0).all():
         frame = np.flatnonzero(~(volume > 0))[0]
@@ -155,23 +208,49 @@ def _volume(positions, faces):
 def _fit(positions, faces, lmax):
     """Weighted least squares; returns u_lm and R_V."""
     num_vertices = positions.shape[1]
-    degree = max(lmax, min(lmax + _MARGIN, int(num_vertices**0.5 / 2)))
     distance = np.linalg.norm(positions, axis=2)
     directions = positions / distance[:, :, np.newaxis]
     weights = triangle_solid_angles(directions, faces)
-    harmonics = harmonics_of(directions, degree)
-    weighted = harmonics * weights[:, np.newaxis]
-    gram = weighted @ harmonics.transpose(0, 2, 1)
     # The mean is taken off first, so that rounding is that of the amplitudes; its own share is in
     # l = 0 only. r³ is fitted along, for the volume.
     mean = distance.mean(axis=1)[:, np.newaxis]
     strain = distance / mean - 1
     values = np.stack([strain, (distance / mean) ** 3 - 1], axis=2)
-    solution = np.linalg.solve(gram, weighted @ values)
+    degree = max(lmax, min(lmax + _MARGIN, int(num_vertices**0.5 / 2)))
+    harmonics = harmonics_of(directions, degree)
+    weighted = harmonics * weights[:, np.newaxis]
+    gram = weighted @ harmonics.transpose(0, 2, 1)
+    right = weighted @ values
+    count = (lmax + 1) ** 2
+    solution = np.empty((len(positions), count, 2))
+    full = _determined(gram)
+    solution[full] = np.linalg.solve(gram[full], right[full])[:, :count]
+    # Seen from within a shape far from a sphere, vertices leave wide gaps, which the harmonics
+    # beyond lmax fill with what they like. There they are left out.
+    rest = ~full
+    if rest.any():
+        low = gram[rest][:, :count, :count]
+        if not _determined(low).all():
+            raise ValueError(
+                f"vertices: the vertices lie too unevenly around their centre to fit modes up to "
+                f"l = {lmax}, since the shape is far from a sphere; ask for fewer, or use "
+                "quadrature='surface' or 'vertices'"
+            )
+        solution[rest] = np.linalg.solve(low, right[rest][:, :count])
     radius = np.cbrt(1 + solution[:, 0, 1] / np.sqrt(4 * np.pi))
-    amplitudes = solution[:, : (lmax + 1) ** 2, 0] / radius[:, np.newaxis]
+    amplitudes = solution[:, :, 0] / radius[:, np.newaxis]
     amplitudes[:, 0] += np.sqrt(4 * np.pi) * (1 / radius - 1)
     return amplitudes, radius * mean[:, 0]
+
+
+def _determined(gram):
+    """Whether the least eigenvalue of each matrix is at least `_DETERMINED`."""
+    shifted = gram - _DETERMINED * np.eye(gram.shape[-1])
+    try:
+        np.linalg.cholesky(shifted)
+    except np.linalg.LinAlgError:
+        return np.linalg.eigvalsh(shifted)[:, 0] > 0
+    return np.ones(len(gram), dtype=bool)
 
 
 def _sum(nodes):

@@ -24,9 +24,23 @@ def solid_angles(vertices, triangles):
     -------
     ndarray
         Ω, shape (num_vertices,) or (num_frames, num_vertices), steradian.
+
+    Raises
+    ------
+    TypeError
+        A Quantity that is no length, or indices that are no integers.
+    ValueError
+        A wrong shape, an index out of range, a coordinate that is not finite, or a vertex at the
+        origin.
     """
 
     def work(frames, faces, first):
+        if not frames.any(axis=2).all():
+            frame, vertex = np.argwhere(~frames.any(axis=2))[0]
+            raise ValueError(
+                f"vertices: vertex {vertex} of frame {first + frame} is at the origin, the centre "
+                "of projection"
+            )
         directions = frames / np.linalg.norm(frames, axis=2, keepdims=True)
         return vertex_solid_angles(directions, faces)
 

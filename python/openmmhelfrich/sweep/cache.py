@@ -75,8 +75,17 @@ class Cache:
         try:
             with os.fdopen(handle, "wb") as file:
                 np.savez_compressed(file, **{RECORD: np.array(record)}, **arrays)
+            # Temporary files are for their owner alone; a folder of results may be shared.
+            os.chmod(temporary, 0o666 & ~_umask())
             os.replace(temporary, path)
         except BaseException:
             with contextlib.suppress(FileNotFoundError):
                 os.unlink(temporary)
             raise
+
+
+def _umask():
+    """The mask of new files, which can only be read by setting it."""
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

@@ -1,0 +1,112 @@
+"""Fig. 11: how the bending energy of oblate and prolate starts relaxes.
+
+Spheres deformed to an oblate or a prolate of a given reduced volume run in Langevin dynamics. Their
+bending energies, means over several seeds, settle in less than the period τ_2 of the slowest mode.
+"""
+
+import numpy as np
+from _paper import Figure, mean_and_error
+from openmmhelfrich.sweep import grid
+
+
+def relaxation(shape, reduced_volume, softness, subdivision, duration, samples, time_step, seed):
+    """Bending energy at `samples` equal intervals of a run of `duration` τ_2, kJ/mol."""
+    import openmm
+    import openmmhelfrich as helfrich
+
+    mesh = helfrich.Mesh.icosphere(subdivision, 1000.0)
+    mesh = getattr(mesh, shape)(reduced_volume)
+    vesicle = helfrich.Vesicle(mesh, softness=softness)
+    integrator = openmm.LangevinMiddleIntegrator(300, 0.01, time_step)
+    integrator.setRandomNumberSeed(seed)
+    simulation = vesicle.simulation(integrator, "Reference")
+    simulation.context.setVelocitiesToTemperature(300, seed)
+    # τ_2 of the sphere of equal area.
+    steps = round(duration * vesicle.tau_2 / samples / time_step)
+    energies = [vesicle.energies(simulation.context)["bending"]]
+    for _ in range(samples):
+        simulation.step(steps)
+        energies.append(vesicle.energies(simulation.context)["bending"])
+    return {
+        "energies": np.array(energies),
+        "times": np.arange(samples + 1) * steps * time_step / vesicle.tau_2,
+        "tau_2": vesicle.tau_2,
+    }
+
+
+def settling_time(times, energies, error):
+    """When the energy, a mean over seeds, arrives at its plateau, and the plateau.
+
+    The plateau is the mean of the last half. Windows of 0.1 τ_2 have arrived where their means are
+    within three of the standard deviations that such means have along the plateau, or within three
+    standard errors of it. The first of two in succession counts, with its end.
+    """
+    width = max(1, round(0.1 / (times[1] - times[0])))
+    count = len(energies) // width
+    windows = energies[: count * width].reshape(count, width).mean(axis=1)
+    ends = times[width - 1 : count * width : width]
+    late = windows[ends > times[-1] / 2]
+    near = abs(windows - late.mean()) <= 3 * max(late.std(ddof=1), error)
+    arrived = np.flatnonzero(near[:-1] & near[1:])
+    return (ends[arrived[0]] if len(arrived) else np.inf), late.mean()
+
+
+def main():
+    import matplotlib.pyplot as plt
+
+    figure = Figure("fig11", "Fig. 11", "Relaxation of oblate and prolate starts", __doc__)
+    duration = figure.choose(2.0, 2.0)
+    time_step = figure.choose(0.2, 0.5, 0.5)
+    seeds = figure.choose(10, 2, 3)
+    volumes = figure.choose([0.95, 0.8, 0.6], [0.9], [0.95, 0.6])
+    points = grid(
+        shape=["oblate", "prolate"],
+        reduced_volume=volumes,
+        softness=[0.037],
+        subdivision=[figure.choose(10, 5)],
+        duration=[duration],
+        samples=[round(100 * duration)],
+        time_step=[time_step],
+        seed=range(1, seeds + 1),
+    )
+    results = figure.sweep(relaxation, points, description="relaxations")
+    count = 10 * points[0]["subdivision"] ** 2 + 2
+    tau = results[0]["tau_2"]
+    figure.parameters(
+        f"N = {count}, κ = 20 kBT, Jülicher, Ξ = 0.037, LangevinMiddle, γ = 0.01/ps, 300 K, "
+        f"Δt = {time_step:g} ps, {seeds} runs of {duration:g} τ_2 each, τ_2 = {tau:.0f} ps."
+    )
+    if figure.size == "medium":
+        figure.reduced("Two reduced volumes, and Δt = 0.5 ps in place of 0.2 ps.")
+    graph, axes = plt.subplots(1, len(volumes), figsize=(3.6 * len(volumes), 3.4), squeeze=False)
+    for axis, volume in zip(axes[0], volumes, strict=True):
+        for shape in ("oblate", "prolate"):
+            runs = [
+                result
+                for point, result in zip(points, results, strict=True)
+                if (point["shape"], point["reduced_volume"]) == (shape, volume)
+            ]
+            times = runs[0]["times"]
+            mean, error = mean_and_error([run["energies"] for run in runs])
+            late = np.mean([run["energies"][len(times) // 2 :].mean() for run in runs])
+            spread = mean_and_error([r["energies"][len(times) // 2 :].mean() for r in runs])[1]
+            settled, plateau = settling_time(times, mean, spread)
+            figure.claim(
+                f"{shape}, ν = {volume:g}: E_b settles",
+                f"{settled:.2f} τ_2, from {mean[0]:.0f} to {plateau:.0f} ± {spread:.0f} kJ/mol",
+                "within τ_2",
+                settled < 1,
+            )
+            [line] = axis.plot(times, mean, lw=0.8, label=shape)
+            axis.fill_between(times, mean - error, mean + error, color=line.get_color(), alpha=0.3)
+            axis.axhline(late, color=line.get_color(), lw=0.6, ls=":")
+        axis.set(xlabel="$t / τ_2$", title=f"ν = {volume:g}")
+        axis.legend(fontsize=7)
+    axes[0][0].set_ylabel("$E_b$ (kJ/mol)")
+    graph.set_layout_engine("constrained")
+    figure.save(graph, "", "Mean bending energies over the seeds, with their standard errors.")
+    figure.finish()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,150 @@
+"""``openmm-helfrich spectrum``: a fluctuation spectrum beside its theory."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+__all__ = ["spectrum"]
+
+_MODES = (".csv", ".h5", ".hdf5")
+
+
+@click.command()
+@click.argument("source", type=click.Path(path_type=Path, dir_okay=False))
+@click.option(
+    "--mesh",
+    "mesh_path",
+    type=click.Path(path_type=Path, dir_okay=False),
+    help="Mesh whose triangles a trajectory has. Not for a file of modes.",
+)
+@click.option("--lmax", type=click.IntRange(2), help="Largest mode.  [default: 10, or the file's]")
+@click.option(
+    "--kappa",
+    type=click.FloatRange(min=0, min_open=True),
+    default=20.0,
+    show_default=True,
+    help="Bending rigidity of the theory, kBT.",
+)
+@click.option(
+    "--young",
+    type=click.FloatRange(min=0),
+    default=0.0,
+    help="Young modulus of the theory (A18), kBT/nm².  [default: 0, a fluid (A17)]",
+)
+@click.option(
+    "--radius",
+    type=click.FloatRange(min=0, min_open=True),
+    default=1000.0,
+    show_default=True,
+    help="Radius of the theory, nm; only for --young.",
+)
+@click.option("--skip", type=click.IntRange(0), default=0, help="Frames to leave out at the start.")
+@click.option("--stride", type=click.IntRange(1), default=1, help="Take every so many frames.")
+@click.option(
+    "--quadrature",
+    type=click.Choice(["fit", "vertices", "surface"]),
+    default="fit",
+    show_default=True,
+    help="How modes of a trajectory are measured: mode_amplitudes explains.",
+)
+@click.option(
+    "--centre",
+    type=click.Choice(["surface", "mass"]),
+    help="Where radii are measured from.  [default: surface for the fit, else mass]",
+)
+@click.option("--csv", "table_path", type=click.Path(path_type=Path), help="Write the table too.")
+@click.option("--plot", type=click.Path(path_type=Path), help="Draw it: .png, .pdf, .svg …")
+def spectrum(source, mesh_path, lmax, kappa, young, radius, table_path, plot, **options):
+    """Print the fluctuation spectrum of SOURCE beside the theory.
+
+    SOURCE is a trajectory (.xtc, .dcd, .pdb), whose triangles --mesh has, or what a ModeReporter
+    wrote (.csv, .h5). The errors account for correlation in time.
+    """
+    # The package takes a second to load, which --help need not wait for.
+    from .. import analysis
+    from ..errors import MeshError
+
+    try:
+        amplitudes = _amplitudes(source, mesh_path, lmax, **options)
+        found = analysis.spectrum(amplitudes)
+        l = found.l[2:]
+        theory = analysis.theory.elastic_spectrum(l, kappa, young, radius)
+        rows = list(
+            zip(l, found.mean[2:], found.error[2:], found.correlation_time[2:], theory, strict=True)
+        )
+        for line in _lines(len(amplitudes), kappa, young, rows):
+            click.echo(line)
+        if table_path is not None:
+            _write(table_path, rows)
+        if plot is not None:
+            _plot(plot, found, l, theory, kappa, young)
+    except (ValueError, TypeError, OSError, ImportError, MeshError) as reason:
+        raise click.ClickException(str(reason)) from None
+
+
+def _amplitudes(source, mesh_path, lmax, skip, stride, quadrature, centre):
+    """u_lm of all frames that are asked for, from either kind of file."""
+    from .. import analysis
+    from ..mesh import Mesh
+
+    if source.suffix.lower() in _MODES:
+        if mesh_path is not None:
+            raise click.UsageError("--mesh is for trajectories; a file of modes needs none")
+        amplitudes = analysis.read_modes(source).amplitudes[skip::stride]
+        largest = round(amplitudes.shape[1] ** 0.5) - 1
+        if largest < 2:
+            raise ValueError(f"{source} has modes up to l = {largest} only; a spectrum starts at 2")
+        if lmax is not None and lmax > largest:
+            raise ValueError(f"--lmax {lmax}: {source} has modes up to l = {largest} only")
+        return amplitudes if lmax is None else amplitudes[:, : (lmax + 1) ** 2]
+    if mesh_path is None:
+        raise click.UsageError("a trajectory needs --mesh, which has its triangles")
+    trajectory = analysis.Trajectory(source, start=skip, stride=stride)
+    mesh = Mesh.read(mesh_path)
+    if mesh.num_vertices != trajectory.num_vertices:
+        raise ValueError(
+            f"{source} has {trajectory.num_vertices} particles, and {mesh_path} "
+            f"{mesh.num_vertices} vertices; cut out the membrane first"
+        )
+    return analysis.mode_amplitudes(trajectory, mesh, lmax or 10, quadrature, centre)
+
+
+def _lines(num_frames, kappa, young, rows):
+    formula = "(A17)" if young == 0 else f"(A18) with Y = {young:g} kBT/nm²"
+    yield f"{num_frames} frames; theory {formula}, κ = {kappa:g} kBT"
+    yield "   l     ⟨|u_lm|²⟩       error    theory  ratio         correlation time"
+    for l, mean, error, time, theory in rows:
+        yield (
+            f"{l:4d}   {mean:.5e}   {error:.2e}  {theory:.2e}  "
+            f"{mean / theory:5.3f} ± {error / theory:.3f}  {time:8.1f} frames"
+        )
+
+
+def _write(path, rows):
+    import csv
+
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(["l", "mean", "error", "correlation_time_frames", "theory", "ratio"])
+        for l, mean, error, time, theory in rows:
+            writer.writerow([l, *(float(x) for x in (mean, error, time, theory, mean / theory))])
+
+
+def _plot(path, found, l, theory, kappa, young):
+    from matplotlib.figure import Figure
+
+    low, high = found.interval()
+    mean = found.mean[2:]
+    bars = [mean - low[2:], [top - middle for top, middle in zip(high[2:], mean, strict=True)]]
+    figure = Figure(figsize=(5, 4), layout="constrained")
+    axes = figure.subplots()
+    axes.errorbar(l, mean, bars, fmt="o", capsize=3, label="measured, 95 %")
+    name = "(A17)" if young == 0 else "(A18)"
+    axes.plot(l, theory, "k-", label=f"theory {name}, κ = {kappa:g} kBT")
+    axes.set(xscale="log", yscale="log", xlabel="l", ylabel="⟨|u$_{lm}$|²⟩")
+    axes.set_xticks(l, [str(number) for number in l])
+    axes.minorticks_off()
+    axes.legend()
+    figure.savefig(path, dpi=150)

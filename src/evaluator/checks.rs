@@ -1,0 +1,54 @@
+//! What every evaluator refuses.
+
+use crate::error::{Error, Result};
+use crate::mesh::Topology;
+use crate::mesh::geometry::{TriangleGeometry, Vec3};
+use crate::potentials::{Contribution, Term};
+
+/// Refuse an energy that is not finite; names the force.
+pub fn check_energies<'a>(
+    terms: impl IntoIterator<Item = &'a &'a Term<'a>>,
+    contributions: &[Contribution],
+) -> Result<()> {
+    for (term, contribution) in terms.into_iter().zip(contributions) {
+        if !contribution.energy.is_finite() {
+            let (force, energy) = (term.potential.name(), contribution.energy);
+            return Err(Error::NonFiniteEnergy { force, energy });
+        }
+    }
+    Ok(())
+}
+
+/// Why a mesh has no usable geometry: a position that is not finite, or a triangle without area.
+pub fn culprit(topology: &Topology, positions: &[f64]) -> Error {
+    let position =
+        |particle: u32| std::array::from_fn(|axis| positions[3 * particle as usize + axis]);
+    for &particle in &topology.particles {
+        let position = position(particle);
+        if !position.iter().all(|x: &f64| x.is_finite()) {
+            return Error::NonFinitePosition { particle, position };
+        }
+    }
+    // Relative to a vertex, as evaluators have it.
+    let origin = Vec3::from(position(topology.particles[0]));
+    let (mut smallest, mut thinnest) = (f64::INFINITY, 0);
+    let mut sum = 0.0;
+    for triangle in 0..topology.triangles.len() {
+        let corners = topology.particles_of(triangle);
+        let [a, b, c] = corners.map(|particle| Vec3::from(position(particle)) - origin);
+        let twice_area = TriangleGeometry::new(&a, &b, &c).twice_area;
+        if !twice_area.is_finite() {
+            return Error::OverflownTriangle { triangle, corners };
+        }
+        sum += twice_area;
+        if twice_area < smallest {
+            (smallest, thinnest) = (twice_area, triangle);
+        }
+    }
+    let corners = topology.particles_of(thinnest);
+    if sum.is_finite() {
+        return Error::DegenerateTriangle { triangle: thinnest, corners };
+    }
+    // Each triangle is fine, so it is their sum that overflows.
+    Error::OverflownTriangle { triangle: thinnest, corners }
+}

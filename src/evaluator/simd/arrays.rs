@@ -1,0 +1,84 @@
+//! What the passes leave for each other.
+
+use super::layout::Layout;
+use std::cell::UnsafeCell;
+
+/// Two cache lines, since processors fetch lines in pairs.
+#[derive(Clone, Copy)]
+#[repr(align(128))]
+struct Line([f64; 16]);
+
+/// Numbers that several threads fill, each thread its own places.
+pub struct Numbers {
+    lines: Box<[UnsafeCell<Line>]>,
+    count: usize,
+}
+
+// SAFETY: access is through raw pointers only, and each function that takes them says who may write where.
+unsafe impl Sync for Numbers {}
+
+impl Numbers {
+    /// So many zeros.
+    pub fn new(count: usize) -> Self {
+        let lines = (0..count.div_ceil(16)).map(|_| UnsafeCell::new(Line([0.0; 16]))).collect();
+        Self { lines, count }
+    }
+
+    /// Where a number is.
+    #[inline(always)]
+    pub fn at(&self, index: usize) -> *mut f64 {
+        debug_assert!(index <= self.count, "{index} of {}", self.count);
+        UnsafeCell::raw_get(self.lines.as_ptr()).cast::<f64>().wrapping_add(index)
+    }
+
+    /// Have room for so many; what was there before is lost if there was not.
+    pub fn require(&mut self, count: usize, value: f64) {
+        if self.count < count {
+            *self = Self::new(count);
+            for index in 0..count {
+                // SAFETY: `&mut self`, and the index is within.
+                unsafe { *self.at(index) = value };
+            }
+        }
+    }
+}
+
+/// All of them. Records of vertices and triangles are in the order of the [`Layout`].
+pub struct Arrays {
+    /// x, y, z and nothing, relative to the first vertex, nm.
+    pub positions: Numbers,
+    /// Unit normal and |N| of each triangle, and of the one that does not exist: zeros.
+    pub normals: Numbers,
+    /// Tensions along sides 2, 0, 1 and 2 again of each triangle, from potentials of triangles, kJ/mol/nm²;
+    /// so the sides that meet at corner k are at k and k + 1. Empty until needed.
+    pub tensions: Numbers,
+    /// φ / l for each step and lane.
+    pub bends: Numbers,
+    /// l² for each step and lane; empty until needed.
+    pub lengths_squared: Numbers,
+    /// Bending moments per length for each step and lane, from potentials of angles; empty until needed.
+    pub moments: Numbers,
+    /// ∂E/∂J and ∂E/∂a_B of each vertex.
+    pub slopes: Numbers,
+    /// ∂E/∂S and ∂E/∂a_V of each vertex; empty until needed.
+    pub vector_slopes: Numbers,
+    /// ∂E/∂U, with Espriu's vector U, and nothing; empty until needed.
+    pub umbrella_slopes: Numbers,
+}
+
+impl Arrays {
+    /// For a mesh.
+    pub fn new(layout: &Layout) -> Self {
+        Self {
+            positions: Numbers::new(4 * layout.vertex_ids.len()),
+            normals: Numbers::new(4 * (layout.triangle_ids.len() + 1)),
+            tensions: Numbers::new(0),
+            bends: Numbers::new(0),
+            lengths_squared: Numbers::new(0),
+            moments: Numbers::new(0),
+            slopes: Numbers::new(2 * layout.vertex_ids.len()),
+            vector_slopes: Numbers::new(0),
+            umbrella_slopes: Numbers::new(0),
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! The first pass: the geometry of triangles, and what their potentials make of it.
+
+use super::arrays::Arrays;
+use super::lanes::{BLOCK, Lane, Records, WithLanes};
+use super::layout::{Layout, TILE};
+use super::tiles::TriangleTile;
+use crate::real::{Real, cross, dot, minus};
+use std::ops::AddAssign;
+
+/// What the pass sums.
+#[derive(Clone, Copy)]
+pub struct TriangleSums {
+    /// Twice the area.
+    pub twice_area: f64,
+    /// Six times the volume.
+    pub six_volumes: f64,
+    /// The smallest |N|.
+    pub smallest: f64,
+}
+
+impl Default for TriangleSums {
+    fn default() -> Self {
+        Self { twice_area: 0.0, six_volumes: 0.0, smallest: f64::INFINITY }
+    }
+}
+
+impl AddAssign for TriangleSums {
+    fn add_assign(&mut self, other: Self) {
+        self.twice_area += other.twice_area;
+        self.six_volumes += other.six_volumes;
+        self.smallest = self.smallest.min(other.smallest);
+    }
+}
+
+/// Normals of a tile of triangles; with `POTENTIALS` also what their potentials want to know.
+///
+/// Reads positions, writes the tile's normals: whoever runs it must be the only one to write those, while
+/// nobody writes positions or reads these normals.
+pub struct Forward<'a, const POTENTIALS: bool> {
+    pub layout: &'a Layout,
+    pub arrays: &'a Arrays,
+    pub index: usize,
+    pub tile: &'a mut TriangleTile,
+}
+
+/// Which lanes of a last block that is not full count.
+static COUNTS: [f64; 2 * BLOCK] = {
+    let mut counts = [0.0; 2 * BLOCK];
+    let mut lane = 0;
+    while lane < BLOCK {
+        counts[lane] = 1.0;
+        lane += 1;
+    }
+    counts
+};
+
+impl<const POTENTIALS: bool> WithLanes for Forward<'_, POTENTIALS> {
+    type Output = TriangleSums;
+
+    #[inline(always)]
+    fn with_lanes<S: Records>(self, simd: S) -> TriangleSums {
+        let triangles = self.layout.triangle_tile(self.index);
+        let zero = Lane::splat(simd, 0.0);
+        let (mut twice_area, mut six_volumes) = (zero, zero);
+        let mut smallest = zero.of(f64::INFINITY);
+        for first in triangles.clone().step_by(Lane::<S>::COUNT) {
+            let offsets = &self.layout.corners[first / BLOCK];
+            // SAFETY: the layout's offsets are within the positions, and the normals have whole blocks.
+            let [a, b, c] = unsafe {
+                offsets.each_ref().map(|offsets| {
+                    let offsets = offsets.as_ptr().add(first % BLOCK);
+                    Lane::gather3(simd, self.arrays.positions.at(0), offsets)
+                })
+            };
+            let (ab, ca) = (minus(b, a), minus(a, c));
+            let normal = cross(ca, ab);
+            let twice = dot(normal, normal).sqrt();
+            let inverse = zero.of(1.0) / twice;
+            let [x, y, z] = normal.map(|component| component * inverse);
+            // SAFETY: as above.
+            unsafe { Lane::store4(self.arrays.normals.at(4 * first), [x, y, z, twice]) };
+            if POTENTIALS {
+                let bc = minus(c, b);
+                let index = first % TILE;
+                self.tile.twice_area.store(index, twice);
+                for (k, (one, other)) in [(ca, ab), (ab, bc), (bc, ca)].into_iter().enumerate() {
+                    self.tile.dots[k].store(index, zero - dot(one, other));
+                }
+            }
+            smallest = smallest.min(twice);
+            let six = dot(a, normal);
+            let count = triangles.end - first;
+            if count >= Lane::<S>::COUNT {
+                twice_area = twice_area + twice;
+                six_volumes = six_volumes + six;
+            } else {
+                // SAFETY: as many ones as count, then zeros, are within the table.
+                let counts = unsafe { Lane::load(simd, COUNTS.as_ptr().add(BLOCK - count)) };
+                twice_area = twice_area + twice * counts;
+                six_volumes = six_volumes + six * counts;
+            }
+        }
+        TriangleSums {
+            twice_area: twice_area.sum(),
+            six_volumes: six_volumes.sum(),
+            smallest: smallest.smallest(),
+        }
+    }
+}
+
+/// The tensions along the sides of a tile of triangles, from the slopes that its potentials found.
+///
+/// Writes the tile's tensions, under the same condition as [`Forward`] its normals.
+pub struct Tensions<'a> {
+    pub layout: &'a Layout,
+    pub arrays: &'a Arrays,
+    pub index: usize,
+    pub tile: &'a TriangleTile,
+}
+
+impl WithLanes for Tensions<'_> {
+    type Output = ();
+
+    /// A side's tension is 2 ∂E/∂l² + ½ (∂E/∂a) cot γ with γ the angle opposite it.
+    #[inline(always)]
+    fn with_lanes<S: Records>(self, simd: S) {
+        for first in self.layout.triangle_tile(self.index).step_by(Lane::<S>::COUNT) {
+            let index = first % TILE;
+            let tile = self.tile;
+            let by_area = tile.by_area.load(simd, index);
+            let stress = by_area * 0.5 / tile.twice_area.load(simd, index);
+            let [t0, t1, t2] = [0, 1, 2].map(|k: usize| {
+                let by_length = tile.by_length_squared[k].load(simd, index);
+                stress.mul_add(tile.dots[(k + 2) % 3].load(simd, index), by_length + by_length)
+            });
+            // SAFETY: the tensions have whole blocks.
+            unsafe { Lane::store4(self.arrays.tensions.at(4 * first), [t2, t0, t1, t2]) };
+        }
+    }
+}

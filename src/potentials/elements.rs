@@ -1,0 +1,302 @@
+//! How potentials see elements of the mesh: a formula for one triangle, edge or vertex, applied to a run of
+//! them, either one by one (the readable reference) or in lanes (the fast evaluator).
+//!
+//! A formula is generic over [`Real`], so it is written once for both.
+
+use super::{Contribution, Term};
+use crate::evaluator::simd::{BLOCK, EdgeBlock, TriangleTile, VertexTile};
+use crate::mesh::geometry::{
+    EdgeGeometry, EdgePartials, TriangleGeometry, TrianglePartials, VertexGeometry, VertexPartials,
+};
+use crate::mesh::vertex_vectors::VertexVectors;
+use crate::real::Real;
+use pulp::Arch;
+
+/// The most scalars of a potential that lives on elements.
+const SCALARS: usize = 2;
+
+/// What potentials may know of a triangle.
+#[derive(Clone, Copy)]
+pub struct Triangle<R> {
+    /// |N|, nm².
+    pub twice_area: R,
+    /// At each corner the scalar product of the two sides that leave it, nm².
+    pub dots: [R; 3],
+}
+
+impl<R: Real> Triangle<R> {
+    /// Area, nm².
+    #[inline(always)]
+    pub fn area(&self) -> R {
+        self.twice_area * 0.5
+    }
+
+    /// Squared length of side `k`, from corner `k` to corner `k + 1`, nm².
+    #[inline(always)]
+    pub fn length_squared(&self, k: usize) -> R {
+        self.dots[k] + self.dots[(k + 1) % 3]
+    }
+}
+
+/// Derivatives of the energy with respect to a triangle's area and, at fixed area, squared sides.
+#[derive(Clone, Copy)]
+pub struct TriangleSlopes<R> {
+    /// ∂E/∂a, kJ/mol/nm².
+    pub area: R,
+    /// ∂E/∂l², kJ/mol/nm².
+    pub length_squared: [R; 3],
+}
+
+/// What potentials may know of a vertex; fields are as in [`VertexGeometry`] and [`VertexVectors`]. The
+/// derivatives of the energy with respect to it have the same shape.
+#[derive(Clone, Copy)]
+pub struct Vertex<R> {
+    /// Barycentric area, nm².
+    pub area: R,
+    /// Voronoi's area, nm².
+    pub voronoi_area: R,
+    /// Jülicher's integrated curvature, nm.
+    pub curvature: R,
+    /// Curvature vector of Gompper and Kroll, nm.
+    pub cotangent: [R; 3],
+    /// Curvature vector of Espriu, nm.
+    pub umbrella: [R; 3],
+    /// Sum of the triangles' normals, each times its angle.
+    pub normal_sum: [R; 3],
+}
+
+/// An energy and its derivatives with respect to the scalars.
+#[derive(Clone, Copy)]
+pub struct Sums<R> {
+    /// kJ/mol.
+    pub energy: R,
+    /// In the order of the potential's parameters.
+    pub by_parameter: [R; SCALARS],
+}
+
+/// Which elements a formula is being applied to.
+#[derive(Clone, Copy)]
+pub struct Place<'a> {
+    /// The term that the formula belongs to.
+    pub term: &'a Term<'a>,
+    /// The indices in the mesh, one for each lane; lanes beyond the last element have none.
+    pub ids: &'a [u32],
+}
+
+impl Place<'_> {
+    /// The value of a parameter there; `like` only says how many lanes there are.
+    #[inline(always)]
+    pub fn value<R: Real>(&self, parameter: usize, like: R) -> R {
+        let field = self.term.fields[parameter];
+        if field.is_empty() {
+            return like.of(self.term.values[parameter]);
+        }
+        let mut lane = 0;
+        like.map(|_| {
+            // Lanes beyond the last element repeat it.
+            let id = self.ids[lane.min(self.ids.len() - 1)];
+            lane += 1;
+            field[id as usize]
+        })
+    }
+}
+
+/// A formula for the energy of a triangle; adds to the slopes.
+pub trait TriangleFormula {
+    /// Apply it.
+    fn apply<R: Real>(
+        &self,
+        place: Place,
+        triangle: &Triangle<R>,
+        slopes: &mut TriangleSlopes<R>,
+    ) -> Sums<R>;
+}
+
+/// A formula for the energy of an edge with a dihedral angle φ: the energy, and its derivatives by the scalars,
+/// and the derivative with respect to φ.
+pub trait EdgeFormula {
+    /// Apply it.
+    fn apply(&self, angle: f64) -> (Sums<f64>, f64);
+}
+
+/// A formula for the energy of a vertex; adds to the slopes.
+pub trait VertexFormula {
+    /// Apply it.
+    fn apply<R: Real>(&self, place: Place, vertex: &Vertex<R>, slopes: &mut Vertex<R>) -> Sums<R>;
+}
+
+/// A run of triangles to apply a formula to.
+pub enum Triangles<'a> {
+    /// One by one; `first` is the index of the first in the mesh.
+    Plain {
+        first: usize,
+        geometry: &'a [TriangleGeometry],
+        partials: &'a mut [TrianglePartials],
+    },
+    /// In lanes; the tile starts with the triangles of these indices.
+    Lanes { arch: Arch, ids: &'a [u32], tile: &'a mut TriangleTile },
+}
+
+/// A run of edges to apply a formula to.
+pub enum Edges<'a> {
+    /// Each edge once.
+    Plain { geometry: &'a [EdgeGeometry], partials: &'a mut [EdgePartials] },
+    /// Each edge from both of its ends.
+    Lanes(EdgeBlock<'a>),
+}
+
+/// A run of vertices to apply a formula to.
+pub enum Vertices<'a> {
+    /// One by one; `first` is the index of the first in the mesh, which has `total` of them. Vectors and
+    /// their partials are empty unless the potential wants them.
+    Plain {
+        first: usize,
+        total: usize,
+        scalars: &'a [VertexGeometry],
+        vectors: &'a [VertexVectors],
+        scalar_partials: &'a mut [VertexPartials],
+        vector_partials: &'a mut [VertexVectors],
+    },
+    /// In lanes; the tile starts with the vertices of these indices.
+    Lanes { arch: Arch, total: usize, ids: &'a [u32], tile: &'a mut VertexTile },
+}
+
+impl From<Sums<f64>> for Contribution {
+    fn from(sums: Sums<f64>) -> Self {
+        let mut contribution = Self::default();
+        contribution.add(sums);
+        contribution
+    }
+}
+
+impl Contribution {
+    /// Add what a formula gave.
+    pub fn add(&mut self, sums: Sums<f64>) {
+        self.energy += sums.energy;
+        for (sum, value) in self.by_parameter.iter_mut().zip(sums.by_parameter) {
+            *sum += value;
+        }
+    }
+
+    /// A field hides the scalar, on which nothing depends then.
+    fn without_hidden(mut self, term: &Term) -> Self {
+        for (parameter, derivative) in self.by_parameter.iter_mut().enumerate() {
+            if !term.is_scalar(parameter) {
+                *derivative = 0.0;
+            }
+        }
+        self
+    }
+}
+
+impl Triangles<'_> {
+    /// Apply a formula to all; returns the sum.
+    pub fn apply(self, term: &Term, formula: &impl TriangleFormula) -> Contribution {
+        let sum = match self {
+            Self::Plain { first, geometry, partials } => {
+                let mut sum = Contribution::default();
+                for (index, (known, partial)) in geometry.iter().zip(partials).enumerate() {
+                    let ids = &[(first + index) as u32];
+                    let triangle = Triangle { twice_area: known.twice_area, dots: known.dots };
+                    let TrianglePartials { area, length_squared } = *partial;
+                    let mut slopes = TriangleSlopes { area, length_squared };
+                    sum.add(formula.apply(Place { term, ids }, &triangle, &mut slopes));
+                    let TriangleSlopes { area, length_squared } = slopes;
+                    *partial = TrianglePartials { area, length_squared };
+                }
+                sum
+            }
+            Self::Lanes { arch, ids, tile } => tile.apply(arch, term, ids, formula),
+        };
+        sum.without_hidden(term)
+    }
+}
+
+impl Edges<'_> {
+    /// Apply a formula to all; returns the sum.
+    pub fn apply(self, formula: &impl EdgeFormula) -> Contribution {
+        let mut sum = Contribution::default();
+        match self {
+            Self::Plain { geometry, partials } => {
+                for (edge, partial) in geometry.iter().zip(partials) {
+                    let (sums, slope) = formula.apply(edge.bend * edge.length_squared.sqrt());
+                    sum.add(sums);
+                    partial.angle += slope;
+                }
+            }
+            Self::Lanes(block) => {
+                let known = block.bends.as_flattened().iter().zip(block.lengths_squared.as_flattened());
+                let moments = block.moments.as_flattened_mut();
+                for (index, ((bend, length_squared), moment)) in known.zip(moments).enumerate() {
+                    let length = length_squared.sqrt();
+                    let (sums, slope) = formula.apply(bend * length);
+                    *moment += slope / length;
+                    if index % BLOCK < block.lanes {
+                        // The edge's other end adds the other half.
+                        sum.add(Sums {
+                            energy: 0.5 * sums.energy,
+                            by_parameter: sums.by_parameter.map(|derivative| 0.5 * derivative),
+                        });
+                    }
+                }
+            }
+        }
+        sum
+    }
+}
+
+impl Vertices<'_> {
+    /// How many vertices the mesh has.
+    pub fn total(&self) -> usize {
+        match self {
+            Self::Plain { total, .. } | Self::Lanes { total, .. } => *total,
+        }
+    }
+
+    /// Apply a formula to all; returns the sum.
+    pub fn apply(self, term: &Term, formula: &impl VertexFormula) -> Contribution {
+        let sum = match self {
+            Self::Plain { first, scalars, vectors, scalar_partials, vector_partials, .. } => {
+                let mut sum = Contribution::default();
+                for (index, (known, partial)) in scalars.iter().zip(scalar_partials).enumerate() {
+                    let ids = &[(first + index) as u32];
+                    let vertex = Vertex::plain(*known, vectors.get(index));
+                    let mut slopes = Vertex::plain(
+                        VertexGeometry {
+                            area: partial.area,
+                            voronoi_area: partial.voronoi_area,
+                            curvature: partial.curvature,
+                        },
+                        vector_partials.get(index),
+                    );
+                    sum.add(formula.apply(Place { term, ids }, &vertex, &mut slopes));
+                    *partial = VertexPartials {
+                        area: slopes.area,
+                        voronoi_area: slopes.voronoi_area,
+                        curvature: slopes.curvature,
+                    };
+                    if let Some(partial) = vector_partials.get_mut(index) {
+                        *partial = VertexVectors {
+                            cotangent: slopes.cotangent.into(),
+                            umbrella: slopes.umbrella.into(),
+                            normal_sum: slopes.normal_sum.into(),
+                        };
+                    }
+                }
+                sum
+            }
+            Self::Lanes { arch, ids, tile, .. } => tile.apply(arch, term, ids, formula),
+        };
+        sum.without_hidden(term)
+    }
+}
+
+impl Vertex<f64> {
+    fn plain(scalars: VertexGeometry, vectors: Option<&VertexVectors>) -> Self {
+        let VertexGeometry { area, voronoi_area, curvature } = scalars;
+        let vectors = vectors.copied().unwrap_or_default();
+        let [cotangent, umbrella, normal_sum] =
+            [vectors.cotangent, vectors.umbrella, vectors.normal_sum].map(Into::into);
+        Self { area, voronoi_area, curvature, cotangent, umbrella, normal_sum }
+    }
+}
