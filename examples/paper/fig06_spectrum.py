@@ -5,7 +5,7 @@ mesh, and the bending schemes of Jülicher and Gompper–Kroll (barycentric), as
 
 (A17) holds for a fluid. A mesh whose vertices keep their neighbours resists shear a little, about
 Y r0² = 0.15 N kBT however soft it is, and (A18) takes l = 2 below (A17) by a share that grows with
-N kBT / κ. `fig06_shear.py` measures that modulus by itself, from the displacements of vertices
+N kBT / κ. `fig06b_shear.py` measures that modulus by itself, from the displacements of vertices
 within the surface, and predicts the spectrum from it.
 """
 

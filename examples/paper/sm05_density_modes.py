@@ -79,7 +79,7 @@ def check(figure, num_vertices, factors):
     figure.note(
         "The paper's curves go to 1 at small Ξ. Here S of short waves does; that of long waves "
         f"stays at {levels[0][0]:.2f}, near the 0.44 of 1 / (3/2 + 4π μ r0²/N kBT) "
-        "with μ from fig06_shear.py"
+        "with μ from fig06b_shear.py"
     )
 
 

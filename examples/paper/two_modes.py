@@ -16,7 +16,7 @@ from fluctuations import MASS, RADIUS, RIGIDITY
 from openmmhelfrich.vesicle import KBT
 from scipy.linalg import expm
 
-# The moduli of fluid meshes at Ξ = 0.037 over N kBT, as `fig06_shear.py` measures them.
+# The moduli of fluid meshes at Ξ = 0.037 over N kBT, as `fig06b_shear.py` measures them.
 DENSITY_MODULUS = 0.14
 SHEAR_MODULUS = 0.06
 

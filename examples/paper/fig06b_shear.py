@@ -32,7 +32,7 @@ BLOCKS = 10
 
 
 def main():
-    figure = Figure("fig06_shear", "Fig. 6, l = 2", "Shear modulus of fluid meshes", __doc__)
+    figure = Figure("fig06b", "Fig. 6, l = 2", "Shear modulus of fluid meshes", __doc__)
     size = figure.choose(FULL, QUICK, MEDIUM)
     runs = measure(points_of(size), figure)
     elastic = {point: elasticity(of_point) for point, of_point in runs.items()}
