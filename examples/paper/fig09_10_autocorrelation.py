@@ -69,7 +69,7 @@ def main():
     )
     measured = {}
     for (name, friction, _, _, _), run in zip(settings, runs, strict=True):
-        for l in MODES:
+        for l in modes_of(num_vertices):
             measured[name, friction, l] = Measured(run, l, friction, num_vertices)
     check(figure, num_vertices, measured)
     draw(figure, num_vertices, measured)
@@ -93,6 +93,11 @@ def points_of(num_vertices, settings, seed=1):
         }
         for name, friction, periods, interval, step in settings
     ]
+
+
+def modes_of(num_vertices):
+    """Those of MODES that the mesh resolves, up to √N / 3."""
+    return [l for l in MODES if l <= num_vertices**0.5 / 3]
 
 
 def frequency_of(l, num_vertices):
@@ -161,14 +166,14 @@ def draw(figure, num_vertices, measured):
     kinds = list(dict.fromkeys((name, friction) for name, friction, _ in measured))
     page, axes = plt.subplots(
         len(kinds),
-        len(MODES),
+        len(modes_of(num_vertices)),
         figsize=(13, 1 + 1.8 * len(kinds)),
         layout="constrained",
         sharey=True,
         squeeze=False,
     )
     for row, (name, friction) in zip(axes, kinds, strict=True):
-        for axis, l in zip(row, MODES, strict=True):
+        for axis, l in zip(row, modes_of(num_vertices), strict=True):
             found = measured[name, friction, l]
             times = found.times / 1000
             axis.fill_between(

@@ -9,7 +9,7 @@ much of that is the beat with flow of the vertices within the surface: most of i
 import matplotlib.pyplot as plt
 import numpy as np
 from _paper import Figure
-from fig09_10_autocorrelation import FULL, MEDIUM, MODES, QUICK, frequency_of, points_of
+from fig09_10_autocorrelation import FULL, MEDIUM, QUICK, frequency_of, modes_of, points_of
 from fluctuations import VERSION, relax
 from openmmhelfrich.analysis import fit_damping, theory
 from scipy.optimize import curve_fit
@@ -29,7 +29,8 @@ def main():
         f"{settings[0][2]} τ_2, Δt = {settings[0][4]:g} ps; fit over {PERIODS} periods of each mode"
     )
     rows = []
-    for l in MODES:
+    all_modes = modes_of(num_vertices)
+    for l in all_modes:
         omega = frequency_of(l, num_vertices)
         modes = run["fit"][:, l**2 : (l + 1) ** 2].astype(float)
         lags = int(PERIODS * 2 * np.pi / omega / run["interval"]) + 1
@@ -44,19 +45,23 @@ def main():
             )
         )
     ratio, error, shift, shift_error, two, _ = np.array(rows).T
-    for l, row in zip(MODES, rows, strict=True):
+    for l, row in zip(all_modes, rows, strict=True):
         figure.note(
             f"l = {l}: γ_l/ω_l = {row[0]:.3f} ± {row[1]:.3f}, ω/ω_l = {row[2]:.3f} ± {row[3]:.3f}; "
             f"two modes without friction: {row[4]:.3f}, {row[5]:.3f}"
         )
     spread = ratio.std(ddof=1) / len(ratio) ** 0.5
-    figure.check("γ_l / ω_l, mean of l = 2 … 7", ratio.mean(), PAPER, 0.05, spread)
+    figure.check(f"γ_l / ω_l, mean of l = 2 … {all_modes[-1]}", ratio.mean(), PAPER, 0.05, spread)
     figure.check(
-        "ω of the fit over (A30), mean of l = 3 … 7", shift[1:].mean(), 1, 0.05, shift_error.mean()
+        f"ω of the fit over (A30), mean of l = 3 … {all_modes[-1]}",
+        shift[1:].mean(),
+        1,
+        0.05,
+        shift_error.mean(),
     )
     page, axis = plt.subplots(figsize=(5, 3.6), layout="constrained")
-    axis.errorbar(MODES, ratio, error, fmt="o", label="measured")
-    axis.plot(MODES, two, "s", mfc="none", color="C3", label="two modes, no friction")
+    axis.errorbar(all_modes, ratio, error, fmt="o", label="measured")
+    axis.plot(all_modes, two, "s", mfc="none", color="C3", label="two modes, no friction")
     axis.axhline(PAPER, color="black", lw=0.8, label="paper")
     axis.set(xlabel="l", ylabel="γ_l / ω_l", ylim=(0, None))
     axis.legend()
