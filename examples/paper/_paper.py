@@ -86,6 +86,11 @@ class Figure:
         self._pictures: list[dict] = []
         self._seconds = 0.0
 
+    @property
+    def plot_only(self):
+        """Whether nothing is to be computed."""
+        return self._options.plot_only
+
     def choose(self, full, quick, medium=None):
         """One of three values: of the full size, the quick one, or the medium one (or full)."""
         if self.size == "medium" and medium is not None:

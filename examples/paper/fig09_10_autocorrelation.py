@@ -1,0 +1,211 @@
+"""Figs. 9 and 10: autocorrelations of u_lm for l = 2 … 7 under OpenMM's integrators.
+
+Verlet, LangevinMiddle with γ = 0.001/ps and 0.01/ps, and Brownian with γ = 0.01/ps, beside the
+theory of single modes: (A30) with the internal friction γ_l = 0.15 ω_l, (A35–A37), and (A39).
+
+Dashed lines are the theory of `two_modes.py`, in which vertices also flow within the surface: a
+bulge stretches the mesh, and the flow that evens it out has an inertia of its own. It has no free
+parameter, and describes l = 2, where the stiffness of the mesh is that of bending; from l = 4 on
+modes lose energy in other ways too.
+"""
+
+import matplotlib.pyplot as plt
+import numpy as np
+from _paper import Figure
+from fluctuations import MASS, RADIUS, RIGIDITY, VERSION, relax
+from openmmhelfrich.analysis import autocorrelation, theory
+from openmmhelfrich.sweep import Cache
+from openmmhelfrich.vesicle import KBT
+from two_modes import two_mode_autocorrelation
+
+MODES = range(2, 8)
+INTERNAL_FRICTION = 0.15
+
+# Integrator, friction in 1/ps, length in τ_2, time between frames and time step in ps.
+FULL = (
+    ("verlet", 0.0, 100, 80, 0.8),
+    ("langevin", 0.001, 100, 80, 0.8),
+    ("langevin", 0.01, 100, 200, 0.8),
+    ("brownian", 0.01, 100, 200, 0.4),
+)
+MEDIUM = (
+    ("verlet", 0.0, 20, 80, 0.8),
+    ("langevin", 0.001, 20, 80, 0.8),
+    ("langevin", 0.01, 30, 200, 0.8),
+    ("brownian", 0.01, 20, 200, 0.4),
+)
+QUICK = tuple((name, friction, 10, every, step) for name, friction, _, every, step in FULL)
+TITLES = {
+    ("verlet", 0.0): "Verlet",
+    ("langevin", 0.001): "LangevinMiddle, γ = 0.001/ps",
+    ("langevin", 0.01): "LangevinMiddle, γ = 0.01/ps",
+    ("brownian", 0.01): "Brownian, γ = 0.01/ps",
+}
+
+# The spread of the m's is that of runs as long as the paper's, in τ_2.
+SEGMENT = 10
+
+
+def main():
+    figure = Figure("fig09_10", "Figs. 9, 10", "Autocorrelations of the modes", __doc__)
+    num_vertices = figure.choose(1002, 252)
+    settings = figure.choose(FULL, QUICK, MEDIUM)
+    if figure.plot_only:
+        store = Cache(figure.results / "cache")
+        stored = [
+            store.path(relax.__name__, store.key(relax.__name__, point, VERSION)).exists()
+            for point in points_of(num_vertices, settings)
+        ]
+        if not all(stored):
+            figure.reduced(f"{sum(stored)} of {len(stored)} runs")
+        settings = [row for row, there in zip(settings, stored, strict=True) if there]
+    runs = figure.sweep(relax, points_of(num_vertices, settings), VERSION)
+    figure.parameters(
+        f"N = {num_vertices}, κ = 20 kBT, r0 = 1000 nm, Ξ = 0.037, Jülicher, kV = 0, 300 K; "
+        + "; ".join(
+            f"{TITLES[name, friction]}: {periods} τ_2, Δt = {step:g} ps"
+            for name, friction, periods, _, step in settings
+        )
+    )
+    measured = {}
+    for (name, friction, _, _, _), run in zip(settings, runs, strict=True):
+        for l in modes_of(num_vertices):
+            measured[name, friction, l] = Measured(run, l, friction, num_vertices)
+    check(figure, num_vertices, measured)
+    draw(figure, num_vertices, measured)
+    figure.finish()
+
+
+def points_of(num_vertices, settings, seed=1):
+    """The arguments of `relax`."""
+    # Frames per period and heights of triangles are the same for other N if times go with them.
+    scale = (num_vertices / 1002) ** 0.5
+    return [
+        {
+            "num_vertices": num_vertices,
+            "integrator": name,
+            "friction": friction,
+            "lmax": max(MODES),
+            "periods": periods,
+            "interval": interval * scale,
+            "time_step": step,
+            "seed": seed,
+        }
+        for name, friction, periods, interval, step in settings
+    ]
+
+
+def modes_of(num_vertices):
+    """Those of MODES that the mesh resolves, up to √N / 3."""
+    return [l for l in MODES if l <= num_vertices**0.5 / 3]
+
+
+def frequency_of(l, num_vertices):
+    """The frequency ω_l of (A30), rad/ps."""
+    return theory.mode_frequency(l, RIGIDITY * KBT, MASS, num_vertices, RADIUS)
+
+
+class Measured:
+    """Autocorrelation of one l in one run: times, mean over m, and the spread of single modes."""
+
+    def __init__(self, run, l, friction, num_vertices):
+        modes = run["fit"][:, l**2 : (l + 1) ** 2].astype(float)
+        omega = frequency_of(l, num_vertices)
+        period_2 = 2 * np.pi / frequency_of(2, num_vertices)
+        # Three periods or memories, and never beyond half of a segment.
+        horizon = min(max(6 * np.pi / omega, 3 * friction / omega**2), SEGMENT * period_2 / 2)
+        lags = int(horizon / run["interval"]) + 1
+        self.times = run["interval"] * np.arange(lags)
+        functions = autocorrelation(modes, lags, normalise=False).mean(axis=1)
+        self.mean = functions / functions[0]
+        parts = max(2, round(len(modes) * run["interval"] / (SEGMENT * period_2)))
+        single = [
+            autocorrelation(part, lags, normalise=False) / functions[0]
+            for part in np.array_split(modes, parts)
+        ]
+        self.spread = np.concatenate(single, axis=1).std(axis=1)
+
+
+def expected(name, friction, l, num_vertices, times):
+    """The paper's theory of one mode."""
+    omega = frequency_of(l, num_vertices)
+    if name == "verlet":
+        return theory.langevin_autocorrelation(times, omega, INTERNAL_FRICTION * omega)
+    if name == "brownian":
+        return theory.brownian_autocorrelation(times, omega, friction)
+    return theory.langevin_autocorrelation(times, omega, friction)
+
+
+def check(figure, num_vertices, measured):
+    """The rms deviation of the mean over m from theory must be less than the rms spread."""
+    for (name, friction, l), found in measured.items():
+        single = expected(name, friction, l, num_vertices, found.times)
+        double = two_mode_autocorrelation(found.times, l, num_vertices, friction, name)
+        spread = rms(found.spread)
+        others = f"{rms(found.mean - double):.3f} from two modes"
+        if name == "langevin":
+            omega = frequency_of(l, num_vertices)
+            damped = theory.langevin_autocorrelation(
+                found.times, omega, friction + INTERNAL_FRICTION * omega
+            )
+            others += f", {rms(found.mean - damped):.3f} with γ + 0.15 ω_l"
+        deviation = rms(found.mean - single)
+        figure.claim(
+            f"{TITLES[name, friction]}, l = {l}: rms deviation",
+            f"{deviation:.3f} ({others})",
+            f"below the spread of the m's, {spread:.3f}",
+            deviation < spread,
+        )
+
+
+def rms(values):
+    return float(np.sqrt(np.mean(np.square(values))))
+
+
+def draw(figure, num_vertices, measured):
+    kinds = list(dict.fromkeys((name, friction) for name, friction, _ in measured))
+    page, axes = plt.subplots(
+        len(kinds),
+        len(modes_of(num_vertices)),
+        figsize=(13, 1 + 1.8 * len(kinds)),
+        layout="constrained",
+        sharey=True,
+        squeeze=False,
+    )
+    for row, (name, friction) in zip(axes, kinds, strict=True):
+        for axis, l in zip(row, modes_of(num_vertices), strict=True):
+            found = measured[name, friction, l]
+            times = found.times / 1000
+            axis.fill_between(
+                times, found.mean - found.spread, found.mean + found.spread, color="C0", alpha=0.25
+            )
+            axis.plot(times, found.mean, color="C0", label="mean over m, spread of the m's")
+            fine = np.linspace(0, found.times[-1], 300)
+            axis.plot(
+                fine / 1000,
+                expected(name, friction, l, num_vertices, fine),
+                color="black",
+                lw=0.9,
+                label="one mode",
+            )
+            axis.plot(
+                fine / 1000,
+                two_mode_autocorrelation(fine, l, num_vertices, friction, name),
+                color="C3",
+                lw=0.9,
+                ls="--",
+                label="two modes",
+            )
+            axis.set_title(f"l = {l}", fontsize=8)
+            axis.tick_params(labelsize=7)
+        row[0].set_ylabel(TITLES[name, friction], fontsize=7)
+    for axis in axes[-1]:
+        axis.set_xlabel("t / ns", fontsize=8)
+    page.legend(
+        *axes[0, 0].get_legend_handles_labels(), loc="outside upper right", ncols=3, fontsize=8
+    )
+    figure.save(page, caption="Autocorrelations of u_lm")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,133 @@
+"""Supplement 7: mean area of fluctuating vesicles, ⟨A⟩ / 4π r0², against N, κ, r0 and Ξ.
+
+The area modulus holds the area at its target, that of the ordered mesh, which is a little less than
+4π r0². What pushes it up is the entropy of the vertices and the repulsion of the heights: since
+bending energy does not depend on size, scaling all coordinates gives, for kV = 0,
+
+    2 kA (⟨A⟩ − A0) ⟨A⟩ / A0 = 3 N kBT + W,
+
+W = −⟨Σ h ∂U_h/∂h⟩ of all heights. Bending drops out, so the area does not depend on κ. The runs are
+those of `fig06_spectrum.py`.
+"""
+
+import matplotlib.pyplot as plt
+import numpy as np
+from _paper import Figure, mean_and_error
+from fig06_spectrum import FULL, MEDIUM, QUICK, Point, measure, points_of
+from fluctuations import AREA_MODULUS, RADIUS, SOFTNESS, heights_virial, vesicle_of
+from openmmhelfrich.analysis import autocorrelation_time
+from openmmhelfrich.vesicle import KBT
+
+
+def main():
+    figure = Figure("sm07", "SM 7", "Mean area of fluctuating vesicles", __doc__)
+    size = figure.choose(FULL, QUICK, MEDIUM)
+    runs = measure(points_of(size), figure)
+    areas = {point: mean_area(of_point) for point, of_point in runs.items()}
+    figure.parameters("the runs of Fig. 6; targets A0 are the areas of the ordered meshes")
+    check(figure, size, runs, areas)
+    draw(figure, size, areas)
+    figure.finish()
+
+
+def mean_area(runs):
+    """⟨A⟩/4π r0² and its error, from the frames of all samples."""
+    frames = np.concatenate([run["area"] for run in runs])
+    time = autocorrelation_time(frames)
+    return frames.mean(), np.sqrt(2 * time * frames.var() / len(frames))
+
+
+def strain(point, area):
+    """⟨A⟩/A0 − 1 and its error."""
+    return area[0] / target(point) - 1, area[1] / target(point)
+
+
+def target(point):
+    """A0 / 4π r0²."""
+    vesicle = vesicle_of(*point)
+    return vesicle.area / (4 * np.pi * point.radius**2)
+
+
+def virial_strain(point, runs):
+    """The strain that the virial theorem demands, with the heights of the stored frames."""
+    vesicle = vesicle_of(*point)
+    modulus = AREA_MODULUS * (RADIUS / point.radius) ** 2
+    work = [heights_virial(vesicle, frame) for run in runs for frame in run["snapshots"]]
+    mean, error = mean_and_error(work)
+    below = 2 * modulus * vesicle.area
+    return (3 * point.num_vertices * KBT + mean) / below, error / below
+
+
+def check(figure, size, runs, areas):
+    base = Point(size["base"])
+    reference, error = areas[base]
+    for rigidity in size["rigidities"]:
+        if rigidity != base.rigidity and base._replace(rigidity=rigidity) in areas:
+            area, other = areas[base._replace(rigidity=rigidity)]
+            both = np.hypot(error, other)
+            figure.check(
+                f"⟨A⟩/4πr0² at κ = {rigidity:g} kBT less that at 20 kBT",
+                area - reference,
+                0,
+                max(3 * both, 1e-5),
+                both,
+            )
+    for radius in size["radii"]:
+        if radius != base.radius and base._replace(radius=radius) in areas:
+            area, other = areas[base._replace(radius=radius)]
+            both = np.hypot(error, other)
+            figure.check(
+                f"⟨A⟩/4πr0² at r0 = {radius:g} nm less that at 1000 nm",
+                area - reference,
+                0,
+                max(3 * both, 1e-5),
+                both,
+            )
+    found = [x for x in SOFTNESS if base._replace(softness=x) in areas]
+    by_softness = [areas[base._replace(softness=softness)][0] for softness in found]
+    figure.claim(
+        "⟨A⟩/4πr0²",
+        ", ".join(f"{area:.5f}" for area in by_softness) + f" at Ξ = {found}",
+        "rises with Ξ",
+        all(np.diff(by_softness) > 0),
+    )
+    for softness in found:
+        point = base._replace(softness=softness)
+        measured, error = strain(point, areas[point])
+        demanded, demanded_error = virial_strain(point, runs[point])
+        both = np.hypot(error, demanded_error)
+        figure.check(
+            f"10⁴ (⟨A⟩/A0 − 1) at Ξ = {softness:g} against the virial theorem",
+            1e4 * measured,
+            1e4 * demanded,
+            1e4 * max(3 * both, 0.03 * demanded),
+            1e4 * both,
+        )
+    for point, (area, spread) in areas.items():
+        figure.note(f"{tuple(point)}: ⟨A⟩/4πr0² = {area:.6f} ± {spread:.1g}")
+
+
+def draw(figure, size, areas):
+    base = Point(size["base"])
+    axes_of = {
+        "num_vertices": ("N", size["vertices"]),
+        "rigidity": ("κ / kBT", size["rigidities"]),
+        "radius": ("r0 / nm", size["radii"]),
+        "softness": ("Ξ", SOFTNESS),
+    }
+    page, axes = plt.subplots(1, 4, figsize=(11, 3), layout="constrained", sharey=True)
+    for axis, (name, (label, values)) in zip(axes, axes_of.items(), strict=True):
+        values = [value for value in values if base._replace(**{name: value}) in areas]
+        points = [base._replace(**{name: value}) for value in values]
+        means, errors = np.array([areas[point] for point in points]).T
+        axis.errorbar(values, means, errors, fmt="o", label="⟨A⟩")
+        axis.plot(values, [target(point) for point in points], "k_", ms=12, label="A0")
+        axis.set(xlabel=label, xscale="log", xticks=values, xticklabels=[f"{v:g}" for v in values])
+        axis.minorticks_off()
+    axes[0].set_ylabel("area / 4π r0²")
+    axes[0].legend()
+    figure.save(page, caption="Mean area and its target")
+
+
+if __name__ == "__main__":
+    main()

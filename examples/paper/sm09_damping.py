@@ -1,0 +1,84 @@
+"""Supplement 9: how fast modes lose their energy to the mesh under Newton's equations.
+
+The damped oscillation (A35–A37) is fitted to the autocorrelations of u_lm in the Verlet run of
+`fig09_10_autocorrelation.py`, over three periods. The paper finds γ_l ≈ 0.15 ω_l at Ξ = 0.037. The
+same fit to the two coupled oscillators of `two_modes.py`, which have no friction at all, tells how
+much of that is the beat with flow of the vertices within the surface: most of it for l = 2 and 3.
+"""
+
+import matplotlib.pyplot as plt
+import numpy as np
+from _paper import Figure
+from fig09_10_autocorrelation import FULL, MEDIUM, QUICK, frequency_of, modes_of, points_of
+from fluctuations import VERSION, relax
+from openmmhelfrich.analysis import fit_damping, theory
+from scipy.optimize import curve_fit
+from two_modes import two_mode_autocorrelation
+
+PAPER = 0.15
+PERIODS = 3
+
+
+def main():
+    figure = Figure("sm09", "SM 9", "Internal friction of soft meshes", __doc__)
+    num_vertices = figure.choose(1002, 252)
+    settings = [row for row in figure.choose(FULL, QUICK, MEDIUM) if row[0] == "verlet"]
+    (run,) = figure.sweep(relax, points_of(num_vertices, settings), VERSION)
+    figure.parameters(
+        f"N = {num_vertices}, κ = 20 kBT, r0 = 1000 nm, Ξ = 0.037, Jülicher, kV = 0; Verlet, "
+        f"{settings[0][2]} τ_2, Δt = {settings[0][4]:g} ps; fit over {PERIODS} periods of each mode"
+    )
+    rows = []
+    all_modes = modes_of(num_vertices)
+    for l in all_modes:
+        omega = frequency_of(l, num_vertices)
+        modes = run["fit"][:, l**2 : (l + 1) ** 2].astype(float)
+        lags = int(PERIODS * 2 * np.pi / omega / run["interval"]) + 1
+        fit = fit_damping(modes, run["interval"], lags)
+        rows.append(
+            (
+                fit.friction / omega,
+                fit.friction_error / omega,
+                fit.frequency / omega,
+                fit.frequency_error / omega,
+                *two_mode_fit(l, num_vertices, omega, run["interval"] * np.arange(lags)),
+            )
+        )
+    ratio, error, shift, shift_error, two, _ = np.array(rows).T
+    for l, row in zip(all_modes, rows, strict=True):
+        figure.note(
+            f"l = {l}: γ_l/ω_l = {row[0]:.3f} ± {row[1]:.3f}, ω/ω_l = {row[2]:.3f} ± {row[3]:.3f}; "
+            f"two modes without friction: {row[4]:.3f}, {row[5]:.3f}"
+        )
+    spread = ratio.std(ddof=1) / len(ratio) ** 0.5
+    figure.check(f"γ_l / ω_l, mean of l = 2 … {all_modes[-1]}", ratio.mean(), PAPER, 0.05, spread)
+    figure.check(
+        f"ω of the fit over (A30), mean of l = 3 … {all_modes[-1]}",
+        shift[1:].mean(),
+        1,
+        0.05,
+        shift_error.mean(),
+    )
+    page, axis = plt.subplots(figsize=(5, 3.6), layout="constrained")
+    axis.errorbar(all_modes, ratio, error, fmt="o", label="measured")
+    axis.plot(all_modes, two, "s", mfc="none", color="C3", label="two modes, no friction")
+    axis.axhline(PAPER, color="black", lw=0.8, label="paper")
+    axis.set(xlabel="l", ylabel="γ_l / ω_l", ylim=(0, None))
+    axis.legend()
+    figure.save(page, caption="Damping of Newtonian modes")
+    figure.finish()
+
+
+def two_mode_fit(l, num_vertices, omega, times):
+    """γ/ω_l and ω/ω_l of the damped oscillation that fits the frictionless two modes best."""
+    function = two_mode_autocorrelation(times, l, num_vertices, 0.0)
+
+    def model(t, friction, frequency):
+        return theory.langevin_autocorrelation(t, abs(frequency) * omega, abs(friction) * omega)
+
+    found, _ = curve_fit(model, times, function, [0.1, 1.0])
+    return np.abs(found)
+
+
+if __name__ == "__main__":
+    main()
