@@ -794,9 +794,9 @@ THREADS = """
         force.setForceGroup(group)
         system.addForce(force)
     platform = mm.Platform.getPlatformByName("Reference")
-    before = len(os.listdir("/proc/self/task"))
     context = mm.Context(system, mm.VerletIntegrator(0.001), platform)
     context.setPositions(positions)
+    before = len(os.listdir("/proc/self/task"))
     results = {}
     for name, groups in [("all", -1), *((str(g), {g}) for g in range(4))]:
         state = context.getState(getEnergy=True, getForces=True, groups=groups)
