@@ -24,8 +24,8 @@ this library. `examples/paper/` has a script for each; `--quick` makes a small v
 minutes, `make paper` all of these. Where a section below says "reduced", it was made with
 `--medium`; without either option a script has the size of the paper. This page is written by
 `examples/paper/report.py` from the numbers of the scripts; what is behind those of the
-fluctuations is told in [reproduction_fluctuations.md](reproduction_fluctuations.md). Times are those of one processor core,
-on a busy machine, where they are up to twice those of an idle one.
+fluctuations is told in [reproduction_fluctuations.md](reproduction_fluctuations.md). Times are
+those of one processor core, on a busy machine, where they are up to twice those of an idle one.
 """
 
 
