@@ -66,8 +66,8 @@ impl CpuEvaluator {
     /// wanted, are **added**, kJ/mol/nm, in the layout of the positions.
     ///
     /// # Errors
-    /// A position of the mesh that is not finite; a triangle without area; an energy that overflows.
-    /// Nothing has been added to the forces then.
+    /// A position of the mesh that is not finite; a triangle without area; an energy that overflows, if
+    /// energies are wanted; arrays of wrong length. Nothing has been added to the forces then.
     pub fn evaluate(
         &mut self,
         terms: &[&Term],

@@ -57,6 +57,9 @@ pub struct Edge {
     pub triangles: [u32; 2],
 }
 
+/// The most triangles: four numbers each, and some to spare, are counted with 32 bits.
+const MOST_TRIANGLES: usize = (1 << 30) - 64;
+
 /// One triangle's passage along one of its edges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct HalfEdge {
@@ -183,10 +186,9 @@ pub(super) fn checked_indices(triangles: &[[i64; 3]], count: usize) -> Result<Ve
     if triangles.is_empty() {
         return Err(Error::EmptyMesh);
     }
-    if triangles.len() > (u32::MAX / 3) as usize {
+    if triangles.len() > MOST_TRIANGLES {
         return Err(Error::Contract(format!(
-            "a mesh can have {} triangles at most, got {}",
-            u32::MAX / 3,
+            "a mesh can have {MOST_TRIANGLES} triangles at most, got {}",
             triangles.len()
         )));
     }

@@ -181,11 +181,15 @@ fn bits_do_not_depend_on_the_number_of_threads() {
     assert!(mesh.1.len() > 12_000);
     let terms = all_terms();
     let topology = Arc::new(Topology::new(&mesh.1, mesh.0.len() / 3).unwrap());
-    for set in [InstructionSet::Best, InstructionSet::Scalar] {
-        let with = |threads| CpuEvaluator::with(topology.clone(), set, threads);
-        let results = [1, 2, 3, 8].map(|threads| evaluate(&mut with(threads), &terms, &mesh.0));
-        for other in &results[1..] {
-            assert!(results[0] == *other);
+    for set in [InstructionSet::Best, InstructionSet::Avx2, InstructionSet::Scalar] {
+        let mut alone = CpuEvaluator::with(topology.clone(), set, 1);
+        let expected = evaluate(&mut alone, &terms, &mesh.0);
+        for threads in [2, 3, 8] {
+            let mut evaluator = CpuEvaluator::with(topology.clone(), set, threads);
+            // The first evaluations are done by one thread and by all in turns.
+            for _ in 0..4 {
+                assert!(evaluate(&mut evaluator, &terms, &mesh.0) == expected);
+            }
         }
     }
 }
@@ -206,14 +210,15 @@ fn every_instruction_set_agrees_with_the_reference() {
     for mesh in [spheroid(6, 9, &mut random(10)), two_components()] {
         let topology = Arc::new(Topology::new(&mesh.1, mesh.0.len() / 3).unwrap());
         let mut reference = ReferenceEvaluator::new(topology.clone());
+        let sets = [InstructionSet::Best, InstructionSet::Avx2, InstructionSet::Scalar];
+        let mut evaluators = sets.map(|set| CpuEvaluator::with(topology.clone(), set, 1));
         let mut check = |terms: &[&Term]| {
             let mut expected = vec![Contribution::default(); terms.len()];
             let mut expected_forces = vec![0.0; mesh.0.len()];
             reference.evaluate(terms, &mesh.0, &mut expected, Some(&mut expected_forces)).unwrap();
             let largest = expected_forces.iter().fold(0.0, |m: f64, f| m.max(f.abs()));
             let near = |a: f64, b: f64, scale: f64| (a - b).abs() <= 1e-12 * scale;
-            for set in [InstructionSet::Best, InstructionSet::Avx2, InstructionSet::Scalar] {
-                let mut evaluator = CpuEvaluator::with(topology.clone(), set, 1);
+            for (set, evaluator) in sets.iter().zip(&mut evaluators) {
                 let mut found = vec![Contribution::default(); terms.len()];
                 let mut forces = vec![0.0; mesh.0.len()];
                 evaluator.evaluate(terms, &mesh.0, &mut found, Some(&mut forces)).unwrap();
@@ -297,6 +302,24 @@ fn a_mesh_far_from_the_origin_loses_few_digits() {
 }
 
 #[test]
+fn a_refused_evaluation_leaves_no_repulsions_behind() {
+    // Heights that act in one part of the mesh only, then nowhere because a position is lost, then there again.
+    let mesh = spheroid(20, 24, &mut random(12));
+    let term = Term::new("TriangleHeightForce", 0, &[0.6, 2.0]).unwrap();
+    let mut evaluator = evaluator(&mesh);
+    let expected = evaluate(&mut evaluator, &[term], &mesh.0);
+    for vertex in 0..mesh.0.len() / 3 {
+        let mut lost = mesh.0.clone();
+        lost[3 * vertex] = f64::NAN;
+        let mut forces = vec![0.0; lost.len()];
+        assert!(evaluator.evaluate(&[&term], &lost, &mut [], Some(&mut forces)).is_err());
+        assert!(evaluate(&mut evaluator, &[term], &mesh.0) == expected);
+    }
+    assert!(expected.1.iter().any(|force| *force != 0.0));
+    assert!(expected.1.iter().any(|force| *force == 0.0));
+}
+
+#[test]
 fn degenerate_and_lost_meshes_are_named_and_change_nothing() {
     let mesh = spheroid(5, 7, &mut random(7));
     let mut evaluator = evaluator(&mesh);
@@ -326,8 +349,16 @@ fn degenerate_and_lost_meshes_are_named_and_change_nothing() {
     assert!(matches!(result, Err(Error::DegenerateTriangle { triangle: 4, .. })), "{result:?}");
     assert!(forces.iter().all(|force| *force == 1.0));
 
+    // Nothing of what was refused is left in later evaluations.
+    forces.fill(0.0);
     let fine = evaluator.evaluate(&terms, &mesh.0, &mut contributions, Some(&mut forces));
     assert_eq!(fine, Ok(()));
+    let expected = evaluate(&mut self::evaluator(&mesh), &all_terms(), &mesh.0);
+    assert!(expected == (contributions.clone(), forces.clone()));
+
+    let few = &mut forces[..3];
+    let result = evaluator.evaluate(&terms, &mesh.0, &mut contributions, Some(few));
+    assert!(matches!(result, Err(Error::Contract(_))), "{result:?}");
 }
 
 proptest! {

@@ -7,6 +7,7 @@ use super::layout::Layout;
 use crate::mesh::geometry::TotalPartials;
 use crate::mesh::vertex_vectors::COT_60;
 use crate::real::{Real, cross, dot, minus, minus_scaled, plus, plus_scaled, scaled};
+use std::ptr::null;
 
 /// Where the forces of all particles are, x y z of one after the other.
 #[derive(Clone, Copy)]
@@ -162,6 +163,7 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: 
         let by_total_area = zero.of(0.5 * self.totals.area);
         let by_volume = zero.of(self.totals.volume / 6.0);
         let vertices = layout.vertex_tile(self.index);
+        let opposite = if MOMENTS { layout.opposite().as_ptr().cast::<u32>() } else { null() };
         for first in vertices.clone().step_by(Lane::<S>::COUNT) {
             let (block, lane) = (first / BLOCK, first % BLOCK);
             let steps = layout.steps[block] as usize..layout.steps[block + 1] as usize - 1;
@@ -284,7 +286,7 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: 
                     let facing = arm.by_curvature
                         + next.by_curvature
                         + unsafe {
-                            let offsets = layout.opposite()[step].as_ptr().add(lane);
+                            let offsets = opposite.add(BLOCK * step + lane);
                             Lane::gather1(simd, arrays.moments.at(0), offsets)
                         };
                     let turn = at_end * (own_moment - facing) + at_next * (next_moment - facing);

@@ -36,7 +36,8 @@ impl Choice {
     /// How to do the next evaluation.
     pub fn next(&self) -> Attempt {
         let trial = self.evaluation < TRIAL;
-        let together = if trial { self.evaluation % 2 == 1 } else { self.together };
+        // In the order ABBA, so that neither way gets all evaluations of one kind where two kinds alternate.
+        let together = if trial { matches!(self.evaluation % 4, 1 | 2) } else { self.together };
         Attempt { together, start: trial.then(Instant::now) }
     }
 

@@ -173,8 +173,7 @@ struct Ring<'a> {
 }
 
 impl Ring<'_> {
-    /// Correct the bends of such edges, lane by lane with atan2, so that it does not matter which lanes go
-    /// together; returns the sum of l φ.
+    /// Correct the bends of such edges, lane by lane with atan2; returns the sums of l φ.
     ///
     /// # Safety
     /// The pass before has filled positions, normals and bends.

@@ -114,7 +114,7 @@ fn breadth_first(topology: &Topology) -> Vec<u32> {
 }
 
 impl Layout {
-    /// Renumber a mesh.
+    /// Renumber a mesh, of fewer than 2³⁰ triangles, as [`Topology`] sees to.
     pub fn new(topology: &Topology) -> Self {
         let degree = |vertex: u32| topology.ring(vertex as usize).len();
         let mut vertex_ids = breadth_first(topology);

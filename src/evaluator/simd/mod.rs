@@ -24,7 +24,7 @@ pub use layout::Layout;
 pub use tiles::{EdgeBlock, TriangleTile, VertexTile};
 
 use super::checks::{check_energies, culprit};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::mesh::Topology;
 use crate::mesh::geometry::{TotalPartials, Totals};
 use crate::potentials::{Contribution, Edges, Needs, Term, Triangles, Vertices};
@@ -119,6 +119,15 @@ impl SimdEvaluator {
         contributions: &mut [Contribution],
         forces: Option<&mut [f64]>,
     ) -> Result<()> {
+        let particles = self.topology.particles.last().map_or(0, |last| *last as usize + 1);
+        let (length, fits) =
+            (positions.len(), |forces: &&mut [f64]| forces.len() == positions.len());
+        let counts = contributions.is_empty() || contributions.len() == terms.len();
+        if length < 3 * particles || !forces.as_ref().is_none_or(fits) || !counts {
+            return Err(Error::Contract(format!(
+                "needs positions and forces of {particles} particles or more and one contribution a term, or none"
+            )));
+        }
         let attempt = self.choice.next();
         let outcome = self.attempt(terms, positions, contributions, forces, attempt.together);
         self.choice.done(&attempt);
@@ -153,8 +162,11 @@ impl SimdEvaluator {
             let scratch = unsafe { scratch.part(member.index()..member.index() + 1) };
             sweep.forward(&member, &mut scratch[0], &sums, &parts);
         });
-        let (totals, silent) =
-            totals(&self.triangle_sums).ok_or_else(|| culprit(&self.topology, positions))?;
+        let Some((totals, silent)) = totals(&self.triangle_sums) else {
+            // What this evaluation has left of tensions is not to be relied on.
+            self.triangle_sums.iter_mut().for_each(|sum| sum.silent = false);
+            return Err(culprit(&self.topology, positions));
+        };
         let mut total_partials = TotalPartials::default();
         let mut ignored = Contribution::default();
         for (k, term) in terms.iter().enumerate() {
@@ -481,6 +493,10 @@ fn backward(
 
 /// How much of the vertices' vectors is needed.
 fn vector_level(needs: Needs) -> u8 {
+    debug_assert!(
+        !needs.contains(Needs::NORMALS) || needs.contains(Needs::CURVATURE_VECTORS),
+        "who wants normals wants vectors, for which there is room then"
+    );
     match needs {
         needs if needs.contains(Needs::NORMALS) => NORMALS,
         needs if needs.contains(Needs::CURVATURE_VECTORS) => VECTORS,
