@@ -119,6 +119,9 @@ pub fn set_global(choice: Choice) -> Result<()> {
 #[cfg(feature = "gpu")]
 pub fn check(choice: Choice) -> Result<()> {
     use crate::evaluator::gpu::{Precision, adapters};
+    if choice.kind == Kind::Auto && choice.adapter.is_some() {
+        adapters::find(choice.adapter)?;
+    }
     if choice.kind != Kind::Gpu {
         return Ok(());
     }

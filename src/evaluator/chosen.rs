@@ -7,6 +7,8 @@ use crate::backend::{self, Choice, Kind};
 use crate::error::{Error, Result};
 use crate::mesh::Topology;
 use crate::potentials::{Contribution, Term};
+#[cfg(feature = "gpu")]
+use crate::team::default_threads;
 use smallvec::SmallVec;
 use std::sync::Arc;
 
@@ -219,7 +221,8 @@ impl ChosenEvaluator {
         if calibration::prefers_gpu() {
             return Ok(true);
         }
-        let key = calibration::Key::new(gpu, &self.topology, terms);
+        let threads = if self.threads == 0 { default_threads() } else { self.threads };
+        let key = calibration::Key::new(gpu, &self.topology, terms, threads);
         if let Some(known) = calibration::recall(&key) {
             return Ok(known.gpu < known.cpu);
         }
@@ -234,13 +237,14 @@ impl ChosenEvaluator {
             // The real evaluation will say so.
             return Ok(false);
         }
-        let mut gpu_fails = None;
+        let mut computed = Ok(true);
         let on_gpu = calibration::fastest(|| {
             let forces = Some(forces.as_mut_slice());
-            gpu_fails = gpu.evaluate(terms, positions, &mut contributions, forces).err();
+            computed = gpu.evaluate(terms, positions, &mut contributions, forces);
         });
-        if let Some(error) = gpu_fails {
-            return Err(error);
+        if !computed? {
+            // What it cannot compute says nothing about its speed, so nothing is remembered.
+            return Ok(false);
         }
         let times = calibration::Times { cpu, gpu: on_gpu };
         calibration::remember(key, times);

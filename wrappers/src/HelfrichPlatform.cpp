@@ -7,6 +7,7 @@
 #include <openmm/internal/OSRngSeed.h>
 #include <openmm/kernels.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 using namespace HelfrichPlugin;
@@ -46,11 +47,11 @@ private:
     const KernelFactory& owner;
 };
 
-int parseThreads(const string& text) {
+int parseThreads(const string& text, const string& origin) {
     char* end = nullptr;
     long value = std::strtol(text.c_str(), &end, 10);
     if (text.empty() || *end != '\0' || value < 1 || value > MAX_THREADS)
-        throw OpenMMException("Platform Helfrich: " + THREADS + " must be a whole number from 1 to " +
+        throw OpenMMException("Platform Helfrich: " + origin + " must be a whole number from 1 to " +
                               std::to_string(MAX_THREADS) + ", got \"" + text + "\"");
     return (int) value;
 }
@@ -63,8 +64,10 @@ HelfrichPlatform::HelfrichPlatform() {
         registerKernelFactory(name, factory);
     platformProperties.push_back(THREADS);
     const char* fromEnvironment = std::getenv("OPENMM_CPU_THREADS");
-    setPropertyDefaultValue(
-        THREADS, fromEnvironment != nullptr ? string(fromEnvironment) : std::to_string(Helfrich_Team_available()));
+    setPropertyDefaultValue(THREADS,
+                            fromEnvironment != nullptr
+                                ? string(fromEnvironment)
+                                : std::to_string(std::min(Helfrich_Team_available(), MAX_THREADS)));
     adoptReferenceKernels();
 }
 
@@ -80,12 +83,22 @@ double HelfrichPlatform::getSpeed() const {
 const string& HelfrichPlatform::getPropertyValue(const Context& context, const string& property) const {
     if (property != THREADS)
         return ReferencePlatform::getPropertyValue(context, property);
-    return getData(const_cast<ContextImpl&>(getContextImpl(context)))->threadsProperty;
+    const PlatformData* data = getData(const_cast<ContextImpl&>(getContextImpl(context)));
+    if (data == nullptr)
+        throw OpenMMException("Platform Helfrich: the Context whose " + property +
+                              " are asked for is on another platform");
+    return data->threadsProperty;
 }
 
 void HelfrichPlatform::contextCreated(ContextImpl& context, const map<string, string>& properties) const {
     auto given = properties.find(THREADS);
-    int threads = parseThreads(given != properties.end() ? given->second : getPropertyDefaultValue(THREADS));
+    bool isGiven = given != properties.end();
+    const string& fallback = getPropertyDefaultValue(THREADS);
+    // The default may come from the environment, which a user may not think of.
+    const char* fromEnvironment = std::getenv("OPENMM_CPU_THREADS");
+    bool isEnvironment = !isGiven && fromEnvironment != nullptr && fallback == fromEnvironment;
+    int threads = parseThreads(isGiven ? given->second : fallback,
+                               isEnvironment ? "the environment variable OPENMM_CPU_THREADS" : THREADS);
     // Kernels cast the pointer to Reference's class, so it must be one to this part of the object.
     ReferencePlatform::PlatformData* data = new PlatformData(context.getSystem(), threads);
     context.setPlatformData(data);
@@ -134,9 +147,4 @@ HelfrichStream& HelfrichPlatform::PlatformData::addStream(int seed) {
 int HelfrichPlugin::helfrichThreads(ContextImpl& context) {
     auto* data = HelfrichPlatform::getData(context);
     return data == nullptr ? 0 : data->numThreads;
-}
-
-HelfrichTeam* HelfrichPlugin::helfrichTeam(ContextImpl& context) {
-    auto* data = HelfrichPlatform::getData(context);
-    return data == nullptr ? nullptr : data->getTeam();
 }

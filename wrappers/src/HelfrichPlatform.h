@@ -64,9 +64,6 @@ private:
 /** The number of threads that a Context asks for by its property, or 0 on other platforms. */
 int helfrichThreads(OpenMM::ContextImpl& context);
 
-/** The threads themselves; null on other platforms, and where there is only one. */
-HelfrichTeam* helfrichTeam(OpenMM::ContextImpl& context);
-
 } // namespace HelfrichPlugin
 
 #endif /*HELFRICH_PLATFORM_H_*/

@@ -124,15 +124,21 @@ impl Buffers {
         }
         let largest = wanted.iter().map(|(_, size)| *size).max().unwrap_or(0);
         check_limits(device, self.vertices, largest)?;
-        device.guarded(self.vertices, || {
+        let (bound, readback, group) = device.guarded(self.vertices, || {
+            let mut bound = self.bound.clone();
             for (binding, size) in wanted {
-                self.bound[binding as usize] = create(device, size, STORED);
+                bound[binding as usize] = create(device, size, STORED);
             }
-            if self.readback.size() < reads {
-                self.readback = create(device, reads as usize, READ);
+            let mut readback = self.readback.clone();
+            if readback.size() < reads {
+                readback = create(device, reads as usize, READ);
             }
-            self.group = bind(device, &self.bound);
-        })
+            let group = bind(device, &bound);
+            (bound, readback, group)
+        })?;
+        // Only what has been made in full takes the place of what there was.
+        (self.bound, self.readback, self.group) = (bound, readback, group);
+        Ok(())
     }
 
     fn write_topology(&self, device: &Device, topology: &Topology) {

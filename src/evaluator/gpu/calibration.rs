@@ -27,15 +27,14 @@ pub struct Key {
 
 impl Key {
     /// For terms on a mesh.
-    pub fn new(gpu: &GpuEvaluator, topology: &Topology, terms: &[Term]) -> Self {
+    pub fn new(gpu: &GpuEvaluator, topology: &Topology, terms: &[Term], threads: usize) -> Self {
         let (adapter, driver) = gpu.adapter();
         let precision = match gpu.precision() {
             Precision::Single => "single",
             Precision::Double => "double",
         };
-        let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let version = env!("CARGO_PKG_VERSION");
-        let machine = format!("{version}|{adapter}|{driver}|{precision}|{cores} cores");
+        let machine = format!("{version}|{adapter}|{driver}|{precision}|{threads} threads");
         let needs = terms.iter().fold(Needs::empty(), |all, term| all | term.potential.needs(term));
         let size = (2.0 * (topology.num_vertices() as f64).log2()).round() as u32;
         Self { machine: machine.replace(['\t', '\n'], " "), needs: needs.bits(), size }

@@ -4,6 +4,7 @@ use super::adapters::{self, Adapter, STORAGE_BUFFERS};
 use super::{Precision, shaders};
 use crate::error::{Error, Result};
 use std::collections::HashMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock};
 use wgpu::{BufferBindingType, ErrorFilter, Features};
 
@@ -148,7 +149,19 @@ impl Device {
         let memory = self.wgpu.push_error_scope(ErrorFilter::OutOfMemory);
         let internal = self.wgpu.push_error_scope(ErrorFilter::Internal);
         let validation = self.wgpu.push_error_scope(ErrorFilter::Validation);
-        let result = body();
+        // wgpu panics where a device that is lost does not answer any more.
+        let result = match catch_unwind(AssertUnwindSafe(body)) {
+            Ok(result) => result,
+            Err(panic) => {
+                let text = panic.downcast_ref::<String>().map(String::as_str);
+                let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
+                let reason = text.unwrap_or("wgpu gave up").to_owned();
+                return Err(match lock(&self.lost).clone() {
+                    Some(reason) => Error::LostDevice { adapter: adapter(), reason },
+                    None => Error::DeviceFailure { adapter: adapter(), reason },
+                });
+            }
+        };
         let faults = [
             pollster::block_on(validation.pop()),
             pollster::block_on(internal.pop()),

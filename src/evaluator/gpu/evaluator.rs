@@ -48,6 +48,9 @@ struct Stopwatch {
     last: Timings,
 }
 
+/// How long a thread that wgpu has told of results may take to pass it on.
+const ANSWER_TIME: Duration = Duration::from_secs(30);
+
 impl GpuEvaluator {
     /// Buffers for a mesh on an adapter, by its index among all, or on the best one.
     ///
@@ -151,6 +154,7 @@ impl GpuEvaluator {
             self.submit(first * real, bytes, forces.is_some());
             uploaded
         })?;
+        self.frame.fields_changed = false;
         let computed = self.read(scale, terms, first, bytes, contributions, forces);
         if computed.is_ok() {
             self.buffers.readback.unmap();
@@ -246,8 +250,8 @@ impl GpuEvaluator {
                 let _ = send.send(result);
             });
             let waited = device.wgpu.poll(wgpu::PollType::wait_indefinitely());
-            let mapped = received.try_recv();
-            waited.is_ok() && matches!(mapped, Ok(Ok(())))
+            // Another Context's thread may be the one that wgpu tells; it does so at once.
+            waited.is_ok() && matches!(received.recv_timeout(ANSWER_TIME), Ok(Ok(())))
         })?;
         let view = self.buffers.readback.get_mapped_range(..).ok().filter(|_| mapped);
         let Some(view) = view else {

@@ -114,8 +114,9 @@ impl Frame {
             }
             _ => false,
         });
-        self.fields_changed = !same || !rest.is_empty();
-        if self.fields_changed {
+        if !same || !rest.is_empty() {
+            // It stays so until they have been uploaded, which may be later than now.
+            self.fields_changed = true;
             self.fields = fields().flatten().copied().collect();
         }
     }

@@ -2,8 +2,8 @@
 //!
 //! The shaders in `shaders/` are the twins of the formulas in [`crate::mesh`] and [`crate::potentials`]; build.rs
 //! composes and validates them. [`adapters`] finds GPUs and [`device`] opens one, once for all Contexts;
-//! [`lattice`] and [`frame`] bring positions and terms into the shaders' form; [`buffers`] holds what a mesh
-//! needs on the device, and [`evaluator`] runs the passes.
+//! `lattice.rs` and `frame.rs` bring positions and terms into the shaders' form; `buffers.rs` holds what a mesh
+//! needs on the device, and `evaluator.rs` runs the passes.
 
 pub mod adapters;
 mod buffers;
