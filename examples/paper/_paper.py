@@ -2,7 +2,7 @@
 
 A script makes one `Figure`, runs its sweeps through it, checks numbers against what is expected and
 calls `finish`, which prints the table, writes it beside the picture in the folder of results, and
-ends the script with status 1 if a number lies outside its tolerance. `report.py` makes the report
+ends the script with status 3 if a number lies outside its tolerance. `report.py` makes the report
 of these files.
 """
 
@@ -26,6 +26,11 @@ SCHEMES = {
 """The four bending models of the paper, by the names of `BendingForce`'s constants."""
 
 
+# Exit status of a script that ran to its end and found a number outside its tolerance. That of a
+# script that failed is 1, that of a wrong command line 2.
+OUTSIDE = 3
+
+
 class Figure:
     """One figure of the paper.
 
@@ -47,12 +52,8 @@ class Figure:
         parser = argparse.ArgumentParser(
             description=description, formatter_class=argparse.RawDescriptionHelpFormatter
         )
-        size = parser.add_mutually_exclusive_group()
-        size.add_argument(
+        parser.add_argument(
             "--quick", action="store_true", help="smaller and fewer runs, seconds to minutes"
-        )
-        size.add_argument(
-            "--medium", action="store_true", help="the sizes of docs/reproduction.md, minutes"
         )
         parser.add_argument(
             "--results",
@@ -76,8 +77,7 @@ class Figure:
             parser.error(f"--workers: need 0 or more, got {options.workers}")
         self.name, self.target, self.title = name, target, title
         self.quick = options.quick
-        self.size = "quick" if options.quick else "medium" if options.medium else "full"
-        self.results = options.results or Path("out/paper") / self.size
+        self.results = options.results or Path("out/paper") / ("quick" if self.quick else "full")
         self._options = options
         self._rows: list[dict] = []
         self._notes: list[str] = []
@@ -91,10 +91,8 @@ class Figure:
         """Whether nothing is to be computed."""
         return self._options.plot_only
 
-    def choose(self, full, quick, medium=None):
-        """One of three values: of the full size, the quick one, or the medium one (or full)."""
-        if self.size == "medium" and medium is not None:
-            return medium
+    def choose(self, full, quick):
+        """One of two values, of the full size or of the quick one."""
         return quick if self.quick else full
 
     def sweep(self, function, points, version=1, description=None):
@@ -161,13 +159,12 @@ class Figure:
         return path
 
     def finish(self):
-        """Print and write what was found, and exit with 1 if something is outside its tolerance."""
+        """Print and write what was found; exit with OUTSIDE if a number is out of tolerance."""
         record = {
             "name": self.name,
             "target": self.target,
             "title": self.title,
             "quick": self.quick,
-            "size": self.size,
             "parameters": self._parameters,
             "reduced": self._reduced,
             "rows": self._rows,
@@ -190,7 +187,7 @@ class Figure:
         for note in self._notes:
             print(f"  {note}")
         print(f"  processor time {self._seconds:.0f} s; wrote {os.path.relpath(path)}")
-        sys.exit(0 if all(row["passed"] for row in self._rows) else 1)
+        sys.exit(0 if all(row["passed"] for row in self._rows) else OUTSIDE)
 
 
 def shrink(path):
@@ -208,3 +205,17 @@ def mean_and_error(values):
     if len(values) < 2:
         return values.mean(axis=0), np.full(values.shape[1:], np.nan)
     return values.mean(axis=0), values.std(axis=0, ddof=1) / np.sqrt(len(values))
+
+
+def fastest_platform():
+    """Name of the platform for meshes of a few thousand vertices: no GPU pays off there.
+
+    It is no parameter of the runs, because their averages must not depend on it.
+    """
+    import openmm
+
+    names = [
+        openmm.Platform.getPlatform(index).getName()
+        for index in range(openmm.Platform.getNumPlatforms())
+    ]
+    return "Helfrich" if "Helfrich" in names else "Reference"

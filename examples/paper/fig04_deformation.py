@@ -74,7 +74,7 @@ def main():
     figure = Figure(
         "fig04", "Fig. 4", "Energies of a deformation u20 on four types of mesh", __doc__
     )
-    samples = figure.choose(50, 3, 5)
+    samples = figure.choose(50, 3)
     subdivision = figure.choose(30, 10)
     count = 10 * subdivision**2 + 2
     common = {"softness": SOFTNESS, "duration": DURATION}
@@ -91,11 +91,7 @@ def main():
         for kind in KINDS
     }
     # Samples by subdivision; those of the largest mesh are among the points above.
-    sizes = figure.choose(
-        dict.fromkeys([5, 7, 10, 14, 20, 30], samples),
-        {5: 3, 10: samples},
-        {5: 50, 7: 50, 10: 50, 14: 20, 20: 10, 30: samples},
-    )
+    sizes = dict.fromkeys(figure.choose([5, 7, 10, 14, 20, 30], [5, 10]), samples)
     ladder = [
         {"kind": "fluctuating random", "subdivision": size, "seed": seed, "amplitudes": [0.0]}
         | {"softness": softness, "duration": DURATION}
@@ -115,12 +111,6 @@ def main():
         f"Fluctuating meshes: runs of {DURATION:g} τ_h at Ξ = {SOFTNESS:g} with U_A, U_V and U_h, "
         "then put back on the sphere."
     )
-    if figure.size == "medium":
-        figure.reduced(
-            f"{samples} samples of N = {count} in place of 50 (bias: "
-            + ", ".join(f"{number} of N = {10 * size**2 + 2}" for size, number in sizes.items())
-            + ")."
-        )
     u = np.array(AMPLITUDES)
     # Meshes of 1002 vertices are a few per cent below the continuum.
     few = figure.choose(0.05, 0.1)

@@ -6,11 +6,10 @@ when a position or an energy is not finite or its kinetic energy has grown tenfo
 """
 
 import numpy as np
-from _paper import SCHEMES, Figure
+from _paper import SCHEMES, Figure, fastest_platform
 from openmmhelfrich.sweep import grid
 
 SOFTNESSES = (0.59, 0.037)
-MEDIUM = [0.1, 0.2, 0.5, 1.0]
 BARYCENTRIC = ("Julicher", "GompperKrollBarycentric")
 
 
@@ -25,7 +24,7 @@ def runtime(scheme, softness, fraction, subdivision, duration, seed):
         mesh, softness=softness, scheme=getattr(helfrich.BendingForce, scheme)
     )
     time_step = fraction * np.sqrt(softness) * vesicle.tau_fastest
-    simulation = vesicle.simulation(openmm.VerletIntegrator(time_step), "Reference")
+    simulation = vesicle.simulation(openmm.VerletIntegrator(time_step), fastest_platform())
     simulation.context.setVelocitiesToTemperature(300, seed)
     # Looked at every half percent of τ_2, so that a heated run is not taken for a living one.
     interval = max(1, round(0.005 * vesicle.tau_2 / time_step))
@@ -43,15 +42,15 @@ def main():
     import matplotlib.pyplot as plt
 
     figure = Figure("fig05", "Fig. 5", "Runtime to failure of Newtonian dynamics", __doc__)
-    duration = figure.choose(100.0, 2.0, 10.0)
-    fractions = figure.choose([0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 1.0], [0.1, 1.0], MEDIUM)
+    duration = figure.choose(30.0, 2.0)
+    fractions = figure.choose([0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 1.0], [0.1, 1.0])
     points = grid(
         scheme=list(SCHEMES),
         softness=SOFTNESSES,
         fraction=fractions,
         subdivision=[10],
         duration=[duration],
-        seed=figure.choose([1, 2, 3], [1], [1]),
+        seed=figure.choose([1, 2, 3], [1]),
     )
     results = figure.sweep(runtime, points, description="runs")
 
@@ -75,8 +74,6 @@ def main():
         + ", ".join(f"√Ξ τ = {units[xi]:.1f} ps at Ξ = {xi:g}" for xi in SOFTNESSES)
         + "."
     )
-    if figure.size == "medium":
-        figure.reduced(f"One run per point; those that live end after {duration:g} τ_2.")
     if not figure.quick:
         figure.check("√Ξ τ at Ξ = 0.037", units[0.037], 10.8, 0.1, unit=" ps")
     allowed = [fraction for fraction in fractions if fraction <= 0.1]

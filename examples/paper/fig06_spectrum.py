@@ -9,59 +9,21 @@ N kBT / κ. `fig06b_shear.py` measures that modulus by itself, from the displace
 within the surface, and predicts the spectrum from it.
 """
 
-from typing import NamedTuple
-
 import matplotlib.pyplot as plt
 import numpy as np
 from _paper import Figure
-from fluctuations import RADIUS, SOFTNESS, VERSION, fluctuate
+from fluctuations import RADIUS, SOFTNESS
 from mesh_corrections import bending_ratio, fit_meshes, fit_shear, shear_ratio
-from openmmhelfrich.analysis import Spectrum, fit_young, spectrum, theory
-from openmmhelfrich.sweep import Cache
-
-# Numbers of samples: at the paper's parameters, of small meshes, of other radii and schemes, and of
-# all other points.
-FULL = {
-    "base": 1002,
-    "vertices": (252, 492, 1002, 1962, 4002),
-    "rigidities": (10.0, 20.0, 40.0),
-    "radii": (500.0, 1000.0, 2000.0),
-    "samples": 10,
-    "small": 10,
-    "same": 10,
-    "few": 4,
-}
-MEDIUM = {**FULL, "vertices": (252, 492, 1002, 1962), "small": 4, "same": 2, "few": 2}
-QUICK = {
-    "base": 252,
-    "vertices": (252,),
-    "rigidities": (20.0, 40.0),
-    "radii": (500.0, 1000.0),
-    "samples": 2,
-    "small": 2,
-    "same": 2,
-    "few": 2,
-}
-PERIODS = 10
-SCHEMES = {"Julicher": "Jülicher", "GompperKrollBarycentric": "GK barycentric"}
+from openmmhelfrich.analysis import fit_young, theory
+from spectra import FULL, PERIODS, QUICK, SCHEMES, Point, measure, points_of, pooled, ratio_of
 
 # Y is read off the small l, where the shear modulus matters and the mesh resolves bending.
 LARGEST_FITTED = 6
 
 
-class Point(NamedTuple):
-    """Parameters of a vesicle: N, κ in kBT, r0 in nm, Ξ and the name of the bending scheme."""
-
-    num_vertices: int
-    rigidity: float = 20.0
-    radius: float = RADIUS
-    softness: float = SOFTNESS[0]
-    scheme: str = "Julicher"
-
-
 def main():
     figure = Figure("fig06", "Fig. 6 a–f", "Fluctuation spectra of vesicles", __doc__)
-    size = figure.choose(FULL, QUICK, MEDIUM)
+    size = figure.choose(FULL, QUICK)
     runs = measure(points_of(size), figure)
     spectra = {point: pooled(of_point, "fit") for point, of_point in runs.items()}
     figure.parameters(
@@ -70,116 +32,12 @@ def main():
         f"{size['samples']} samples of {PERIODS} τ_2 ({size['same']} of other r0 and schemes, "
         f"{size['small']} of N < 1000, {size['few']} of other N, κ, Ξ)"
     )
-    if figure.size == "medium":
-        figure.reduced("Fewer samples of all points but the first, and no N = 4002.")
+    if not figure.quick:
+        figure.reduced(f"{size['few']} samples in place of 10 of N > 1002 and of other κ and Ξ.")
     check(figure, size, spectra)
     note(figure, runs, spectra)
     draw(figure, size, spectra)
     figure.finish()
-
-
-# --- the runs --------------------------------------------------------------------------------
-
-
-def points_of(size):
-    """The points that are needed, and the number of samples of each."""
-    base = Point(size["base"])
-    wanted = {}
-
-    def add(samples, **changes):
-        point = base._replace(**changes)
-        wanted[point] = max(samples, wanted.get(point, 0))
-
-    add(size["samples"])
-    for scheme in SCHEMES:
-        add(size["same"], scheme=scheme)
-    for radius in size["radii"]:
-        add(size["same"], radius=radius)
-    for num_vertices in size["vertices"]:
-        add(size["small"] if num_vertices < 1000 else size["few"], num_vertices=num_vertices)
-    for rigidity in size["rigidities"]:
-        add(size["few"], rigidity=rigidity)
-    for softness in SOFTNESS:
-        add(size["few"], softness=softness)
-    return wanted
-
-
-def arguments_of(point, samples):
-    """The arguments of `fluctuate` for the samples of one point."""
-    return [
-        {
-            **point._asdict(),
-            # Half of the largest l that the mesh has, l_max = √N: what the paper shows.
-            "lmax": int(point.num_vertices**0.5 / 2),
-            "periods": PERIODS,
-            "frames_per_period": 8,
-            "settle_periods": 2,
-            "seed": first_seed(point) + seed,
-        }
-        for seed in range(samples)
-    ]
-
-
-def first_seed(point):
-    """Seeds that are others for each N, κ, r0 and scheme, so that all samples are independent.
-
-    In reduced units, which Δt and γ follow, equal seeds mean equal noise: large modes then move
-    alike whatever the scheme is, and vesicles of all radii are one.
-    """
-    usual = Point(1002)
-    return (
-        1
-        + abs(point.num_vertices - usual.num_vertices)
-        + round(1000 * abs(point.rigidity - usual.rigidity))
-        + round(10 * abs(point.radius - usual.radius))
-        + 7000 * (point.scheme != usual.scheme)
-    )
-
-
-def measure(points, figure):
-    """The runs of each point: {point: [result, …]}.
-
-    With --plot-only these are the runs that are stored, be they all or not.
-    """
-    arguments = {point: arguments_of(point, samples) for point, samples in points.items()}
-    if figure.plot_only:
-        store = Cache(figure.results / "cache")
-        name = fluctuate.__name__
-        wanted = sum(len(of_point) for of_point in arguments.values())
-        arguments = {
-            point: [
-                one for one in of_point if store.path(name, store.key(name, one, VERSION)).exists()
-            ]
-            for point, of_point in arguments.items()
-        }
-        arguments = {point: of_point for point, of_point in arguments.items() if of_point}
-        found = sum(len(of_point) for of_point in arguments.values())
-        if found < wanted:
-            figure.reduced(f"{found} of {wanted} runs of Fig. 6")
-    flat = [one for of_point in arguments.values() for one in of_point]
-    results = iter(figure.sweep(fluctuate, flat, VERSION))
-    return {point: [next(results) for _ in of_point] for point, of_point in arguments.items()}
-
-
-# --- what they mean --------------------------------------------------------------------------
-
-
-def pooled(runs, name):
-    """Spectrum of several samples: the mean over them, with the error of their mean."""
-    each = [spectrum(run[name]) for run in runs]
-    return Spectrum(
-        each[0].l,
-        np.mean([one.mean for one in each], axis=0),
-        np.sqrt(np.sum([one.error**2 for one in each], axis=0)) / len(each),
-        np.mean([one.correlation_time for one in each], axis=0),
-    )
-
-
-def ratio_of(found, point):
-    """Modes l = 2 … lmax, ⟨|u_lm|²⟩ over (A17), and its error."""
-    l = found.l[2:]
-    fluid = theory.fluid_spectrum(l, point.rigidity)
-    return l, found.mean[2:] / fluid, found.error[2:] / fluid
 
 
 def mean_ratio(found, point, first, last):
@@ -273,55 +131,66 @@ def note(figure, runs, spectra):
 
 
 def draw(figure, size, spectra):
+    """The panels as the paper has them, and again as ratios to (A17), where deviations show."""
+    for relative, suffix, caption in (
+        (False, "", "Spectra; lines: (A18) with the Y of panel e, softened by mesh_corrections.py"),
+        (True, "_ratio", "The same over (A17)"),
+    ):
+        page, axes = plt.subplots(2, 3, figsize=(11, 6.6), layout="constrained")
+        draw_panels(axes, size, spectra, relative)
+        figure.save(page, suffix, caption)
+
+
+def draw_panels(axes, size, spectra, relative):
     base = Point(size["base"])
-    panels = (
-        ("a  number of vertices", "N", "num_vertices", size["vertices"], "{:d}"),
-        ("b  rigidity", "κ", "rigidity", size["rigidities"], "{:g} kBT"),
-        ("c  radius", "r0", "radius", size["radii"], "{:g} nm"),
-        ("d  softness", "Ξ", "softness", SOFTNESS, "{:g}"),
-    )
-    page, axes = plt.subplots(2, 3, figsize=(11, 6.6), layout="constrained")
     a, b, c, d, e, f = axes.flat
-    for axis, (title, symbol, name, values, form) in zip((a, b, c, d), panels, strict=True):
+    panels = (
+        (a, "a  number of vertices", "num_vertices", size["vertices"], "N = {:d}"),
+        (b, "b  rigidity", "rigidity", size["rigidities"], "κ = {:g} kBT"),
+        (c, "c  radius", "radius", size["radii"], "r0 = {:g} nm"),
+        (d, "d  softness", "softness", SOFTNESS, "Ξ = {:g}"),
+        (f, "f  bending scheme", "scheme", SCHEMES, "{}"),
+    )
+    for axis, title, name, values, form in panels:
         for shift, value in enumerate(values):
             point = base._replace(**{name: value})
-            if point not in spectra:
-                continue
-            show(axis, spectra[point], point, f"{symbol} = {form.format(value)}", shift)
+            label = form.format(SCHEMES.get(value, value))
+            show(axis, spectra[point], point, label, shift, relative)
         axis.set_title(title, loc="left")
-    for shift, (scheme, label) in enumerate(SCHEMES.items()):
-        point = base._replace(scheme=scheme)
-        if point not in spectra:
-            continue
-        show(f, spectra[point], point, label, shift)
-    f.set_title("f  bending scheme", loc="left")
-    for axis in (a, b, c, d, f):
-        axis.axhline(1, color="black", linewidth=0.8)
-        axis.set(xlabel="l", ylabel="⟨|u_lm|²⟩ / (A17)", xscale="log", ylim=(0, 1.5))
-        axis.set_xticks([2, 3, 4, 6, 8, 12], ["2", "3", "4", "6", "8", "12"])
+        axis.set(xlabel="l", xscale="log")
+        axis.set_xticks([2, 3, 4, 6, 8, 12, 20, 30], ["2", "3", "4", "6", "8", "12", "20", "30"])
         axis.minorticks_off()
-        axis.legend(fontsize=8, loc="lower right")
-    found = {x: base._replace(softness=x) for x in SOFTNESS if base._replace(softness=x) in spectra}
-    young = np.array([young_of(spectra[point], point) for point in found.values()])
-    e.errorbar(list(found), *young.T, fmt="o", label="measured")
+        axis.legend(fontsize=8)
+        if relative:
+            axis.axhline(1, color="black", linewidth=0.8)
+            axis.set(ylabel="⟨|u_lm|²⟩ / (A17)", ylim=(0, 2.2))
+        else:
+            axis.set(ylabel="⟨|u_lm|²⟩", yscale="log")
+    found = [base._replace(softness=softness) for softness in SOFTNESS]
+    young = np.array([young_of(spectra[point], point) for point in found])
+    e.errorbar(SOFTNESS, *young.T, fmt="o", label="measured")
     grid = np.geomspace(0.02, 0.8, 50)
     e.plot(grid, theory.young_modulus(grid) * 1e6 / 1002, color="black", lw=0.8, label="(45)")
     e.set(xscale="log", yscale="log", xlabel="Ξ", ylabel="Y r0² / N kBT")
     e.set_title("e  Young modulus", loc="left")
     e.legend(fontsize=8)
-    figure.save(page, caption="Spectra over (A17), thin lines: mesh_corrections.py")
 
 
-def show(axis, found, point, label, shift):
-    """One spectrum with error bars, and (A18) with the modulus that was fitted to it."""
+def show(axis, found, point, label, shift, relative):
+    """One spectrum with error bars, and the line of (A18) with the modulus fitted to it."""
     l, ratio, error = ratio_of(found, point)
-    color = f"C{shift}"
-    axis.errorbar(l, ratio, error, fmt="o", ms=3.5, color=color, label=label)
     young, _ = young_of(found, point)
     grid = np.linspace(2, l[-1], 100)
     shear = young * shear_ratio(point.num_vertices, point.rigidity, grid)
     curve = 1 / (bending_ratio(point.num_vertices, grid) + shear)
-    axis.plot(grid, curve, color=color, linewidth=0.7)
+    scale, grid_scale = (
+        1 if relative else theory.fluid_spectrum(values, point.rigidity) for values in (l, grid)
+    )
+    color = f"C{shift}"
+    # Points of spectra that coincide are moved apart a little.
+    x = l * 1.01**shift
+    axis.errorbar(x, scale * ratio, scale * error, fmt="o", ms=3.5, color=color, label=label)
+    axis.plot(grid, grid_scale * curve, color=color, linewidth=0.7)
 
 
 if __name__ == "__main__":

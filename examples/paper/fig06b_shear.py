@@ -15,10 +15,10 @@ import matplotlib.pyplot as plt
 import numpy as np
 from _paper import Figure
 from displacements import moduli, shear_modulus
-from fig06_spectrum import FULL, MEDIUM, QUICK, SCHEMES, measure, points_of, pooled, ratio_of
 from fluctuations import SOFTNESS
 from mesh_corrections import bending_ratio
 from openmmhelfrich.analysis import theory
+from spectra import FULL, QUICK, SCHEMES, measure, points_of, pooled, ratio_of
 
 MODES = np.array([2, 3, 4, 5])
 
@@ -33,7 +33,7 @@ BLOCKS = 10
 
 def main():
     figure = Figure("fig06b", "Fig. 6, l = 2", "Shear modulus of fluid meshes", __doc__)
-    size = figure.choose(FULL, QUICK, MEDIUM)
+    size = figure.choose(FULL, QUICK)
     runs = measure(points_of(size), figure)
     elastic = {point: elasticity(of_point) for point, of_point in runs.items()}
     spectra = {point: pooled(of_point, "fit") for point, of_point in runs.items()}

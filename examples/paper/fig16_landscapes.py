@@ -67,7 +67,7 @@ def main():
     import matplotlib.pyplot as plt
 
     figure = Figure("fig16", "Figs. 16–19", "Energy landscapes of a single vertex", __doc__)
-    size, rows = figure.choose(320, 60, 160), 20
+    size, rows = figure.choose(320, 60), 20
     half_width = 250.0
     points = grid(
         surface=["sphere", "plane"],
@@ -83,8 +83,6 @@ def main():
         f"paper, grids of {size} × {size} points within ± {half_width:g} nm, energies relative to "
         "the mesh itself. Outside of the plaquette means: seen from the centre of the sphere."
     )
-    if figure.size == "medium":
-        figure.reduced("160 × 160 points in place of 320 × 320.")
     for surface in ("sphere", "plane"):
         mine = [
             result

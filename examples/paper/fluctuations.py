@@ -7,6 +7,7 @@ the scripts share runs too: what Fig. 6 has simulated, SM 5 and SM 7 find in the
 
 import numpy as np
 import openmm
+from _paper import fastest_platform
 from displacements import Displacements
 from openmm import unit
 from openmmhelfrich.analysis import mode_amplitudes
@@ -200,18 +201,6 @@ def relax(num_vertices, integrator, friction, lmax, periods, interval, time_step
         "interval": stride * time_step,
         "temperature": temperature,
     }
-
-
-def fastest_platform():
-    """Name of the platform for meshes of a few thousand vertices: no GPU pays off there.
-
-    It is no parameter of the runs, because their averages must not depend on it.
-    """
-    names = [
-        openmm.Platform.getPlatform(index).getName()
-        for index in range(openmm.Platform.getNumPlatforms())
-    ]
-    return "Helfrich" if "Helfrich" in names else "Reference"
 
 
 def frames_of(context, integrator, num_frames, stride):

@@ -21,8 +21,8 @@ The figures of Farnudi, Ejtehadi and Everaers, *Dynamics of fluid bilayer vesicl
 robust curvature energy discretization*, Phys. Rev. E **108**, 015301 (2023),
 [doi:10.1103/PhysRevE.108.015301](https://doi.org/10.1103/PhysRevE.108.015301), computed anew with
 this library. `examples/paper/` has a script for each; `--quick` makes a small version in seconds to
-minutes, `make paper` all of these. Where a section below says "reduced", it was made with
-`--medium`; without either option a script has the size of the paper. This page is written by
+minutes, `make paper` all of these; without it a script has the size shown here. This page is
+written by
 `examples/paper/report.py` from the numbers of the scripts; what is behind those of the
 fluctuations is told in [reproduction_fluctuations.md](reproduction_fluctuations.md). Times are
 those of one processor core, on a busy machine, where they are up to twice those of an idle one.
@@ -48,6 +48,13 @@ def main():
     report = options.out / "reproduction.md"
     report.write_text(text, encoding="utf-8")
     print(f"report: {len(figures)} figures in {report}")
+    for figure in figures:
+        for row in figure["rows"]:
+            if not row["passed"]:
+                print(
+                    f"outside: {figure['name']}: {row['what']}: measured {row['measured']}, "
+                    f"expected {row['expected']}"
+                )
 
 
 def take_in(results, folder):

@@ -13,9 +13,9 @@ vertex, the factor of the paper's (20), and the resistance to shear adds 4π μ 
 import matplotlib.pyplot as plt
 import numpy as np
 from _paper import Figure, mean_and_error
-from fig06_spectrum import FULL, MEDIUM, QUICK, Point, measure
 from fluctuations import SOFTNESS
 from openmmhelfrich.analysis import density_modes
+from spectra import FULL, QUICK, Point, measure
 
 # S(l) of gas-like places and heights, without resistance to shear.
 GAS_AND_HEIGHTS = 2 / 3
@@ -23,7 +23,7 @@ GAS_AND_HEIGHTS = 2 / 3
 
 def main():
     figure = Figure("sm05", "SM 5", "Density modes of the vertices", __doc__)
-    size = figure.choose(FULL, QUICK, MEDIUM)
+    size = figure.choose(FULL, QUICK)
     points = {Point(size["base"], softness=softness): size["few"] for softness in SOFTNESS}
     # The softest point is that of Fig. 6 with all of its samples.
     points[Point(size["base"])] = size["samples"]

@@ -9,7 +9,7 @@ much of that is the beat with flow of the vertices within the surface: most of i
 import matplotlib.pyplot as plt
 import numpy as np
 from _paper import Figure
-from fig09_10_autocorrelation import FULL, MEDIUM, QUICK, frequency_of, modes_of, points_of
+from fig09_10_autocorrelation import FULL, QUICK, frequency_of, modes_of, points_of
 from fluctuations import VERSION, relax
 from openmmhelfrich.analysis import fit_damping, theory
 from scipy.optimize import curve_fit
@@ -22,7 +22,7 @@ PERIODS = 3
 def main():
     figure = Figure("sm09", "SM 9", "Internal friction of soft meshes", __doc__)
     num_vertices = figure.choose(1002, 252)
-    settings = [row for row in figure.choose(FULL, QUICK, MEDIUM) if row[0] == "verlet"]
+    settings = [row for row in figure.choose(FULL, QUICK) if row[0] == "verlet"]
     (run,) = figure.sweep(relax, points_of(num_vertices, settings), VERSION)
     figure.parameters(
         f"N = {num_vertices}, κ = 20 kBT, r0 = 1000 nm, Ξ = 0.037, Jülicher, kV = 0; Verlet, "

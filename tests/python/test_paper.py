@@ -96,11 +96,11 @@ def test_says_what_is_wrong(tmp_path, arguments, message):
     assert "Traceback" not in result.stderr
 
 
-def test_exits_with_1_outside_of_a_tolerance(tmp_path, monkeypatch, capsys):
+def test_exits_with_3_outside_of_a_tolerance(tmp_path, monkeypatch, capsys):
     monkeypatch.syspath_prepend(PAPER)
     from _paper import Figure
 
-    for measured, status in ((1.05, 0), (1.2, 1), (float("nan"), 1)):
+    for measured, status in ((1.05, 0), (1.2, 3), (float("nan"), 3)):
         figure = Figure("none", "Fig. 0", "Nothing", "", ["--results", str(tmp_path)])
         figure.check("one", measured, 1, 0.1)
         with pytest.raises(SystemExit) as ended:

@@ -1,0 +1,126 @@
+"""The runs of Fig. 6, which Supplements 5 and 7 share, and their spectra."""
+
+from typing import NamedTuple
+
+import numpy as np
+from fluctuations import RADIUS, SOFTNESS, VERSION, fluctuate
+from openmmhelfrich.analysis import Spectrum, spectrum, theory
+
+# Numbers of samples: at the paper's parameters, of small meshes, of other radii and schemes, and of
+# all other points.
+FULL = {
+    "base": 1002,
+    "vertices": (252, 492, 1002, 1962, 4002),
+    "rigidities": (10.0, 20.0, 40.0),
+    "radii": (500.0, 1000.0, 2000.0),
+    "samples": 10,
+    "small": 10,
+    "same": 10,
+    "few": 4,
+}
+QUICK = {
+    "base": 252,
+    "vertices": (252,),
+    "rigidities": (20.0, 40.0),
+    "radii": (500.0, 1000.0),
+    "samples": 2,
+    "small": 2,
+    "same": 2,
+    "few": 2,
+}
+PERIODS = 10
+SCHEMES = {"Julicher": "Jülicher", "GompperKrollBarycentric": "GK barycentric"}
+
+
+class Point(NamedTuple):
+    """Parameters of a vesicle: N, κ in kBT, r0 in nm, Ξ and the name of the bending scheme."""
+
+    num_vertices: int
+    rigidity: float = 20.0
+    radius: float = RADIUS
+    softness: float = SOFTNESS[0]
+    scheme: str = "Julicher"
+
+
+def points_of(size):
+    """The points that are needed, and the number of samples of each."""
+    base = Point(size["base"])
+    wanted = {}
+
+    def add(samples, **changes):
+        point = base._replace(**changes)
+        wanted[point] = max(samples, wanted.get(point, 0))
+
+    add(size["samples"])
+    for scheme in SCHEMES:
+        add(size["same"], scheme=scheme)
+    for radius in size["radii"]:
+        add(size["same"], radius=radius)
+    for num_vertices in size["vertices"]:
+        add(size["small"] if num_vertices < 1000 else size["few"], num_vertices=num_vertices)
+    for rigidity in size["rigidities"]:
+        add(size["few"], rigidity=rigidity)
+    for softness in SOFTNESS:
+        add(size["few"], softness=softness)
+    return wanted
+
+
+def arguments_of(point, samples):
+    """The arguments of `fluctuate` for the samples of one point."""
+    return [
+        {
+            **point._asdict(),
+            # Half of the largest l that the mesh has, l_max = √N: what the paper shows.
+            "lmax": int(point.num_vertices**0.5 / 2),
+            "periods": PERIODS,
+            "frames_per_period": 8,
+            "settle_periods": 2,
+            "seed": first_seed(point) + seed,
+        }
+        for seed in range(samples)
+    ]
+
+
+def first_seed(point):
+    """Seeds that are others for each N, κ, r0 and scheme, so that all samples are independent.
+
+    In reduced units, which Δt and γ follow, equal seeds mean equal noise: large modes then move
+    alike whatever the scheme is, and vesicles of all radii are one.
+    """
+    usual = Point(1002)
+    return (
+        1
+        + abs(point.num_vertices - usual.num_vertices)
+        + round(1000 * abs(point.rigidity - usual.rigidity))
+        + round(10 * abs(point.radius - usual.radius))
+        + 7000 * (point.scheme != usual.scheme)
+    )
+
+
+def measure(points, figure):
+    """The runs of each point: {point: [result, …]}."""
+    arguments = [arguments_of(point, samples) for point, samples in points.items()]
+    flat = [one for of_point in arguments for one in of_point]
+    results = iter(figure.sweep(fluctuate, flat, VERSION))
+    return {
+        point: [next(results) for _ in of_point]
+        for point, of_point in zip(points, arguments, strict=True)
+    }
+
+
+def pooled(runs, name):
+    """Spectrum of several samples: the mean over them, with the error of their mean."""
+    each = [spectrum(run[name]) for run in runs]
+    return Spectrum(
+        each[0].l,
+        np.mean([one.mean for one in each], axis=0),
+        np.sqrt(np.sum([one.error**2 for one in each], axis=0)) / len(each),
+        np.mean([one.correlation_time for one in each], axis=0),
+    )
+
+
+def ratio_of(found, point):
+    """Modes l = 2 … lmax, ⟨|u_lm|²⟩ over (A17), and its error."""
+    l = found.l[2:]
+    fluid = theory.fluid_spectrum(l, point.rigidity)
+    return l, found.mean[2:] / fluid, found.error[2:] / fluid
