@@ -30,6 +30,9 @@ SCHEMES = {
 # script that failed is 1, that of a wrong command line 2.
 OUTSIDE = 3
 
+# Exit status of a script that needs files which are not there.
+MISSING = 4
+
 
 class Figure:
     """One figure of the paper.

@@ -43,7 +43,7 @@ def main():
 
     figure = Figure("fig05", "Fig. 5", "Runtime to failure of Newtonian dynamics", __doc__)
     duration = figure.choose(30.0, 2.0)
-    fractions = figure.choose([0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 1.0], [0.1, 1.0])
+    fractions = figure.choose([0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 1.0], [0.1, 1.0])
     points = grid(
         scheme=list(SCHEMES),
         softness=SOFTNESSES,

@@ -77,7 +77,7 @@ def main():
     figure = Figure("fig07", "Fig. 7, SM 8", "Vesicles of reduced volume 1 to 0.1", __doc__)
     volumes = figure.choose(np.arange(10, 0, -1) / 10, [1.0, 0.6, 0.3])
     softnesses = figure.choose([0.037, 0.15, 0.33, 0.59], [0.037, 0.59])
-    duration = figure.choose(100_000.0, 10_000.0)
+    duration = figure.choose(50_000.0, 10_000.0)
     common = {
         "duration": [duration],
         "time_step": [figure.choose(0.2, 1.0)],

@@ -40,6 +40,22 @@ def settling_time(times, energies, error):
     The plateau is the mean of the last half. Windows of 0.1 τ_2 have arrived where their means are
     within three of the standard deviations that such means have along the plateau, or within three
     standard errors of it. The first of two in succession counts, with its end.
+
+    Parameters
+    ----------
+    times : array_like
+        In τ_2, at equal intervals.
+    energies : array_like
+        At these times, kJ/mol.
+    error : float
+        Standard error of the mean over the seeds, kJ/mol.
+
+    Returns
+    -------
+    float
+        In τ_2; infinite if it never arrives.
+    float
+        The plateau, kJ/mol.
     """
     width = max(1, round(0.1 / (times[1] - times[0])))
     count = len(energies) // width
@@ -49,6 +65,24 @@ def settling_time(times, energies, error):
     near = abs(windows - late.mean()) <= 3 * max(late.std(ddof=1), error)
     arrived = np.flatnonzero(near[:-1] & near[1:])
     return (ends[arrived[0]] if len(arrived) else np.inf), late.mean()
+
+
+def drift(runs):
+    """How far the last quarter of each run lies above the quarter before it, kJ/mol.
+
+    Parameters
+    ----------
+    runs : array_like
+        Energies in time, shape (num_runs, num_times), kJ/mol.
+
+    Returns
+    -------
+    float, float
+        The mean over the runs and its standard error.
+    """
+    quarter = np.shape(runs)[1] // 4
+    late = np.asarray(runs)[:, -quarter:].mean(axis=1)
+    return mean_and_error(late - np.asarray(runs)[:, -2 * quarter : -quarter].mean(axis=1))
 
 
 def main():
@@ -94,6 +128,15 @@ def main():
                 f"{settled:.2f} τ_2, from {mean[0]:.0f} to {plateau:.0f} ± {spread:.0f} kJ/mol",
                 "within τ_2",
                 settled < 1,
+            )
+            rise, uncertain = drift([run["energies"] for run in runs])
+            figure.check(
+                f"{shape}, ν = {volume:g}: last quarter less the one before",
+                rise,
+                0,
+                3 * uncertain,
+                uncertain,
+                " kJ/mol",
             )
             late_half = np.array([run["energies"][len(times) // 2 :] for run in runs])
             figure.note(

@@ -1,25 +1,28 @@
 """How spectra of meshes differ from (A17), the spectrum of a continuous fluid at low temperature.
 
-kBT/⟨|u_lm|²⟩ = a κ (l+2)(l+1) l (l−1) / (1 + c n / N) + y N kBT · 3 (n−2) / (3n−2),   n = l (l+1)
+With n = l (l+1), and energies in units of kBT,
 
+    1/⟨|u_lm|²⟩ = [a κ − (3/4π) ln(√N / l)] n (n−2) / (1 + c n / N) + y N · 3 (n−2) / (3n−2)
+
+- (3/4π) ln(√N / l): undulations of shorter waves soften a membrane, by 1 to 4 % at κ = 20 kBT:
+  Peliti and Leibler, doi:10.1103/PhysRevLett.54.1690. It has no parameter.
 - c: waves that come near to the spacing of the vertices cost less than those of a continuum. The
   cotangent Laplacian of an even triangular lattice has c = 1.8, an uneven mesh more.
 - y: vertices that keep their neighbours resist shear, Y r0² = y N kBT in (A18).
-- a: the rigidity that is left, over the one that was put in. It should be 1, less some 3 % by
-  which undulations of shorter wave length soften a membrane of 20 kBT, (3/4π) kBT ln(√N / l):
-  Peliti and Leibler, doi:10.1103/PhysRevLett.54.1690.
+- a: the rigidity that is left, over the one that was put in. It should be 1.
 """
 
 import numpy as np
 from scipy.optimize import curve_fit
 
 # c of soft meshes, as `fit_meshes` finds it at full size.
-SOFTENING = 2.9
+SOFTENING = {"Julicher": 2.4, "GompperKrollBarycentric": 3.1}
 
 
-def bending_ratio(num_vertices, l, c=SOFTENING):
-    """Bending stiffness of a mode over that of (A17): the first term above, with a = 1."""
-    return 1 / (1 + c * l * (l + 1) / num_vertices)
+def bending_ratio(num_vertices, rigidity, l, c, a=1.0):
+    """Bending stiffness of a mode over that of (A17): the first term above."""
+    thermal = 3 / (4 * np.pi * rigidity) * np.log(np.sqrt(num_vertices) / l)
+    return (a - thermal) / (1 + c * l * (l + 1) / num_vertices)
 
 
 def shear_ratio(num_vertices, rigidity, l):
@@ -34,8 +37,8 @@ def fit_meshes(spectra):
     Parameters
     ----------
     spectra : sequence of tuple
-        N, κ / kBT, and the arrays l, ratio of ⟨|u_lm|²⟩ to (A17), and error of the ratio. Modes up
-        to √N / 3 are used.
+        N, κ / kBT, and the arrays l, ratio of ⟨|u_lm|²⟩ to (A17), and error of the ratio, all of
+        one bending scheme. Modes up to √N / 3 are used.
 
     Returns
     -------
@@ -56,7 +59,7 @@ def fit_meshes(spectra):
 
     def model(_, a, c, y):
         # Logarithms, because what a run fixes is the relative error of a mean square.
-        bending = a * bending_ratio(num_vertices, l, c)
+        bending = bending_ratio(num_vertices, rigidity, l, c, a)
         return -np.log(bending + y * shear_ratio(num_vertices, rigidity, l))
 
     found, covariance = curve_fit(
@@ -67,19 +70,21 @@ def fit_meshes(spectra):
     return found, np.sqrt(max(1.0, quality) * np.diag(covariance)), quality
 
 
-def fit_shear(num_vertices, rigidity, l, ratio, error):
-    """The y of one mesh, with a = 1 and c = SOFTENING, and its error.
+def fit_shear(num_vertices, rigidity, l, ratio, error, c):
+    """The y of one mesh, with a = 1 and c given, and its error.
 
     Parameters
     ----------
     num_vertices, rigidity, l, ratio, error
         As for `fit_meshes`; all l are used.
+    c : float
+        See the formula; SOFTENING has it for each bending scheme.
 
     Returns
     -------
     tuple of float
     """
-    bending = bending_ratio(num_vertices, l)
+    bending = bending_ratio(num_vertices, rigidity, l, c)
     shear = shear_ratio(num_vertices, rigidity, l)
     # A mean square has the relative error of its inverse, in which the problem is linear.
     weights = (ratio**2 / error) * shear

@@ -61,8 +61,10 @@ def take_in(results, folder):
     """Copy the numbers and the pictures of each figure."""
     for path in sorted(results.glob("*.json")):
         figure = json.loads(path.read_text(encoding="utf-8"))
-        for old in folder.glob(f"{figure['name']}*.png"):
-            old.unlink()
+        before = folder / path.name
+        if before.exists():
+            for picture in json.loads(before.read_text(encoding="utf-8"))["pictures"]:
+                (folder / picture["file"]).unlink(missing_ok=True)
         shutil.copy(path, folder)
         for picture in figure["pictures"]:
             shutil.copy(results / picture["file"], folder)

@@ -8,8 +8,8 @@ much of that is the beat with flow of the vertices within the surface: most of i
 
 import matplotlib.pyplot as plt
 import numpy as np
-from _paper import Figure
-from fig09_10_autocorrelation import FULL, QUICK, frequency_of, modes_of, points_of
+from _paper import Figure, mean_and_error
+from fig09_10_autocorrelation import FULL, QUICK, frequency_of, modes_in, modes_of, points_of
 from fluctuations import VERSION, relax
 from openmmhelfrich.analysis import fit_damping, theory
 from scipy.optimize import curve_fit
@@ -23,42 +23,40 @@ def main():
     figure = Figure("sm09", "SM 9", "Internal friction of soft meshes", __doc__)
     num_vertices = figure.choose(1002, 252)
     settings = [row for row in figure.choose(FULL, QUICK) if row[0] == "verlet"]
-    (run,) = figure.sweep(relax, points_of(num_vertices, settings), VERSION)
+    runs = figure.sweep(relax, points_of(num_vertices, settings), VERSION)
     figure.parameters(
         f"N = {num_vertices}, κ = 20 kBT, r0 = 1000 nm, Ξ = 0.037, Jülicher, kV = 0; Verlet, "
-        f"{settings[0][2]} τ_2, Δt = {settings[0][4]:g} ps; fit over {PERIODS} periods of each mode"
+        f"{len(runs)} runs of 10 τ_2, Δt = {settings[0][4]:g} ps; fit over {PERIODS} periods of "
+        "each mode"
     )
+    interval = runs[0]["interval"]
     rows = []
     all_modes = modes_of(num_vertices)
     for l in all_modes:
         omega = frequency_of(l, num_vertices)
-        modes = run["fit"][:, l**2 : (l + 1) ** 2].astype(float)
-        lags = int(PERIODS * 2 * np.pi / omega / run["interval"]) + 1
-        fit = fit_damping(modes, run["interval"], lags)
-        rows.append(
-            (
-                fit.friction / omega,
-                fit.friction_error / omega,
-                fit.frequency / omega,
-                fit.frequency_error / omega,
-                *two_mode_fit(l, num_vertices, omega, run["interval"] * np.arange(lags)),
-            )
-        )
-    ratio, error, shift, shift_error, two, _ = np.array(rows).T
-    for l, row in zip(all_modes, rows, strict=True):
+        lags = int(PERIODS * 2 * np.pi / omega / interval) + 1
+        fit = fit_damping(modes_in(runs, l), interval, lags)
+        two, two_frequency = two_mode_fit(l, num_vertices, omega, interval * np.arange(lags))
+        rows.append((fit.friction / omega, fit.friction_error / omega, fit.frequency / omega, two))
         figure.note(
-            f"l = {l}: γ_l/ω_l = {row[0]:.3f} ± {row[1]:.3f}, ω/ω_l = {row[2]:.3f} ± {row[3]:.3f}; "
-            f"two modes without friction: {row[4]:.3f}, {row[5]:.3f}"
+            f"l = {l}: γ_l/ω_l = {fit.friction / omega:.3f} ± {fit.friction_error / omega:.3f}, "
+            f"ω/ω_l = {fit.frequency / omega:.3f} ± {fit.frequency_error / omega:.3f}; "
+            f"two modes without friction: {two:.3f}, {two_frequency:.3f}"
         )
-    spread = ratio.std(ddof=1) / len(ratio) ** 0.5
-    figure.check(f"γ_l / ω_l, mean of l = 2 … {all_modes[-1]}", ratio.mean(), PAPER, 0.05, spread)
-    figure.check(
-        f"ω of the fit over (A30), mean of l = 3 … {all_modes[-1]}",
-        shift[1:].mean(),
-        1,
-        0.05,
-        shift_error.mean(),
-    )
+    ratio, error, shift, two = np.array(rows).T
+    for what, values, wanted in (
+        ("γ_l / ω_l", ratio, PAPER),
+        ("ω of the fit over (A30)", shift, 1),
+    ):
+        mean, spread = mean_and_error(values)
+        figure.check(f"{what}, mean of l = 2 … {all_modes[-1]}", mean, wanted, 0.05, spread)
+    for l, value, uncertain in zip(all_modes, ratio, error, strict=True):
+        figure.claim(
+            f"γ_l / ω_l of l = {l}",
+            f"{value:.3f} ± {uncertain:.2g}",
+            f"{PAPER} within a factor of two",
+            PAPER / 2 <= value <= PAPER * 2,
+        )
     page, axis = plt.subplots(figsize=(5, 3.6), layout="constrained")
     axis.errorbar(all_modes, ratio, error, fmt="o", label="measured")
     axis.plot(all_modes, two, "s", mfc="none", color="C3", label="two modes, no friction")

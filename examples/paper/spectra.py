@@ -28,7 +28,7 @@ QUICK = {
     "same": 2,
     "few": 2,
 }
-PERIODS = 10
+PERIODS, FRAMES_PER_PERIOD = 10, 8
 SCHEMES = {"Julicher": "Jülicher", "GompperKrollBarycentric": "GK barycentric"}
 
 
@@ -40,6 +40,14 @@ class Point(NamedTuple):
     radius: float = RADIUS
     softness: float = SOFTNESS[0]
     scheme: str = "Julicher"
+
+
+def named(point):
+    """The parameters as the report writes them."""
+    return (
+        f"N = {point.num_vertices}, κ = {point.rigidity:g} kBT, r0 = {point.radius:g} nm, "
+        f"Ξ = {point.softness:g}, {SCHEMES[point.scheme]}"
+    )
 
 
 def points_of(size):
@@ -73,7 +81,7 @@ def arguments_of(point, samples):
             # Half of the largest l that the mesh has, l_max = √N: what the paper shows.
             "lmax": int(point.num_vertices**0.5 / 2),
             "periods": PERIODS,
-            "frames_per_period": 8,
+            "frames_per_period": FRAMES_PER_PERIOD,
             "settle_periods": 2,
             "seed": first_seed(point) + seed,
         }
@@ -85,20 +93,26 @@ def first_seed(point):
     """Seeds that are others for each N, κ, r0 and scheme, so that all samples are independent.
 
     In reduced units, which Δt and γ follow, equal seeds mean equal noise: large modes then move
-    alike whatever the scheme is, and vesicles of all radii are one.
+    alike whatever the scheme is. Vesicles of other Ξ have other Δt, which is enough.
     """
     usual = Point(1002)
     return (
         1
         + abs(point.num_vertices - usual.num_vertices)
         + round(1000 * abs(point.rigidity - usual.rigidity))
-        + round(10 * abs(point.radius - usual.radius))
+        + round(13 * abs(point.radius - usual.radius))
         + 7000 * (point.scheme != usual.scheme)
     )
 
 
 def measure(points, figure):
     """The runs of each point: {point: [result, …]}."""
+    if not figure.quick and min(points.values()) < max(points.values()):
+        most = max(points.values())
+        few = [point for point, samples in points.items() if samples < most]
+        figure.reduced(
+            f"{points[few[0]]} samples in place of {most} of N > 1002 and of other κ and Ξ."
+        )
     arguments = [arguments_of(point, samples) for point, samples in points.items()]
     flat = [one for of_point in arguments for one in of_point]
     results = iter(figure.sweep(fluctuate, flat, VERSION))

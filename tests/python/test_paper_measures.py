@@ -1,0 +1,136 @@
+"""What the scripts in examples/paper decide verdicts with, on made-up data of known answers."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from openmmhelfrich import Mesh
+
+PAPER = Path(__file__).parents[2] / "examples" / "paper"
+
+
+@pytest.fixture(autouse=True)
+def scripts_importable(monkeypatch):
+    monkeypatch.syspath_prepend(str(PAPER))
+    yield
+    for script in PAPER.glob("*.py"):
+        sys.modules.pop(script.stem, None)
+
+
+def relaxations(time, count=10):
+    """Energies that fall by 1000 kJ/mol in the given time in units of τ_2, with noise."""
+    times = np.linspace(0, 3, 301)
+    noise = np.random.default_rng(2).normal(size=(count, len(times)))
+    return times, 2000 + 1000 * np.exp(-times / time) + 30 * noise
+
+
+def test_energies_settle_a_few_relaxation_times_after_the_start():
+    from fig11_relaxation import drift, settling_time
+
+    times, runs = relaxations(0.1)
+    settled, plateau = settling_time(times, runs.mean(axis=0), 2.0)
+    assert 0.3 < settled < 0.8
+    assert plateau == pytest.approx(2000, abs=5)
+    rise, error = drift(runs)
+    assert abs(rise) < 3 * error < 10
+
+
+@pytest.mark.parametrize("time", [1.5, 5.0])
+def test_energies_that_still_fall_at_the_end_are_seen_to_drift(time):
+    from fig11_relaxation import drift
+
+    times, runs = relaxations(time)
+    rise, error = drift(runs)
+    exact = 1000 * np.exp(-times / time)
+    assert rise == pytest.approx(exact[-75:].mean() - exact[-150:-75].mean(), abs=3 * error)
+    assert rise < -5 * error
+
+
+def test_a_plaquette_has_its_inside():
+    from fig16_landscapes import inside_plaquette
+
+    angles = np.array([0.1, 1.2, 2.0, 3.3, 4.1, 5.5])
+    ring = np.stack([0.2 * np.cos(angles), 0.2 * np.sin(angles), np.full(6, 0.98)], axis=1)
+    vertex = np.array([0.0, 0.0, 1.0])
+    outside = np.array([[0.21 * np.cos(a), 0.21 * np.sin(a), 0.97] for a in angles])
+    assert inside_plaquette(np.stack([vertex, 2 * vertex, (0.05, -0.1, 0.99)]), ring, vertex).all()
+    # Seen from the centre, height over the sphere does not matter.
+    assert inside_plaquette(0.5 * ring * (0.9, 0.9, 1), ring, vertex).all()
+    assert not inside_plaquette(outside, ring, vertex).any()
+
+
+def disc(dent):
+    """A flat ellipsoid of 1000 × 1000 × 300 nm with its middle dented by a share of its height."""
+    mesh = Mesh.icosphere(12, 1000.0)
+    x, y, z = mesh.vertices.T
+    rho = np.hypot(x, y) / 1000
+    z = 0.3 * z * (1 - dent * np.exp(-((rho / 0.4) ** 2)))
+    return Mesh(np.stack([x, y, z], axis=1), mesh.triangles)
+
+
+def test_dimples_are_measured():
+    from fig07_oblates import dimple
+
+    assert dimple(disc(0)) > 0.97
+    # √(1 − ρ²) (1 − 0.6 exp(−(ρ/0.4)²)) is 0.42 around the axis and at most 0.76, at ρ = 0.55.
+    assert dimple(disc(0.6)) == pytest.approx(0.42 / 0.76, abs=0.03)
+
+
+def test_thicknesses_of_discs_are_measured():
+    from fig08_red_cell import thickness
+
+    diameter, middle, rim = thickness(disc(0))
+    assert diameter == pytest.approx(2000, rel=0.02)
+    assert middle == pytest.approx(600, rel=0.02)
+    assert rim == pytest.approx(600, rel=0.02)
+    _, middle, rim = thickness(disc(0.6))
+    assert middle == pytest.approx(0.42 * 600, rel=0.05)
+    assert rim > 1.7 * middle
+
+
+def test_autocorrelation_of_exponential_memory_comes_back_with_the_spread_of_the_modes():
+    from fig09_10_autocorrelation import PERIODS, Measured, frequency_of
+
+    num_vertices, l, friction = 1002, 3, 0.01
+    omega = frequency_of(l, num_vertices)
+    memory = friction / omega**2
+    interval = memory / 10
+    frames = round(PERIODS * 2 * np.pi / frequency_of(2, num_vertices) / interval)
+    keep = np.exp(-interval / memory)
+    random = np.random.default_rng(4)
+    runs = []
+    for _ in range(200):
+        noise = random.normal(size=(frames, 16))
+        modes = np.empty_like(noise)
+        modes[0] = noise[0]
+        for frame in range(1, frames):
+            modes[frame] = keep * modes[frame - 1] + np.sqrt(1 - keep**2) * noise[frame]
+        runs.append({"fit": modes, "interval": interval})
+    found = Measured(runs, l, friction, num_vertices)
+    assert found.times[-1] == pytest.approx(3 * memory, rel=0.05)
+    assert np.abs(found.mean - np.exp(-found.times / memory)).max() < 0.05
+    # The variance of a mean square over time of a process with this memory.
+    expected = np.sqrt(2 * memory / (frames * interval))
+    assert found.spread[0] == pytest.approx(expected, rel=0.15)
+
+
+def test_samples_of_all_vesicles_but_those_of_other_softness_have_seeds_of_their_own():
+    from fluctuations import SOFTNESS
+    from spectra import FULL, arguments_of, points_of
+
+    seeds = [
+        arguments["seed"]
+        for point, samples in points_of(FULL).items()
+        if point.softness == SOFTNESS[0]
+        for arguments in arguments_of(point, samples)
+    ]
+    assert len(seeds) > 50
+    assert len(set(seeds)) == len(seeds)
+
+
+def test_integrators_have_seeds_of_their_own():
+    from fig09_10_autocorrelation import FULL, points_of
+
+    seeds = [point["seed"] for point in points_of(1002, FULL)]
+    assert len(set(seeds)) == len(seeds) == 18
