@@ -58,7 +58,7 @@ demo: build ## simulate a vesicle and draw it with its fluctuation spectrum (abo
 # A script that found a number outside its tolerance exits with 3, and report.py lists these; with 4
 # if it needs files that are not there.
 paper: build ## make the paper's figures in small versions, and a report of them, in out/paper
-	@failed=; for script in examples/paper/fig*.py examples/paper/sm*.py; do \
+	@failed=; for script in examples/paper/fig*.py examples/paper/sm*.py examples/paper/tab*.py; do \
 	    $(VENV)/bin/python $$script --quick; case $$? in 0|3|4) ;; *) failed="$$failed $$script" ;; esac; \
 	done; \
 	$(VENV)/bin/python examples/paper/report.py --results out/paper/quick --out out/paper && \

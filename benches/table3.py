@@ -57,7 +57,7 @@ def main(arguments=None):
         "--strict", action="store_true", help="exit with status 1 if a figure asked for is missed"
     )
     options = parser.parse_args(arguments)
-    platform = _platform(options.platform)
+    platform = platform_named(options.platform)
     properties = {}
     if "Threads" in platform.getPropertyNames():
         properties["Threads"] = options.threads or str(os.cpu_count() or 1)
@@ -67,15 +67,15 @@ def main(arguments=None):
     missed = False
     for integrator in options.integrator or ["LangevinMiddle"]:
         for n in options.sizes:
-            seconds, steps, temperature = _run(
+            seconds, steps, temperature = run(
                 n, INTEGRATORS[integrator](), platform, properties, options.quick
             )
             _, paper, asked = TABLE[n]
             met = "" if asked is None else f"{asked} s: {'yes' if seconds <= asked else 'NO'}"
             missed |= asked is not None and seconds > asked
-            cards = " / ".join(_clock(value) for value in paper)
+            cards = " / ".join(clock(value) for value in paper)
             lines.append(
-                f"| {integrator} | {n} | {steps} | {_clock(seconds)}{'*' * options.quick} | "
+                f"| {integrator} | {n} | {steps} | {clock(seconds)}{'*' * options.quick} | "
                 f"{1e6 * seconds / steps:.1f} | {cards} | {paper[1] / seconds:.3g} | {met} | "
                 f"{temperature:.0f} K |"
             )
@@ -106,7 +106,7 @@ def _head(platform, properties, quick):
     ]
 
 
-def _platform(name):
+def platform_named(name):
     """The platform of that name, or the fastest for membranes that there is."""
     count = openmm.Platform.getNumPlatforms()
     present = [openmm.Platform.getPlatform(i).getName() for i in range(count)]
@@ -116,7 +116,7 @@ def _platform(name):
     return openmm.Platform.getPlatformByName(name)
 
 
-def _run(n, integrator, platform, properties, quick):
+def run(n, integrator, platform, properties, quick):
     """Wall time of the whole run, s, its steps, and the mean temperature of its samples, K."""
     vesicle = Vesicle(Mesh.icosphere(TABLE[n][0], RADIUS))
     if hasattr(integrator, "setRandomNumberSeed"):
@@ -147,7 +147,8 @@ def _sample(context, n):
     return 2 * kinetic / (3 * n * theory.BOLTZMANN)
 
 
-def _clock(seconds):
+def clock(seconds):
+    """Seconds as text, in minutes where they are many."""
     return f"{seconds:.1f} s" if seconds < 100 else f"{seconds / 60:.2f} min"
 
 

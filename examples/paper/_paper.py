@@ -84,6 +84,7 @@ class Figure:
         self._options = options
         self._rows: list[dict] = []
         self._notes: list[str] = []
+        self._tables: list[dict] = []
         self._reduced: list[str] = []
         self._parameters = ""
         self._pictures: list[dict] = []
@@ -118,6 +119,10 @@ class Figure:
         self._seconds += sum(result["seconds"] for result in results)
         return results
 
+    def spent(self, seconds):
+        """Count the time of what was computed without a sweep."""
+        self._seconds += seconds
+
     def parameters(self, text):
         """Say what was simulated."""
         self._parameters = text
@@ -129,6 +134,11 @@ class Figure:
     def note(self, text):
         """Say something about the result, with its numbers."""
         self._notes.append(text)
+
+    def table(self, caption, header, rows):
+        """Report numbers in a table; `rows` are sequences of texts as long as `header`."""
+        rows = [list(row) for row in rows]
+        self._tables.append({"caption": caption, "header": list(header), "rows": rows})
 
     def check(self, what, measured, expected, tolerance, error=None, unit=""):
         """Check |measured − expected| ≤ tolerance, and return whether it holds."""
@@ -172,6 +182,7 @@ class Figure:
             "reduced": self._reduced,
             "rows": self._rows,
             "notes": self._notes,
+            "tables": self._tables,
             "pictures": self._pictures,
             "seconds": round(self._seconds, 1),
         }
@@ -189,6 +200,10 @@ class Figure:
             )
         for note in self._notes:
             print(f"  {note}")
+        for table in self._tables:
+            print(f"  {table['caption']}")
+            for row in (table["header"], *table["rows"]):
+                print("    " + "; ".join(row))
         print(f"  processor time {self._seconds:.0f} s; wrote {os.path.relpath(path)}")
         sys.exit(0 if all(row["passed"] for row in self._rows) else OUTSIDE)
 

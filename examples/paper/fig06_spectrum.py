@@ -23,6 +23,7 @@ from spectra import (
     SCHEMES,
     Point,
     measure,
+    named,
     points_of,
     pooled,
     ratio_of,
@@ -52,7 +53,7 @@ def main():
     note_ten_frames(figure, base, runs[base])
     hardest = base._replace(softness=SOFTNESS[-1])
     note_mean_shape(figure, hardest, runs[hardest])
-    note(figure, runs, spectra)
+    tabulate(figure, runs, spectra)
     draw(figure, size, spectra)
     figure.finish()
 
@@ -83,14 +84,14 @@ def check(figure, size, spectra):
     if not figure.quick:
         for scheme in SCHEMES:
             note_common_fit(figure, spectra, scheme)
-    named = {
+    compared = {
         "Jülicher": base,
         "GK barycentric": base._replace(scheme="GompperKrollBarycentric"),
         **{f"r0 = {r:g} nm": base._replace(radius=r) for r in size["radii"] if r != base.radius},
     }
     # The largest l that a mesh resolves within a third or so: 10 for N = 1002.
     last = int(base.num_vertices**0.5 / 3)
-    means = {name: mean_ratio(spectra[point], point, 2, last) for name, point in named.items()}
+    means = {name: mean_ratio(spectra[point], point, 2, last) for name, point in compared.items()}
     if not figure.quick:
         for name, (mean, error) in means.items():
             figure.check(
@@ -177,21 +178,36 @@ def note_mean_shape(figure, point, runs):
     )
 
 
-def note(figure, runs, spectra):
-    """Every spectrum in figures."""
+def tabulate(figure, runs, spectra):
+    """Every spectrum in figures, up to l = 10, and the Y that its smallest l have."""
+    shown = range(2, 11)
+    rows, sums = [], []
     for point, found in spectra.items():
         _, ratio, error = ratio_of(found, point)
-        _, sums, _ = ratio_of(pooled(runs[point], "vertices"), point)
+        _, summed, _ = ratio_of(pooled(runs[point], "vertices"), point)
         young, young_error = young_of(found, point)
         temperature = np.mean([run["temperature"] for run in runs[point]])
-        values = ", ".join(f"{r:.3f} ± {e:.3f}" for r, e in zip(ratio, error, strict=True))
-        figure.note(
-            f"N = {point.num_vertices}, κ = {point.rigidity:g} kBT, r0 = {point.radius:g} nm, "
-            f"Ξ = {point.softness:g}, {SCHEMES[point.scheme]}, {len(runs[point])} samples, "
-            f"{temperature:.1f} K: over (A17), l = 2 …: {values}; "
-            f"by the paper's vertex sum {', '.join(f'{value:.2f}' for value in sums)}; "
-            f"Y r0² = ({young:.3f} ± {young_error:.3f}) N kBT"
+        count = min(len(shown), len(ratio))
+        gap = [""] * (len(shown) - count)
+        values = zip(ratio[:count], error[:count], strict=True)
+        rows.append(
+            [named(point), f"{len(runs[point])}", f"{temperature:.1f}"]
+            + [f"{value:.2f} ± {uncertain:.2f}" for value, uncertain in values]
+            + gap
+            + [f"{young:.2f} ± {young_error:.2f}"]
         )
+        sums.append([named(point)] + [f"{value:.2f}" for value in summed[:count]] + gap)
+    orders = [f"l = {l}" for l in shown]
+    figure.table(
+        "⟨|u_lm|²⟩ over (A17), by the least-squares fit of `mode_amplitudes`:",
+        ["vesicle", "runs", "T / K", *orders, "Y r0² / N kBT"],
+        rows,
+    )
+    figure.table(
+        "The same by the paper's sum over vertices, in which modes leak into those of larger l:",
+        ["vesicle", *orders],
+        sums,
+    )
 
 
 # --- the picture -----------------------------------------------------------------------------

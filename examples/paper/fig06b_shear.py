@@ -47,8 +47,7 @@ def main():
         figure.check(
             f"l = 2 over (A17), {named(point)}", ratio[0], predicted[0], 3 * both, error[0]
         )
-    for point in runs:
-        figure.note(f"{named(point)}: " + describe(elastic[point]))
+    tabulate(figure, elastic)
     draw(figure, elastic, spectra, soft)
     figure.finish()
 
@@ -92,15 +91,19 @@ def prediction(point, elastic):
     return ratio, error
 
 
-def describe(elastic):
-    parts = []
-    for index, l in enumerate(MODES):
-        shear, density, bending = (
-            "{:.3g} ± {:.2g}".format(*elastic[name][:, index])
-            for name in ("shear", "density", "bending")
+def tabulate(figure, elastic):
+    """All moduli in figures."""
+    kinds = {"shear": "μ r0² / N kBT", "density": "K r0² / N kBT", "bending": "κ / kBT"}
+    for kind, symbol in kinds.items():
+        figure.table(
+            f"{symbol}, from modes of one l each:",
+            ["vesicle", *(f"l = {l}" for l in MODES)],
+            [
+                [named(point)]
+                + ["{:.3g} ± {:.2g}".format(*values[kind][:, place]) for place in range(len(MODES))]
+                for point, values in elastic.items()
+            ],
         )
-        parts.append(f"l = {l}: μ r0²/N kBT {shear}, K r0²/N kBT {density}, κ/kBT {bending}")
-    return "; ".join(parts)
 
 
 def draw(figure, elastic, spectra, soft):

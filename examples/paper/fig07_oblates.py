@@ -127,14 +127,20 @@ def main():
         "a rise of more than 5 standard errors",
         flat_mean - round_mean > 5 * np.hypot(round_error, flat_error),
     )
-    for softness in softnesses:
-        bending = "; ".join(
-            f"ν = {volume:g}: {table[volume, softness]['energies'][SAMPLES // 2 :, 2].mean():.0f}"
-            if (volume, softness) in stable
-            else f"ν = {volume:g}: failed"
+    figure.table(
+        "⟨E_b⟩ over the second half, kJ/mol:",
+        ["ν", *(f"Ξ = {softness:g}" for softness in softnesses)],
+        [
+            [f"{volume:g}"]
+            + [
+                f"{table[volume, softness]['energies'][SAMPLES // 2 :, 2].mean():.0f}"
+                if (volume, softness) in stable
+                else "failed"
+                for softness in softnesses
+            ]
             for volume in volumes
-        )
-        figure.note(f"⟨E_b⟩ at Ξ = {softness:g}, kJ/mol: {bending}.")
+        ],
+    )
     figure.note(
         "Nothing keeps distant parts of a membrane apart, so that at small ν opposite sides touch "
         "and pass through each other."

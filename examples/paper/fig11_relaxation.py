@@ -8,6 +8,10 @@ import numpy as np
 from _paper import Figure, fastest_platform, mean_and_error
 from openmmhelfrich.sweep import grid
 
+# Energies have relaxed that differ from the plateau by less than this share of their largest
+# difference from it.
+BAND = 0.05
+
 
 def relaxation(shape, reduced_volume, softness, subdivision, duration, samples, time_step, seed):
     """Bending energy at `samples` equal intervals of a run of `duration` τ_2, kJ/mol."""
@@ -34,12 +38,11 @@ def relaxation(shape, reduced_volume, softness, subdivision, duration, samples, 
     }
 
 
-def settling_time(times, energies, error):
-    """When the energy, a mean over seeds, arrives at its plateau, and the plateau.
+def settling_time(times, energies):
+    """When the energy, a mean over seeds, comes to stay near its plateau.
 
-    The plateau is the mean of the last half. Windows of 0.1 τ_2 have arrived where their means are
-    within three of the standard deviations that such means have along the plateau, or within three
-    standard errors of it. The first of two in succession counts, with its end.
+    The plateau is the mean of the last half; near it are values that differ by less than BAND of
+    the largest difference in the run. Means over windows of 0.1 τ_2 are looked at.
 
     Parameters
     ----------
@@ -47,24 +50,22 @@ def settling_time(times, energies, error):
         In τ_2, at equal intervals.
     energies : array_like
         At these times, kJ/mol.
-    error : float
-        Standard error of the mean over the seeds, kJ/mol.
 
     Returns
     -------
-    float
-        In τ_2; infinite if it never arrives.
-    float
-        The plateau, kJ/mol.
+    settled : float
+        The end of the first window from which on all are near, in τ_2.
+    plateau, band : float
+        The plateau, and how far from it is near, kJ/mol.
     """
     width = max(1, round(0.1 / (times[1] - times[0])))
     count = len(energies) // width
     windows = energies[: count * width].reshape(count, width).mean(axis=1)
-    ends = times[width - 1 : count * width : width]
-    late = windows[ends > times[-1] / 2]
-    near = abs(windows - late.mean()) <= 3 * max(late.std(ddof=1), error)
-    arrived = np.flatnonzero(near[:-1] & near[1:])
-    return (ends[arrived[0]] if len(arrived) else np.inf), late.mean()
+    ends = np.append(times[width - 1 : count * width : width], np.inf)
+    plateau = energies[len(energies) // 2 :].mean()
+    band = BAND * abs(energies - plateau).max()
+    away = np.flatnonzero(abs(windows - plateau) > band)
+    return ends[away[-1] + 1 if len(away) else 0], plateau, band
 
 
 def drift(runs):
@@ -122,11 +123,11 @@ def main():
             mean, error = mean_and_error([run["energies"] for run in runs])
             late = np.mean([run["energies"][len(times) // 2 :].mean() for run in runs])
             spread = mean_and_error([r["energies"][len(times) // 2 :].mean() for r in runs])[1]
-            settled, plateau = settling_time(times, mean, spread)
+            settled, plateau, band = settling_time(times, mean)
             figure.claim(
                 f"{shape}, ν = {volume:g}: E_b settles",
                 f"{settled:.2f} τ_2, from {mean[0]:.0f} to {plateau:.0f} ± {spread:.0f} kJ/mol",
-                "within τ_2",
+                f"within {band:.0f} kJ/mol from τ_2 on",
                 settled < 1,
             )
             rise, uncertain = drift([run["energies"] for run in runs])
@@ -134,7 +135,7 @@ def main():
                 f"{shape}, ν = {volume:g}: last quarter less the one before",
                 rise,
                 0,
-                3 * uncertain,
+                band,
                 uncertain,
                 " kJ/mol",
             )

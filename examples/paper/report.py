@@ -94,11 +94,18 @@ def section(figure):
     lines += ["", "| quantity | measured | expected | verdict |", "| --- | --- | --- | --- |"]
     for row in figure["rows"]:
         verdict = "within" if row["passed"] else "**outside**"
-        cells = [row["what"], row["measured"], row["expected"], verdict]
-        lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
+        lines.append(_row([row["what"], row["measured"], row["expected"], verdict]))
     lines += ["", *(f"- {note}" for note in figure["notes"])]
+    for table in figure["tables"]:
+        lines += ["", table["caption"], "", _row(table["header"])]
+        lines += [_row("---" for _ in table["header"]), *map(_row, table["rows"])]
     lines += ["", f"Script: `examples/paper/{_script(figure)}`, {_time(figure['seconds'])}.", ""]
     return "\n".join(lines)
+
+
+def _row(cells):
+    """A line of a Markdown table."""
+    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
 
 
 def _script(figure):
@@ -117,8 +124,8 @@ def _time(seconds):
 
 
 def _order(name):
-    """Figures of the paper first, by number, then those of its supplement."""
-    return (not name.startswith("fig"), name)
+    """Figures of the paper first, by number, then its tables, then what is in its supplement."""
+    return (("fig", "tab", "sm0").index(name[:3]), name)
 
 
 if __name__ == "__main__":

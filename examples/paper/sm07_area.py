@@ -95,8 +95,14 @@ def check(figure, size, runs, areas):
             1e4 * max(3 * both, 0.03 * demanded),
             1e4 * both,
         )
-    for point, (area, spread) in areas.items():
-        figure.note(f"{named(point)}: ⟨A⟩/4πr0² = {area:.6f} ± {spread:.1g}")
+    figure.table(
+        "Mean areas:",
+        ["vesicle", "⟨A⟩ / 4π r0²", "A0 / 4π r0²"],
+        [
+            [named(point), f"{area:.6f} ± {spread:.1g}", f"{target(point):.6f}"]
+            for point, (area, spread) in areas.items()
+        ],
+    )
 
 
 def draw(figure, size, areas):

@@ -29,22 +29,27 @@ def test_energies_settle_a_few_relaxation_times_after_the_start():
     from fig11_relaxation import drift, settling_time
 
     times, runs = relaxations(0.1)
-    settled, plateau = settling_time(times, runs.mean(axis=0), 2.0)
-    assert 0.3 < settled < 0.8
+    settled, plateau, band = settling_time(times, runs.mean(axis=0))
+    # Down to a twentieth after ln 20 relaxation times.
+    assert settled == pytest.approx(0.1 * np.log(20), abs=0.11)
     assert plateau == pytest.approx(2000, abs=5)
+    assert band == pytest.approx(50, rel=0.05)
     rise, error = drift(runs)
     assert abs(rise) < 3 * error < 10
 
 
 @pytest.mark.parametrize("time", [1.5, 5.0])
 def test_energies_that_still_fall_at_the_end_are_seen_to_drift(time):
-    from fig11_relaxation import drift
+    from fig11_relaxation import drift, settling_time
 
     times, runs = relaxations(time)
+    settled, _, band = settling_time(times, runs.mean(axis=0))
+    assert settled > 1
     rise, error = drift(runs)
     exact = 1000 * np.exp(-times / time)
     assert rise == pytest.approx(exact[-75:].mean() - exact[-150:-75].mean(), abs=3 * error)
     assert rise < -5 * error
+    assert rise < -band
 
 
 def test_a_plaquette_has_its_inside():
