@@ -8,19 +8,42 @@ that grows with the number of vertices.
 
 import itertools
 
+import matplotlib.pyplot as plt
 import numpy as np
 from _paper import SCHEMES, Figure, mean_and_error
+from openmmhelfrich.analysis import theory
 
+BARYCENTRIC = {"Julicher": "JulicherVoronoi", "GompperKrollBarycentric": "GompperKroll"}
 KINDS = ("ordered", "random", "fluctuating ordered", "fluctuating random")
 AREA_MODULUS, VOLUME_MODULUS, RIGIDITY, RADIUS = 1.3, 0.04, 50.0, 1000.0
-# The bias depends on Ξ: at this one it is the paper's at both ends, see the note on others.
+# The bias depends on Ξ: at this one it is the paper's at both ends, see the table of others.
 SOFTNESS, DURATION = 0.22, 6.5
 OTHER_SOFTNESSES = (0.15, 0.33)
 AMPLITUDES = [0.0, 0.02, 0.05, *np.round(np.arange(0.1, 1.01, 0.1), 1).tolist()]
 
 
 def deformation(kind, subdivision, seed, softness, duration, amplitudes):
-    """Energies of area, volume and the four bending models at each amplitude, kJ/mol."""
+    """Energies of one mesh, deformed by u20.
+
+    Parameters
+    ----------
+    kind : str
+        One of KINDS.
+    subdivision : int
+        n of N = 10 n² + 2.
+    seed : int
+        Of random meshes and fluctuations.
+    softness, duration : float
+        Ξ, and length in τ_h, of the run that makes fluctuating meshes.
+    amplitudes : list of float
+        u20.
+
+    Returns
+    -------
+    dict
+        "energies" of area, volume and the four bending models at each amplitude, shape
+        (len(amplitudes), 6), kJ/mol.
+    """
     import openmm
     import openmmhelfrich as helfrich
     from openmm import unit
@@ -52,34 +75,18 @@ def deformation(kind, subdivision, seed, softness, duration, amplitudes):
         for group in range(len(forces)):
             state = context.getState(energy=True, groups={group})
             row[group] = state.getPotentialEnergy().value_in_unit(unit.kilojoule_per_mole)
-    lengths = np.linalg.norm(np.diff(mesh.vertices[mesh.edges], axis=1)[:, 0], axis=1)
-    return {"energies": energies, "edge_spread": lengths.std() / lengths.mean()}
-
-
-def _round_energies(points, results, size, softness):
-    """Bending energies without deformation, shape (samples, 4 models)."""
-    pairs = zip(points, results, strict=True)
-    rows = [
-        result["energies"][0, 2:]
-        for point, result in pairs
-        if point["kind"] == "fluctuating random"
-        and (point["subdivision"], point["softness"]) == (size, softness)
-    ]
-    return np.array(rows)
+    return {"energies": energies}
 
 
 def main():
-    import matplotlib.pyplot as plt
-
     figure = Figure(
         "fig04", "Fig. 4", "Energies of a deformation u20 on four types of mesh", __doc__
     )
     samples = figure.choose(50, 3)
-    subdivision = figure.choose(30, 10)
-    count = 10 * subdivision**2 + 2
+    largest = figure.choose(30, 10)
     common = {"softness": SOFTNESS, "duration": DURATION}
     points = [
-        {"kind": kind, "subdivision": subdivision, "seed": seed, "amplitudes": AMPLITUDES, **common}
+        {"kind": kind, "subdivision": largest, "seed": seed, "amplitudes": AMPLITUDES, **common}
         for kind in KINDS
         for seed in range(1 if kind == "ordered" else samples)
     ]
@@ -90,145 +97,168 @@ def main():
         )
         for kind in KINDS
     }
-    # Samples by subdivision; those of the largest mesh are among the points above.
-    sizes = dict.fromkeys(figure.choose([5, 7, 10, 14, 20, 30], [5, 10]), samples)
+    sizes = figure.choose([5, 7, 10, 14, 20, 30], [5, 10])
     ladder = [
         {"kind": "fluctuating random", "subdivision": size, "seed": seed, "amplitudes": [0.0]}
         | {"softness": softness, "duration": DURATION}
         for softness in (SOFTNESS, *OTHER_SOFTNESSES)
-        for size, count in sizes.items()
-        # At other softnesses a trend is enough, and the largest mesh takes long.
-        for seed in range(count if softness == SOFTNESS else 5)
-        if size != subdivision and (softness == SOFTNESS or size <= 10)
+        for size in sizes
+        # At other softnesses a trend is enough, and the largest mesh is among the points above.
+        for seed in range(samples if softness == SOFTNESS else 5)
+        if size != largest and (softness == SOFTNESS or size <= 10)
     ]
     rungs = figure.sweep(deformation, ladder, description="bias")
-    ladder += points
-    rungs += results
-
+    biases = biases_of(ladder + points, rungs + results)
     figure.parameters(
-        f"N = {count}, r0 = 1000 nm, {samples} samples of each type but the ordered one, κ = 50 "
-        f"kJ/mol, kA = {AREA_MODULUS:g} kJ/mol/nm², kV = {VOLUME_MODULUS:g} kJ/mol/nm³. "
-        f"Fluctuating meshes: runs of {DURATION:g} τ_h at Ξ = {SOFTNESS:g} with U_A, U_V and U_h, "
-        "then put back on the sphere."
+        f"N = {10 * largest**2 + 2}, r0 = 1000 nm, {samples} samples of each type but the ordered "
+        f"one, κ = {RIGIDITY:g} kJ/mol, kA = {AREA_MODULUS:g} kJ/mol/nm², kV = {VOLUME_MODULUS:g} "
+        f"kJ/mol/nm³. Fluctuating meshes: runs of {DURATION:g} τ_h at Ξ = {SOFTNESS:g} with U_A, "
+        "U_V and U_h, then put back on the sphere."
     )
-    u = np.array(AMPLITUDES)
-    # Meshes of 1002 vertices are a few per cent below the continuum.
-    few = figure.choose(0.05, 0.1)
-    theory = {
-        "E_A": 2 / np.pi * AREA_MODULUS * RADIUS**2 * u**4,
-        "E_V": 3 / (8 * np.pi) * VOLUME_MODULUS * RADIUS**3 * u**4,
+    check_area_and_volume(figure, energies)
+    check_bending(figure, energies)
+    check_bias(figure, biases[SOFTNESS])
+    note_bias(figure, biases)
+    draw(figure, energies, biases[SOFTNESS])
+    figure.finish()
+
+
+def biases_of(points, results):
+    """Bending energies of fluctuating random spheres over 8πκ less 1, in per cent.
+
+    Returns
+    -------
+    dict
+        {Ξ: {N: (means, errors)}}, both of shape (4,) for the four bending models.
+    """
+    samples = {}
+    for point, result in zip(points, results, strict=True):
+        if point["kind"] == "fluctuating random":
+            sizes = samples.setdefault(point["softness"], {})
+            excess = result["energies"][0, 2:] / theory.bending_energy(0, RIGIDITY) - 1
+            sizes.setdefault(10 * point["subdivision"] ** 2 + 2, []).append(100 * excess)
+    return {
+        softness: {n: mean_and_error(sizes[n]) for n in sorted(sizes)}
+        for softness, sizes in samples.items()
     }
-    bending_theory = RIGIDITY * (8 * np.pi + 12 * u**2)
+
+
+def global_theory(u):
+    """Energies of area and volume for each amplitude, (34) and (36), kJ/mol."""
+    return {
+        "E_A": theory.area_energy(u, AREA_MODULUS, RADIUS),
+        "E_V": theory.volume_energy(u, VOLUME_MODULUS, RADIUS),
+    }
+
+
+def tolerance(figure):
+    """Of ratios to a theory of continua: meshes of 1002 vertices are a few per cent below it."""
+    return figure.choose(0.05, 0.1)
+
+
+def check_area_and_volume(figure, energies):
+    u = np.array(AMPLITUDES)
+    at = AMPLITUDES.index(0.1)
     small = (u >= 0.05) & (u <= 0.2)
     for kind in KINDS:
-        mean = energies[kind].mean(axis=0)
-        for column, (name, expected) in enumerate(theory.items()):
-            at = AMPLITUDES.index(0.1)
-            each = energies[kind][:, at, column] / expected[at]
-            value, error = mean_and_error(each)
-            figure.check(f"{kind}: {name} / theory at u = 0.1", value, 1, few, error)
-            slope = np.polyfit(np.log(u[small]), np.log(mean[small, column]), 1)[0]
+        for column, (name, expected) in enumerate(global_theory(u).items()):
+            value, error = mean_and_error(energies[kind][:, at, column] / expected[at])
+            figure.check(f"{kind}: {name} / theory at u = 0.1", value, 1, tolerance(figure), error)
+            mean = energies[kind][:, small, column].mean(axis=0)
+            slope = np.polyfit(np.log(u[small]), np.log(mean), 1)[0]
             figure.check(f"{kind}: slope of {name}, u = 0.05 … 0.2", slope, 4, 0.1)
-    below = u < 0.5
-    for kind in KINDS:
-        for column, (scheme, label) in enumerate(SCHEMES.items(), start=2):
-            barycentric = scheme in ("Julicher", "GompperKrollBarycentric")
-            mean = energies[kind].mean(axis=0)[:, column]
-            ratio = mean / bending_theory
-            if not (barycentric and "fluctuating" in kind):
-                worst = ratio[below][np.argmax(abs(ratio[below] - 1))]
-                figure.check(
-                    f"{kind}, {label}: E_b / theory, u < 0.5, farthest from 1", worst, 1, 0.02
-                )
-            rise = energies[kind][:, :, column] - energies[kind][:, :1, column]
-            at = AMPLITUDES.index(0.1)
-            # The least deformation at which the rise stands out of the rounding of the mesh.
-            value, error = mean_and_error(rise[:, at] / (12 * RIGIDITY * u[at] ** 2))
-            if kind in ("ordered", "random"):
-                figure.check(
-                    f"{kind}, {label}: rise of E_b / 12κu² at u = 0.1",
-                    value,
-                    1,
-                    few,
-                    error,
-                )
-    bias = {}
-    for size in sizes:
-        each = _round_energies(ladder, rungs, size, SOFTNESS)
-        bias[10 * size**2 + 2] = mean_and_error(100 * (each / (8 * np.pi * RIGIDITY) - 1))
-    counts = list(bias)
-    for column, label in ((0, "Jülicher"), (2, "GK barycentric")):
+
+
+def check_bending(figure, energies):
+    u = np.array(AMPLITUDES)
+    # The least deformation at which the rise stands out of the rounding of the mesh.
+    at = AMPLITUDES.index(0.1)
+    expected = theory.bending_energy(u, RIGIDITY)
+    for kind, (column, (scheme, label)) in itertools.product(
+        KINDS, enumerate(SCHEMES.items(), start=2)
+    ):
+        fluctuating = "fluctuating" in kind
+        # Barycentric models have a bias there, which is checked by itself.
+        if not (fluctuating and scheme in BARYCENTRIC):
+            ratio = (energies[kind].mean(axis=0)[:, column] / expected)[u < 0.5]
+            worst = ratio[np.argmax(abs(ratio - 1))]
+            figure.check(f"{kind}, {label}: E_b / theory, u < 0.5, farthest from 1", worst, 1, 0.02)
+        if not fluctuating:
+            rise = energies[kind][:, at, column] - energies[kind][:, 0, column]
+            value, error = mean_and_error(rise / (expected[at] - expected[0]))
+            what = f"{kind}, {label}: rise of E_b / 12κu² at u = 0.1"
+            figure.check(what, value, 1, tolerance(figure), error)
+
+
+def check_bias(figure, bias):
+    """What barycentric areas add to the energy of the same curvatures over Voronoi areas."""
+    labels = list(SCHEMES)
+    for barycentric, voronoi in BARYCENTRIC.items():
+        column, other = labels.index(barycentric), labels.index(voronoi)
+        added = {n: means[column] - means[other] for n, (means, _) in bias.items()}
+        models = f"{SCHEMES[barycentric]} less {SCHEMES[voronoi]}"
         for n, expected in {252: 1.5, 9002: 4.0}.items():
-            if n not in bias:
-                continue
-            mean, error = (values[column] for values in bias[n])
-            figure.check(f"bias of {label}'s E_b at N = {n}", mean, expected, 0.5, error, " %")
-    rising = [bias[n][0][0] for n in counts]
-    figure.claim(
-        "Jülicher's bias rises with N",
-        ", ".join(f"{value:.2f} %" for value in rising),
-        "each more than the one before",
-        all(a < b for a, b in itertools.pairwise(rising)),
-    )
-    figure.note(
-        f"The softness of the fluctuating meshes is our choice: the bias depends on it, and Ξ = "
-        f"{SOFTNESS:g} is where Jülicher's at both ends is the paper's. Below are others."
-    )
-    for column, label in enumerate(SCHEMES.values()):
-        figure.note(
-            f"Bias of {label} on fluctuating random meshes: "
-            + ", ".join(
-                f"N = {n}: {m[column]:.2f} ± {e[column]:.2f} %" for n, (m, e) in bias.items()
-            )
-            + "."
+            if n in bias:
+                error = np.hypot(*bias[n][1][[column, other]])
+                what = f"bias of barycentric areas at N = {n}, {models}"
+                figure.check(what, added[n], expected, 0.5, error, " %")
+        figure.claim(
+            f"the bias rises with N, {models}",
+            ", ".join(f"{value:.2f} %" for value in added.values()),
+            "each more than the one before",
+            all(a < b for a, b in itertools.pairwise(added.values())),
         )
 
-    for softness in OTHER_SOFTNESSES:
-        shares = []
-        for size in (each for each in sizes if each <= 10 and each != subdivision):
-            each = _round_energies(ladder, rungs, size, softness)[:, 0] / (8 * np.pi * RIGIDITY)
-            shares.append(f"N = {10 * size**2 + 2}: {100 * (each.mean() - 1):.1f} %")
-        figure.note(f"Bias of Jülicher (J) at Ξ = {softness:g}: {', '.join(shares)}.")
 
+def note_bias(figure, biases):
+    figure.note(
+        f"The softness of the fluctuating meshes is our choice: the bias depends on it, and Ξ = "
+        f"{SOFTNESS:g} is where it is the paper's at both ends. The table has others, and what "
+        "comes with coarse meshes whatever the areas are."
+    )
+    figure.table(
+        "Bias of E_b on fluctuating random meshes, per cent:",
+        ["Ξ", "N", *SCHEMES.values()],
+        [
+            [f"{softness:g}", f"{n}", *(f"{m:.2f} ± {e:.2f}" for m, e in zip(*found, strict=True))]
+            for softness, sizes in sorted(biases.items())
+            for n, found in sizes.items()
+        ],
+    )
+
+
+def draw(figure, energies, bias):
+    u = np.array(AMPLITUDES)
     graph, axes = plt.subplots(1, 3, figsize=(11, 3.8), layout="constrained")
     markers = dict(zip(KINDS, "os^v", strict=True))
-    for column, (name, expected) in enumerate(theory.items()):
+    for column, (name, expected) in enumerate(global_theory(u).items()):
         axes[0].loglog(u[1:], expected[1:], color="black", lw=1, label="theory" if column else None)
         for kind in KINDS:
             label = f"{name}, {kind}" if column == 0 else None
             mean = energies[kind].mean(axis=0)
             axes[0].loglog(u[1:], mean[1:, column], markers[kind], ms=4, mfc="none", label=label)
     axes[0].set(xlabel="$u_{20}$", ylabel="$E_A$ (below), $E_V$ (kJ/mol)")
-    axes[0].legend(fontsize=6)
-    colours = plt.rcParams["axes.prop_cycle"].by_key()["color"]
-    for column, label in enumerate(SCHEMES.values(), start=2):
+    sphere = theory.bending_energy(0, RIGIDITY)
+    for place, label in enumerate(SCHEMES.values()):
+        color = f"C{place}"
         for kind in KINDS:
+            mean = energies[kind].mean(axis=0)[:, 2 + place] / sphere
+            style = {"color": color, "ms": 4, "mfc": "none"}
             axes[1].plot(
-                u,
-                energies[kind].mean(axis=0)[:, column] / (8 * np.pi * RIGIDITY),
-                markers[kind],
-                color=colours[column],
-                ms=4,
-                mfc="none",
-                label=label if kind == "ordered" else None,
+                u, mean, markers[kind], label=label if kind == "ordered" else None, **style
             )
-    axes[1].plot(u, bending_theory / (8 * np.pi * RIGIDITY), color="black", lw=1, label="theory")
+        means, errors = np.array([(mean[place], error[place]) for mean, error in bias.values()]).T
+        axes[2].errorbar(list(bias), means, errors, fmt="o-", ms=4, color=color, label=label)
+    bending = theory.bending_energy(u, RIGIDITY) / sphere
+    axes[1].plot(u, bending, color="black", lw=1, label="theory")
     axes[1].set(xlabel="$u_{20}$", ylabel="$E_b / 8πκ$")
-    axes[1].legend(fontsize=6)
-    for column, label in enumerate(SCHEMES.values()):
-        means = [bias[n][0][column] for n in counts]
-        errors = [bias[n][1][column] for n in counts]
-        axes[2].errorbar(
-            counts, means, errors, fmt="o-", ms=4, color=colours[column + 2], label=label
-        )
     axes[2].set(xscale="log", xlabel="N", ylabel="$E_b / 8πκ − 1$ (%), fluctuating random")
-    axes[2].legend(fontsize=6)
-    figure.save(
-        graph,
-        "",
-        "Left and middle: circles ordered, squares random, triangles fluctuating (up: ordered).",
+    for axis in axes:
+        axis.legend(fontsize=6)
+    caption = (
+        "Left and middle: circles ordered, squares random, triangles fluctuating (up: ordered)."
     )
-    figure.finish()
+    figure.save(graph, "", caption)
 
 
 if __name__ == "__main__":

@@ -6,7 +6,9 @@ half gives the averages. Harder triangles cannot take the shapes of small reduce
 energy of the heights ⟨U_h⟩ rises.
 """
 
+import matplotlib.pyplot as plt
 import numpy as np
+import openmmhelfrich as helfrich
 from _paper import Figure, fastest_platform, mean_and_error
 from _snapshots import along_axes, draw_meshes
 from openmmhelfrich.sweep import grid
@@ -16,9 +18,28 @@ SAMPLES = 200
 
 
 def oblate_run(reduced_volume, softness, duration, time_step, subdivision, seed):
-    """Run one vesicle; the last shape, and energies per term at SAMPLES times after the ramp."""
+    """Run one vesicle from an oblate, with a ramp of the heights and some time after it.
+
+    Parameters
+    ----------
+    reduced_volume : float
+        ν of the oblate.
+    softness : float
+        Ξ at the end of the ramp, which starts at SOFTEST.
+    duration, time_step : float
+        ps; a fifth of the duration is the ramp.
+    subdivision : int
+        n of N = 10 n² + 2.
+    seed : int
+        Of velocities and noise.
+
+    Returns
+    -------
+    dict
+        "energies" per term at SAMPLES times after the ramp, shape (SAMPLES, 4), kJ/mol; the last
+        "shape", shape (N, 3), nm, and its "triangles"; "failed", why the run ended early, or "".
+    """
     import openmm
-    import openmmhelfrich as helfrich
     from openmm import unit
 
     mesh = helfrich.Mesh.icosphere(subdivision, 1000.0)
@@ -71,55 +92,72 @@ def dimple(mesh):
 
 
 def main():
-    import matplotlib.pyplot as plt
-    import openmmhelfrich as helfrich
-
     figure = Figure("fig07", "Fig. 7, SM 8", "Vesicles of reduced volume 1 to 0.1", __doc__)
     volumes = figure.choose(np.arange(10, 0, -1) / 10, [1.0, 0.6, 0.3])
     softnesses = figure.choose([0.037, 0.15, 0.33, 0.59], [0.037, 0.59])
-    duration = figure.choose(50_000.0, 10_000.0)
-    common = {
-        "duration": [duration],
-        "time_step": [figure.choose(0.2, 1.0)],
-        "subdivision": [figure.choose(10, 5)],
-        "seed": [1],
-    }
-    points = grid(reduced_volume=volumes, softness=softnesses, **common)
+    duration, time_step = figure.choose((50_000.0, 0.2), (10_000.0, 1.0))
+    subdivision = figure.choose(10, 5)
+    points = grid(
+        reduced_volume=volumes,
+        softness=softnesses,
+        duration=[duration],
+        time_step=[time_step],
+        subdivision=[subdivision],
+        seed=[1],
+    )
     results = figure.sweep(oblate_run, points, description="oblates")
-    table = {
+    vesicles = {
         (point["reduced_volume"], point["softness"]): result
         for point, result in zip(points, results, strict=True)
     }
-    count = 10 * common["subdivision"][0] ** 2 + 2
+    count = 10 * subdivision**2 + 2
     figure.parameters(
         f"N = {count}, κ = 50 kJ/mol, GKB, kA and kV of the paper, LangevinMiddle, γ = 0.01/ps, "
-        f"300 K, {duration / 1000:g} ns, of which a fifth is the ramp of d, "
-        f"Δt = {common['time_step'][0]:g} ps."
+        f"300 K, {duration / 1000:g} ns, of which a fifth is the ramp of d, Δt = {time_step:g} ps."
     )
-    stable = [key for key, result in table.items() if not result["failed"]]
-    soft = [key for key in table if key[1] <= 0.15]
+    check(figure, vesicles, count)
+    note(figure, vesicles, volumes, softnesses)
+    draw_energies(figure, vesicles, volumes, softnesses)
+    draw_shapes(figure, vesicles, volumes, (min(softnesses), max(softnesses)), subdivision)
+    figure.finish()
+
+
+def second_half(vesicle, column):
+    """Energies of one term in the second half of the samples, kJ/mol."""
+    return vesicle["energies"][SAMPLES // 2 :, column]
+
+
+def check(figure, vesicles, count):
+    stable = [key for key, vesicle in vesicles.items() if not vesicle["failed"]]
+    soft = [key for key in vesicles if key[1] <= 0.15]
     figure.claim(
         "soft meshes (Ξ ≤ 0.15) run to the end",
         f"{sum(key in stable for key in soft)} of {len(soft)}",
         "all",
         all(key in stable for key in soft),
     )
-    disc = along_axes(helfrich.Mesh(table[0.6, SOFTEST]["shape"], table[0.6, SOFTEST]["triangles"]))
+    disc = vesicles[0.6, SOFTEST]
+    thickness = dimple(along_axes(helfrich.Mesh(disc["shape"], disc["triangles"])))
+    # A coarse mesh that has run for a short time is a shallow one.
+    limit = figure.choose(0.75, 0.95)
     figure.claim(
         "ν = 0.6, Ξ = 0.037 is a discocyte",
-        f"thickness in the middle / at the rim = {dimple(disc):.2f}",
-        "< 0.75",
-        dimple(disc) < figure.choose(0.75, 0.95),
+        f"thickness in the middle / at the rim = {thickness:.2f}",
+        f"< {limit:g}",
+        thickness < limit,
     )
-    hard, softest = max(softnesses), min(softnesses)
-
-    def heights(volume, softness):
-        """⟨U_h⟩ per vertex and its standard error, from five blocks of the second half."""
-        energies = table[volume, softness]["energies"][SAMPLES // 2 :, 3] / count
-        return mean_and_error([block.mean() for block in np.array_split(energies, 5)])
-
-    lowest = min(volume for volume in volumes if (volume, hard) in stable)
-    (round_mean, round_error), (flat_mean, flat_error) = heights(1.0, hard), heights(lowest, hard)
+    hard = max(softness for _, softness in vesicles)
+    lowest = min(volume for volume, softness in stable if softness == hard)
+    # Five blocks are longer than the energy of the heights remembers.
+    (round_mean, round_error), (flat_mean, flat_error) = (
+        mean_and_error(
+            [
+                block.mean()
+                for block in np.array_split(second_half(vesicles[volume, hard], 3) / count, 5)
+            ]
+        )
+        for volume in (1.0, lowest)
+    )
     figure.claim(
         f"⟨U_h⟩ of Ξ = {hard:g} rises from ν = 1 to {lowest:g}",
         f"{round_mean:.3f} ± {round_error:.3f} to {flat_mean:.3f} ± {flat_error:.3f} kJ/mol per "
@@ -127,63 +165,67 @@ def main():
         "a rise of more than 5 standard errors",
         flat_mean - round_mean > 5 * np.hypot(round_error, flat_error),
     )
-    figure.table(
-        "⟨E_b⟩ over the second half, kJ/mol:",
-        ["ν", *(f"Ξ = {softness:g}" for softness in softnesses)],
-        [
-            [f"{volume:g}"]
-            + [
-                f"{table[volume, softness]['energies'][SAMPLES // 2 :, 2].mean():.0f}"
-                if (volume, softness) in stable
-                else "failed"
-                for softness in softnesses
-            ]
-            for volume in volumes
-        ],
-    )
+
+
+def note(figure, vesicles, volumes, softnesses):
+    for column, symbol, digits in ((2, "⟨E_b⟩", 0), (3, "⟨U_h⟩", 1)):
+        figure.table(
+            f"{symbol} over the second half, kJ/mol:",
+            ["ν", *(f"Ξ = {softness:g}" for softness in softnesses)],
+            [
+                [f"{volume:g}"]
+                + [
+                    "failed"
+                    if vesicles[volume, softness]["failed"]
+                    else f"{second_half(vesicles[volume, softness], column).mean():.{digits}f}"
+                    for softness in softnesses
+                ]
+                for volume in volumes
+            ],
+        )
     figure.note(
         "Nothing keeps distant parts of a membrane apart, so that at small ν opposite sides touch "
         "and pass through each other."
     )
-    for key, result in table.items():
-        if result["failed"]:
-            figure.note(f"ν = {key[0]:g}, Ξ = {key[1]:g} failed: {result['failed'][:120]}")
+    for (volume, softness), vesicle in vesicles.items():
+        if vesicle["failed"]:
+            figure.note(f"ν = {volume:g}, Ξ = {softness:g} failed: {vesicle['failed'][:120]}")
 
+
+def draw_energies(figure, vesicles, volumes, softnesses):
     graph, axes = plt.subplots(1, 2, figsize=(9, 3.6), layout="constrained")
     for softness in softnesses:
-        found = [volume for volume in volumes if (volume, softness) in stable]
-        energies = [table[volume, softness]["energies"][SAMPLES // 2 :] for volume in found]
+        found = [volume for volume in volumes if not vesicles[volume, softness]["failed"]]
         for axis, column in zip(axes, (2, 3), strict=True):
-            axis.plot(
-                found,
-                [each[:, column].mean() for each in energies],
-                "o-",
-                label=f"Ξ = {softness:g}",
-            )
+            means = [second_half(vesicles[volume, softness], column).mean() for volume in found]
+            axis.plot(found, means, "o-", label=f"Ξ = {softness:g}")
     axes[0].set(xlabel="reduced volume ν", ylabel="⟨E_b⟩ (kJ/mol)")
     axes[1].set(xlabel="reduced volume ν", ylabel="⟨U_h⟩ (kJ/mol)", yscale="log")
     axes[0].legend()
     figure.save(graph, "_energies", "Bending and height energies against reduced volume.")
+
+
+def draw_shapes(figure, vesicles, volumes, softnesses, subdivision):
     panels, views = [], []
-    for softness in (softest, hard):
+    for softness in softnesses:
         for view in ("tilted", "cut"):
             for volume in volumes:
-                result = table[volume, softness]
+                vesicle = vesicles[volume, softness]
                 title = f"ν = {volume:g}, Ξ = {softness:g}"
                 try:
-                    mesh = helfrich.Mesh(result["shape"], result["triangles"])
+                    mesh = helfrich.Mesh(vesicle["shape"], vesicle["triangles"])
                 except helfrich.MeshError:
                     # It blew up; its start stands in for it.
-                    mesh = helfrich.Mesh.icosphere(common["subdivision"][0], 1000.0)
+                    mesh = helfrich.Mesh.icosphere(subdivision, 1000.0)
                     mesh = mesh.oblate(min(volume, mesh.reduced_volume))
-                title += " (failed)" if result["failed"] else ""
+                title += " (failed)" if vesicle["failed"] else ""
                 panels.append((title, along_axes(mesh), None))
                 views.append(view)
+    soft, hard = softnesses
     path = figure.picture(
-        "", f"Last shapes at Ξ = {softest:g} (above) and {hard:g} (below), whole and cut in halves."
+        "", f"Last shapes at Ξ = {soft:g} (above) and {hard:g} (below), whole and cut in halves."
     )
     draw_meshes(path, panels, len(volumes), views=views, edges=False, size=figure.choose(150, 250))
-    figure.finish()
 
 
 if __name__ == "__main__":

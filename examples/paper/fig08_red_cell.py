@@ -13,7 +13,9 @@ import os
 import sys
 from pathlib import Path
 
+import matplotlib.pyplot as plt
 import numpy as np
+import openmmhelfrich as helfrich
 from _paper import MISSING, Figure, fastest_platform
 from _snapshots import along_axes, draw_meshes
 
@@ -33,7 +35,6 @@ def red_cell(file, duration, seed, compatible=False):
     A run that fails ends before its time, with "failed" saying why.
     """
     import openmm
-    import openmmhelfrich as helfrich
     from openmm import unit
 
     config = helfrich.vcm.read(file, compatible, seed=seed)
@@ -97,9 +98,6 @@ def files_folder():
 
 
 def main():
-    import matplotlib.pyplot as plt
-    import openmmhelfrich as helfrich
-
     folder, rest = files_folder()
     figure = Figure("fig08", "Fig. 8", "A red cell, fluid and elastic membrane", __doc__, rest)
     duration = figure.choose(300_000, 200)
@@ -115,70 +113,79 @@ def main():
         {"file": str(folder / file), "duration": duration, "seed": 1, "compatible": compatible}
         for file, compatible, _ in CASES.values()
     ]
-    results = figure.sweep(red_cell, points, description="red cells")
-
+    cells = dict(zip(CASES, figure.sweep(red_cell, points, description="red cells"), strict=True))
     figure.parameters(
         "VCM's files SM_RBC_C0 and SM_RBC_C0.006: κ = 120 kJ/mol, GKB, ν = 0.60, Ξ of d = 20 nm, "
         f"LangevinMiddle, γ = 0.01/ps, Δt = 0.2 ps, 300 K, {duration / 1000:g} ns."
     )
+    for case, cell in cells.items():
+        check(figure, case, cell, duration)
+        if len(cell["energies"]) > 1:
+            note(figure, case, cell)
+    draw(figure, cells)
+    figure.finish()
+
+
+def check(figure, case, cell, duration):
+    start, energies, failed = cell["start"], cell["energies"], cell["failed"]
+    published = CASES[case][2]
+    figure.claim(
+        f"{case}: E_b at the start",
+        f"{start:.2f} kJ/mol",
+        f"{published:.2f} kJ/mol, relative ± 2e-6",
+        abs(start / published - 1) < 2e-6,
+    )
+    lived = len(energies) / SAMPLES * duration / 1000
+    figure.claim(
+        f"{case}: runs stably",
+        f"{lived:.4g} ns" + (f"; {failed}" if failed else ""),
+        f"{duration / 1000:.4g} ns, all finite",
+        np.isfinite(energies).all() and len(energies) == SAMPLES,
+    )
+    temperature = cell["temperatures"][len(energies) // 2 :]
+    if len(temperature) < 2:
+        return
+    error = temperature.std() / np.sqrt(len(temperature))
+    if figure.quick or failed:
+        # A short run does not lose the heat of the relaxing membrane, which goes in 100 ps.
+        figure.note(f"{case}: temperature {temperature.mean():.1f} ± {error:.1f} K.")
+    else:
+        figure.check(f"{case}: temperature", temperature.mean(), 300, 3, error, " K")
+
+
+def note(figure, case, cell):
+    half = cell["energies"][len(cell["energies"]) // 2 :]
+    means = ", ".join(
+        f"{term.split()[0]} {mean:.0f} ± {error:.0f}"
+        for term, mean, error in zip(
+            cell["terms"], half.mean(axis=0), _blocked_error(half), strict=True
+        )
+    )
+    last = along_axes(helfrich.Mesh(cell["shapes"][-1], cell["triangles"]))
+    diameter, middle, rim = thickness(last)
+    figure.note(
+        f"{case}: ⟨E⟩ over the second half, kJ/mol: {means}. At the end ν = "
+        f"{last.reduced_volume:.3f}, diameter {diameter:.0f} nm, thickness {middle:.0f} nm in "
+        f"the middle and {rim:.0f} nm at the rim."
+    )
+
+
+def draw(figure, cells):
+    graph, axes = plt.subplots(1, len(cells), figsize=(11, 3.6), layout="constrained")
     panels, views = [], []
-    graph, axes = plt.subplots(1, len(CASES), figsize=(11, 3.6), layout="constrained")
-    for axis, (case, (_, _, published)), result in zip(axes, CASES.items(), results, strict=True):
-        start, energies = result["start"], result["energies"]
-        figure.claim(
-            f"{case}: E_b at the start",
-            f"{start:.2f} kJ/mol",
-            f"{published:.2f} kJ/mol, relative ± 2e-6",
-            abs(start / published - 1) < 2e-6,
-        )
-        heights = energies[:, result["terms"].index("heights 0")]
-        figure.claim(
-            f"{case}: runs stably",
-            f"{len(energies)} of {SAMPLES} samples finite"
-            + (f", height energy at most {heights.max():.0f} kJ/mol" if len(heights) else "")
-            + (f"; {result['failed']}" if result["failed"] else ""),
-            "all finite",
-            np.isfinite(energies).all() and len(energies) == SAMPLES,
-        )
-        if result["failed"]:
-            figure.note(f"{case}: failed after {len(energies) / SAMPLES * duration / 1000:.1f} ns.")
-        if len(energies) < 2:
-            continue
-        half = energies[len(energies) // 2 :]
-        temperature = result["temperatures"][len(energies) // 2 :]
-        error = temperature.std() / np.sqrt(len(temperature))
-        if figure.quick or result["failed"]:
-            # A short run does not lose the heat of the relaxing membrane, which goes in 100 ps.
-            figure.note(f"{case}: temperature {temperature.mean():.1f} ± {error:.1f} K.")
-        else:
-            figure.check(f"{case}: temperature", temperature.mean(), 300, 3, error, " K")
-        meshes = [helfrich.Mesh(shape, result["triangles"]) for shape in result["shapes"]]
-        means = ", ".join(
-            f"{term.split()[0]} {mean:.0f} ± {error:.0f}"
-            for term, mean, error in zip(
-                result["terms"], half.mean(axis=0), _blocked_error(half), strict=True
-            )
-        )
-        last = along_axes(meshes[-1])
-        diameter, middle, rim = thickness(last)
-        figure.note(
-            f"{case}: ⟨E⟩ over the second half, kJ/mol: {means}. At the end ν = "
-            f"{last.reduced_volume:.3f}, diameter {diameter:.0f} nm, thickness {middle:.0f} nm in "
-            f"the middle and {rim:.0f} nm at the rim."
-        )
-        for index, term in enumerate(result["terms"]):
-            if energies[:, index].max() > 0:
-                axis.plot(result["times"] / 1000, energies[:, index], label=term.split()[0], lw=1)
+    for axis, (case, cell) in zip(axes, cells.items(), strict=True):
+        for term, energies in zip(cell["terms"], cell["energies"].T, strict=True):
+            if energies.max(initial=0) > 0:
+                axis.plot(cell["times"] / 1000, energies, label=term.split()[0], lw=1)
         axis.set(xlabel="t (ns)", ylabel="E (kJ/mol)", title=case, yscale="log")
         axis.legend(fontsize=7)
-        for mesh, when in ((meshes[0], "start"), (meshes[-1], "end")):
-            turned = along_axes(mesh)
-            panels += [(f"{case}, {when}", turned, None), ("cut", turned, None)]
+        for shape, when in zip(cell["shapes"], ("start", "end"), strict=True):
+            mesh = along_axes(helfrich.Mesh(shape, cell["triangles"]))
+            panels += [(f"{case}, {when}", mesh, None), ("cut", mesh, None)]
             views += ["tilted", "cut"]
     figure.save(graph, "_energies", "Energies per term over time.")
     path = figure.picture("", "The fluid membrane at the start and at the end, and cut in halves.")
     draw_meshes(path, panels, 4, views=views, edges=False)
-    figure.finish()
 
 
 def _blocked_error(samples, blocks=5):
