@@ -29,13 +29,29 @@ SAMPLES = 200
 
 
 def red_cell(file, duration, seed, compatible=False):
-    """Run one configuration; energies per term over time, and shapes at the start and at the end.
+    """Run one configuration.
 
-    With `compatible` it follows VCM, whose C0 goes with |S|; without C0 that makes no difference.
-    A run that fails ends before its time, with "failed" saying why.
+    Parameters
+    ----------
+    file : str
+        VCM's.
+    duration : float
+        ps.
+    seed : int
+        Of velocities and noise.
+    compatible : bool
+        Whether to follow VCM, whose C0 goes with |S|; without C0 that makes no difference.
+
+    Returns
+    -------
+    dict
+        "start", bending energy, kJ/mol; "terms", their names; "times", ps, "energies", shape
+        (num_samples, num_terms), kJ/mol, and "temperatures", K; "shapes" of the fluid membrane at
+        the start and at the end, nm, and its "triangles"; "failed", why the run ended early, or "".
     """
     import openmm
     from openmm import unit
+    from openmmhelfrich.analysis.theory import BOLTZMANN
 
     config = helfrich.vcm.read(file, compatible, seed=seed)
     simulation = config.simulation(fastest_platform())
@@ -57,7 +73,7 @@ def red_cell(file, duration, seed, compatible=False):
         positions = state.getPositions(asNumpy=True).value_in_unit(unit.nanometer)
         times.append((sample + 1) * steps * config.step_size)
         energies.append(list(config.energies(context).values()))
-        temperatures.append(2 * kinetic / (3 * config.num_particles * 0.00831446261815324))
+        temperatures.append(2 * kinetic / (3 * config.num_particles * BOLTZMANN))
         shape = positions[fluid.particles.start : fluid.particles.stop]
     return {
         "start": start["bending 0"],

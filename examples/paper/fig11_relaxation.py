@@ -14,7 +14,30 @@ BAND = 0.05
 
 
 def relaxation(shape, reduced_volume, softness, subdivision, duration, samples, time_step, seed):
-    """Bending energy at `samples` equal intervals of a run of `duration` τ_2, kJ/mol."""
+    """Bending energy of one run from an oblate or a prolate.
+
+    Parameters
+    ----------
+    shape : str
+        "oblate" or "prolate".
+    reduced_volume, softness : float
+        ν of the start, and Ξ.
+    subdivision : int
+        n of N = 10 n² + 2.
+    duration : float
+        τ_2.
+    samples : int
+        Number of equal intervals after each of which the energy is read.
+    time_step : float
+        ps.
+    seed : int
+        Of velocities and noise.
+
+    Returns
+    -------
+    dict
+        "energies", shape (samples + 1,), kJ/mol, at "times", τ_2; "tau_2", ps.
+    """
     import openmm
     import openmmhelfrich as helfrich
 

@@ -17,7 +17,28 @@ VERTEX = 500
 
 
 def landscape_of(surface, row, rows, size, subdivision, half_width):
-    """Some rows of the landscapes of all potentials, as differences from the mesh itself."""
+    """Some rows of the landscapes of all potentials.
+
+    Parameters
+    ----------
+    surface : str
+        "sphere" or "plane".
+    row, rows : int
+        The first row of the grid, and how many.
+    size : int
+        Rows and columns of the grid.
+    subdivision : int
+        n of N = 10 n² + 2.
+    half_width : float
+        Of the grid, nm.
+
+    Returns
+    -------
+    dict
+        Energies of each potential less those of the mesh itself, shape (rows, size), kJ/mol;
+        "bending_of_mesh", shape (4,), kJ/mol; "axis", shape (size,), "points", shape (rows, size,
+        3), the neighbours "ring", shape (degree, 3), and the "vertex", shape (3,), all in nm.
+    """
     import openmmhelfrich as helfrich
     from openmmhelfrich.analysis import landscape, plane_grid, sphere_grid
 

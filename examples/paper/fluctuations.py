@@ -10,7 +10,7 @@ import openmm
 from _paper import fastest_platform
 from displacements import Displacements
 from openmm import unit
-from openmmhelfrich.analysis import mode_amplitudes
+from openmmhelfrich.analysis import mode_amplitudes, triangle_areas
 from openmmhelfrich.forces import BendingForce
 from openmmhelfrich.mesh import Mesh
 from openmmhelfrich.vesicle import KBT, Vesicle
@@ -144,7 +144,7 @@ def fluctuate(
         "vertices": mode_amplitudes(positions, triangles, lmax, "vertices").astype(np.float32),
         "compression": compression.astype(np.float32),
         "rotation": rotation.astype(np.float32),
-        "area": areas_of(positions, triangles) / (4 * np.pi * radius**2),
+        "area": triangle_areas(positions, triangles).sum(axis=1) / (4 * np.pi * radius**2),
         "snapshots": positions[kept].astype(np.float32),
         "temperature": temperature,
         "interval": stride * time_step,
@@ -181,7 +181,7 @@ def relax(num_vertices, integrator, friction, lmax, periods, interval, time_step
     -------
     dict
         "fit", amplitudes of shape (num_frames, (lmax+1)²); "interval", ps between frames;
-        "temperature", K.
+        "temperature", K, which means nothing without inertia.
     """
     vesicle = vesicle_of(num_vertices, RIGIDITY, RADIUS, SOFTNESS[0], "Julicher")
     settling_step = TIME_STEP * vesicle.max_time_step
@@ -216,12 +216,6 @@ def frames_of(context, integrator, num_frames, stride):
         kinetic += state.getKineticEnergy().value_in_unit(unit.kilojoule_per_mole)
     per_kelvin = 1.5 * num_vertices * KBT / TEMPERATURE
     return positions, kinetic / num_frames / per_kelvin
-
-
-def areas_of(positions, triangles):
-    """Area of the triangles in each frame, shape (num_frames,), nm²."""
-    a, b, c = (positions[:, triangles[:, corner]].astype(float) for corner in range(3))
-    return np.linalg.norm(np.cross(b - a, c - a), axis=2).sum(axis=1) / 2
 
 
 def heights_virial(vesicle, positions):

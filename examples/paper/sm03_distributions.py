@@ -13,11 +13,32 @@ STATIONARY = 6.5
 
 
 def distributions(softness, subdivision, time_step, times, seed):
-    """Areas of triangles and lengths of bonds, in units of their means, at the times in τ_h."""
+    """Areas of triangles and lengths of bonds in one run.
+
+    Parameters
+    ----------
+    softness : float
+        Ξ.
+    subdivision : int
+        n of N = 10 n² + 2.
+    time_step : float
+        ps.
+    times : list of float
+        When to look, τ_h.
+    seed : int
+        Of the velocities.
+
+    Returns
+    -------
+    dict
+        "areas" and "lengths" over their means, shapes (len(times), num_triangles) and (len(times),
+        num_edges); "temperatures", K; "tau_heights", τ_h, ps; "min_height", d, nm.
+    """
     import openmm
     import openmmhelfrich as helfrich
     from openmm import unit
     from openmmhelfrich.analysis import edge_lengths, triangle_areas
+    from openmmhelfrich.analysis.theory import BOLTZMANN
 
     mesh = helfrich.Mesh.icosphere(subdivision, 1000.0)
     vesicle = helfrich.Vesicle(mesh, rigidity=0, softness=softness)
@@ -29,7 +50,7 @@ def distributions(softness, subdivision, time_step, times, seed):
         state = simulation.context.getState(positions=True, energy=True)
         vertices = state.getPositions(asNumpy=True).value_in_unit(unit.nanometer)
         kinetic = state.getKineticEnergy().value_in_unit(unit.kilojoule_per_mole)
-        temperatures.append(2 * kinetic / (3 * mesh.num_vertices * 0.00831446261815324))
+        temperatures.append(2 * kinetic / (3 * mesh.num_vertices * BOLTZMANN))
         area = triangle_areas(vertices, mesh.triangles)
         length = edge_lengths(vertices, mesh.triangles)
         areas.append(area / area.mean())
