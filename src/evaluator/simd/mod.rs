@@ -14,13 +14,18 @@ mod arrays;
 mod backward;
 mod choice;
 mod forward;
+mod instructions;
 mod lanes;
 mod layout;
+mod records;
 mod tiles;
 mod triangles;
+#[cfg(target_arch = "x86_64")]
+mod x86;
 
-pub use lanes::{BLOCK, Level};
+pub use instructions::Level;
 pub use layout::Layout;
+pub use records::BLOCK;
 pub use tiles::{EdgeBlock, TriangleTile, VertexTile};
 
 use super::checks::{check_energies, culprit};
@@ -33,7 +38,7 @@ use arrays::Arrays;
 use backward::{Backward, Forces};
 use choice::Choice;
 use forward::{NORMALS, VECTORS, VORONOI};
-use lanes::dispatch;
+use instructions::dispatch;
 use layout::TILE;
 use std::sync::Arc;
 use triangles::TriangleSums;
