@@ -27,25 +27,22 @@
 //! # Ok::<(), std::io::Error>(())
 //! ```
 
+mod parts;
+#[cfg(test)]
+mod tests;
+mod waiting;
+
+pub use parts::Parts;
+
 use std::any::Any;
 use std::cell::UnsafeCell;
-use std::hint::spin_loop;
 use std::io;
-use std::marker::PhantomData;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
-use std::slice;
-use std::sync::atomic::Ordering::{AcqRel, Acquire, Relaxed, SeqCst};
+use std::sync::atomic::Ordering::{AcqRel, Relaxed, SeqCst};
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
-use std::time::{Duration, Instant};
-
-/// How long members look out for the next run before they sleep.
-const IDLE_SPIN: Duration = Duration::from_micros(50);
-
-/// How often a waiting member looks before it sleeps: some 40 µs.
-const PATIENCE: u32 = 2000;
 
 /// As many threads as the environment variable OPENMM_CPU_THREADS says, which OpenMM's CPU platform follows too,
 /// or else as there are processors for this process.
@@ -222,32 +219,6 @@ impl Shared {
         }
     }
 
-    /// Wait for a run other than the last one.
-    fn next_run(&self, index: usize, last: u64) -> u64 {
-        if self.spins {
-            let start = Instant::now();
-            while start.elapsed() < IDLE_SPIN {
-                for _ in 0..16 {
-                    let run = self.run.0.load(Acquire);
-                    if run != last {
-                        return run;
-                    }
-                    spin_loop();
-                }
-            }
-        }
-        let sleeping = &self.sleeping[index].0;
-        sleeping.store(true, SeqCst);
-        loop {
-            let run = self.run.0.load(SeqCst);
-            if run != last {
-                sleeping.store(false, Relaxed);
-                return run;
-            }
-            thread::park();
-        }
-    }
-
     /// Execute the job of the present run.
     fn take_part(&self, index: usize) {
         // SAFETY: the job was stored before the number of the run, which this thread has seen.
@@ -264,32 +235,6 @@ impl Shared {
             }
             self.gate.0.broken.store(true, SeqCst);
             self.ring();
-        }
-    }
-
-    /// Wait for what another member does before it calls [`Self::ring`]; both use SeqCst.
-    fn wait(&self, is_over: impl Fn() -> bool) {
-        let patience = if self.spins { PATIENCE } else { 0 };
-        for _ in 0..patience {
-            if is_over() {
-                return;
-            }
-            spin_loop();
-        }
-        let mut bed = self.bed.lock().unwrap_or_else(PoisonError::into_inner);
-        self.blocked.0.fetch_add(1, SeqCst);
-        while !is_over() {
-            bed = self.bell.wait(bed).unwrap_or_else(PoisonError::into_inner);
-        }
-        self.blocked.0.fetch_sub(1, SeqCst);
-    }
-
-    /// Wake those who wait. In the one order of SeqCst, either this sees that somebody is blocked, or he looks
-    /// after the change that he waits for; and he holds the lock from before he looks until he sleeps.
-    fn ring(&self) {
-        if self.blocked.0.load(SeqCst) > 0 {
-            drop(self.bed.lock().unwrap_or_else(PoisonError::into_inner));
-            self.bell.notify_all();
         }
     }
 }
@@ -331,190 +276,5 @@ impl Member<'_> {
     pub fn share(&self, count: usize) -> Range<usize> {
         let bound = |k: usize| count * k / self.shared.size;
         bound(self.index)..bound(self.index + 1)
-    }
-}
-
-/// A slice that the members of a team divide among themselves.
-pub struct Parts<'slice, T> {
-    start: *mut T,
-    length: usize,
-    borrow: PhantomData<&'slice mut [T]>,
-}
-
-// SAFETY: a shared `Parts` hands out exclusive parts of its slice only, as `part` demands of its callers; so it is
-// like sending these parts to other threads.
-unsafe impl<T: Send> Sync for Parts<'_, T> {}
-
-impl<'slice, T> Parts<'slice, T> {
-    /// Divide a slice, which nobody else can use meanwhile.
-    pub fn new(slice: &'slice mut [T]) -> Self {
-        Self { start: slice.as_mut_ptr(), length: slice.len(), borrow: PhantomData }
-    }
-
-    /// A part of the slice; panics if there is no such part.
-    ///
-    /// # Safety
-    /// Parts that are in use at the same time must not overlap.
-    #[allow(clippy::mut_from_ref, reason = "the caller promises that parts are apart")]
-    pub unsafe fn part(&self, range: Range<usize>) -> &mut [T] {
-        assert!(range.start <= range.end && range.end <= self.length, "no part {range:?}");
-        // SAFETY: the range lies in the slice, and the caller promises that nobody else uses it.
-        unsafe { slice::from_raw_parts_mut(self.start.add(range.start), range.len()) }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const SIZES: [usize; 4] = [1, 2, 3, 8];
-
-    #[test]
-    fn every_member_runs_once_a_run() {
-        for size in SIZES {
-            let mut team = Team::new(size).unwrap();
-            let counts: Vec<_> = (0..size).map(|_| AtomicU64::new(0)).collect();
-            for round in 1..=500 {
-                team.run(|member| {
-                    assert_eq!(member.size(), size);
-                    counts[member.index()].fetch_add(1, Relaxed);
-                });
-                assert!(counts.iter().all(|count| count.load(Relaxed) == round));
-            }
-        }
-    }
-
-    /// A running sum over the shares of all members, which is wrong if any of them is early or late once.
-    #[test]
-    fn members_see_what_others_wrote_before_a_barrier() {
-        for size in SIZES {
-            let mut team = Team::new(size).unwrap();
-            // Plain writes through pointers, so that a missing order shows in the numbers.
-            let slots: Vec<_> = (0..size).map(|_| Apart(AtomicU64::new(1))).collect();
-            let mut expected = vec![1u64; size];
-            for _ in 0..50 {
-                team.run(|member| {
-                    for _ in 0..10 {
-                        let me = member.index();
-                        let left = slots[(me + size - 1) % size].0.load(Relaxed);
-                        member.barrier();
-                        let mine = slots[me].0.load(Relaxed);
-                        slots[me].0.store(mine.wrapping_mul(3).wrapping_add(left), Relaxed);
-                        member.barrier();
-                    }
-                });
-                for _ in 0..10 {
-                    let before = expected.clone();
-                    for me in 0..size {
-                        let left = before[(me + size - 1) % size];
-                        expected[me] = before[me].wrapping_mul(3).wrapping_add(left);
-                    }
-                }
-                let found: Vec<_> = slots.iter().map(|slot| slot.0.load(Relaxed)).collect();
-                assert_eq!(found, expected);
-            }
-        }
-    }
-
-    #[test]
-    fn shares_cover_everything_once() {
-        for size in SIZES {
-            let mut team = Team::new(size).unwrap();
-            for count in [0, 1, 7, 1000] {
-                let hits: Vec<_> = (0..count).map(|_| AtomicU32::new(0)).collect();
-                team.run(|member| {
-                    for i in member.share(count) {
-                        hits[i].fetch_add(1, Relaxed);
-                    }
-                });
-                assert!(hits.iter().all(|hit| hit.load(Relaxed) == 1));
-            }
-        }
-    }
-
-    #[test]
-    fn members_fill_their_parts_of_a_slice() {
-        for size in SIZES {
-            let mut team = Team::new(size).unwrap();
-            let mut numbers = vec![0; 1001];
-            let parts = Parts::new(&mut numbers);
-            team.run(|member| {
-                let share = member.share(1001);
-                // SAFETY: the shares of members do not overlap.
-                let part = unsafe { parts.part(share.clone()) };
-                for (number, i) in part.iter_mut().zip(share) {
-                    *number = i;
-                }
-            });
-            assert!(numbers.iter().enumerate().all(|(i, &number)| number == i));
-        }
-    }
-
-    #[test]
-    #[should_panic(expected = "no part 2..4")]
-    fn there_is_no_part_beyond_the_end() {
-        let mut numbers = [1, 2, 3];
-        // SAFETY: there is no other part.
-        unsafe { Parts::new(&mut numbers).part(2..4) };
-    }
-
-    #[test]
-    fn sleepers_wake_up() {
-        let mut team = Team::new(3).unwrap();
-        let count = AtomicU32::new(0);
-        for round in 1..=20 {
-            thread::sleep(4 * IDLE_SPIN);
-            team.run(|_| {
-                count.fetch_add(1, Relaxed);
-            });
-            assert_eq!(count.load(Relaxed), 3 * round);
-        }
-        thread::sleep(4 * IDLE_SPIN);
-        drop(team);
-    }
-
-    #[test]
-    fn a_panic_reaches_the_caller_and_leaves_the_team_usable() {
-        for size in SIZES {
-            let mut team = Team::new(size).unwrap();
-            for culprit in 0..size {
-                let result = catch_unwind(AssertUnwindSafe(|| {
-                    team.run(|member| {
-                        if member.index() == culprit {
-                            // Not `panic!`, which would write a report to the test's output.
-                            resume_unwind(Box::new(format!("member {culprit}")));
-                        }
-                        member.barrier();
-                    });
-                }));
-                let panic = result.unwrap_err();
-                assert_eq!(*panic.downcast::<String>().unwrap(), format!("member {culprit}"));
-                let sum = AtomicU32::new(0);
-                team.run(|member| {
-                    sum.fetch_add(member.index() as u32, Relaxed);
-                    member.barrier();
-                    assert_eq!(sum.load(Relaxed) as usize, size * (size - 1) / 2);
-                });
-            }
-        }
-    }
-
-    #[test]
-    fn several_teams_live_side_by_side() {
-        let total = AtomicU64::new(0);
-        thread::scope(|scope| {
-            for _ in 0..3 {
-                scope.spawn(|| {
-                    let mut team = Team::new(2).unwrap();
-                    for _ in 0..500 {
-                        team.run(|member| {
-                            member.barrier();
-                            total.fetch_add(1, Relaxed);
-                        });
-                    }
-                });
-            }
-        });
-        assert_eq!(total.into_inner(), 3000);
     }
 }

@@ -1,7 +1,7 @@
 """The Rust core, called through ctypes: what Python needs of it besides the forces.
 
 The forces reach the core through OpenMM. The validation and orientation of a mesh are plain
-functions of the same library (``src/ffi.rs``), so that there is one set of rules and one set of
+functions of the same library (``src/ffi/``), so that there is one set of rules and one set of
 messages for meshes and forces alike.
 """
 

@@ -2,8 +2,10 @@
 //! potentials of vertices make of them.
 
 use super::arrays::Arrays;
-use super::lanes::{BLOCK, Lane, Records, WithLanes};
+use super::instructions::WithLanes;
+use super::lanes::Lane;
 use super::layout::{Layout, TILE};
+use super::records::{BLOCK, Records};
 use super::tiles::{VertexTile, load3};
 use crate::mesh::geometry::{Vec3, arctan_over_argument};
 use crate::mesh::vertex_vectors::COT_60;

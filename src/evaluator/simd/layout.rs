@@ -5,7 +5,7 @@
 //! sorted by degree, so that the lanes of a block go round rings of the same length. Triangles follow
 //! the vertices. The user's order is kept outside: `particles`, `vertex_ids` and `triangle_ids` translate.
 
-use super::lanes::BLOCK;
+use super::records::BLOCK;
 use crate::mesh::Topology;
 use std::ops::Range;
 use std::sync::OnceLock;

@@ -1,7 +1,9 @@
 //! What passes hand to potentials: the quantities of some elements, column by column.
 
-use super::lanes::{BLOCK, Lane, Level, Records, WithLanes, dispatch};
+use super::instructions::{Level, WithLanes, dispatch};
+use super::lanes::Lane;
 use super::layout::TILE;
+use super::records::{BLOCK, Records};
 use crate::potentials::{
     Contribution, Needs, Place, Sums, Term, Triangle, TriangleFormula, TriangleSlopes, Vertex,
     VertexFormula,

@@ -1,8 +1,10 @@
 //! The first pass: the geometry of triangles, and what their potentials make of it.
 
 use super::arrays::Arrays;
-use super::lanes::{BLOCK, Lane, Records, WithLanes};
+use super::instructions::WithLanes;
+use super::lanes::Lane;
 use super::layout::{Layout, TILE};
+use super::records::{BLOCK, Records};
 use super::tiles::{TriangleTile, load3};
 use crate::mesh::geometry::arctan_over_argument;
 use crate::real::{Real, cross, dot, minus, plus, plus_scaled, scaled};

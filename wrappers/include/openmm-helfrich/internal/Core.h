@@ -2,7 +2,7 @@
 #define HELFRICH_CORE_H_
 
 /**
- * The C functions of the Rust core (src/ffi.rs; the two change together). A function that returns int
+ * The C functions of the Rust core (src/ffi.rs and src/ffi/; the two change together). A function that returns int
  * returns 0 for success; otherwise check() turns the core's message into an OpenMMException.
  */
 

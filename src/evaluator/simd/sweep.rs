@@ -1,0 +1,289 @@
+//! An evaluation as its threads go through it: which passes a tile needs, and the potentials between them.
+//!
+//! The passes are compiled for each set of quantities that terms can ask for; here one of them is chosen.
+
+use super::arrays::{self, Arrays};
+use super::backward::{Backward, Forces};
+use super::forward::{self, NORMALS, VECTORS, VORONOI};
+use super::instructions::{Level, dispatch};
+use super::layout::{Layout, TILE};
+use super::records::BLOCK;
+use super::tiles::{EdgeBlock, TriangleTile, VertexTile};
+use super::triangles::{self, TriangleSums};
+use crate::mesh::geometry::TotalPartials;
+use crate::potentials::{Contribution, Edges, Needs, Term, Triangles, Vertices};
+use crate::team::{Member, Parts};
+
+/// What a thread needs for the tile that it is at.
+pub struct Scratch {
+    pub triangles: TriangleTile,
+    pub vertices: VertexTile,
+}
+
+/// An evaluation as all its threads see it.
+pub struct Sweep<'a, 't> {
+    pub level: Level,
+    pub layout: &'a Layout,
+    pub arrays: &'a Arrays,
+    pub terms: &'a [&'t Term<'t>],
+    pub needs: Needs,
+    pub positions: &'a [f64],
+}
+
+impl Sweep<'_, '_> {
+    /// The first two passes, as one of the threads.
+    pub fn forward(
+        &self,
+        member: &Member,
+        scratch: &mut Scratch,
+        sums: &Parts<TriangleSums>,
+        contributions: &Parts<Contribution>,
+    ) {
+        let layout = self.layout;
+        self.gather_positions(member);
+        let (of_triangles, of_vertices) =
+            (layout.triangle_tiles(), layout.triangle_tiles() + layout.vertex_tiles());
+        let count = self.terms.len();
+        let parts = |tiles: std::ops::Range<usize>| {
+            // SAFETY: each member asks for the tiles that it has a share in.
+            unsafe { contributions.part(tiles.start * count..tiles.end * count) }
+        };
+        let triangles = |tile: usize, scratch: &mut Scratch| {
+            // SAFETY: as above.
+            let sum = unsafe { sums.part(tile..tile + 1) };
+            let silent = sum[0].silent;
+            let parts = parts(tile..tile + 1);
+            sum[0] = self.triangle_tile(tile, &mut scratch.triangles, silent, parts);
+        };
+        let vertices = |tile: usize, scratch: &mut Scratch| {
+            let here = of_triangles + tile;
+            debug_assert!(here < of_vertices);
+            self.vertex_tile(tile, &mut scratch.vertices, parts(here..here + 1));
+        };
+        if member.size() > 1 {
+            member.barrier();
+            member.share(of_triangles).for_each(|tile| triangles(tile, scratch));
+            member.barrier();
+            member.share(layout.vertex_tiles()).for_each(|tile| vertices(tile, scratch));
+            return;
+        }
+        // One thread follows each tile of triangles with the vertices that it completes, while the normals are
+        // still in the cache.
+        let mut done = 0;
+        for (tile, &frontier) in layout.frontier.iter().enumerate() {
+            while done * TILE < frontier as usize {
+                triangles(done, scratch);
+                done += 1;
+            }
+            vertices(tile, scratch);
+        }
+    }
+
+    /// Positions relative to the first vertex, so that a mesh far from the origin loses no digits.
+    fn gather_positions(&self, member: &Member) {
+        let particles = &self.layout.particles;
+        let (all, _) = self.positions.as_chunks::<3>();
+        let [x, y, z] = all[particles[0] as usize];
+        let share = member.share(particles.len());
+        let records = self.arrays.positions.at(4 * share.start).cast::<[f64; 4]>();
+        for (index, &particle) in particles[share].iter().enumerate() {
+            let position = all[particle as usize];
+            // SAFETY: each member writes the vertices of its share.
+            unsafe {
+                *records.add(index) = [position[0] - x, position[1] - y, position[2] - z, 0.0]
+            };
+        }
+    }
+
+    /// Geometry and potentials of a tile of triangles; `silent` says whether its tensions are zero.
+    fn triangle_tile(
+        &self,
+        index: usize,
+        tile: &mut TriangleTile,
+        silent: bool,
+        contributions: &mut [Contribution],
+    ) -> TriangleSums {
+        let (layout, arrays, level) = (self.layout, self.arrays, self.level);
+        contributions.fill(Contribution::default());
+        let potentials = self.needs.contains(Needs::TRIANGLES);
+        macro_rules! forward {
+            ($potentials:literal $angles:literal) => {{
+                type Pass<'a> = triangles::Forward<'a, $potentials, $angles>;
+                dispatch(level, Pass { layout, arrays, index, tile })
+            }};
+        }
+        let sums = match (potentials, self.needs.contains(Needs::NORMALS)) {
+            (false, false) => forward!(false false),
+            (false, true) => forward!(false true),
+            (true, false) => forward!(true false),
+            (true, true) => forward!(true true),
+        };
+        if !potentials {
+            return TriangleSums { silent, ..sums };
+        }
+        tile.silent = true;
+        let ids = &layout.triangle_ids[layout.triangle_tile(index)];
+        for (term, contribution) in self.terms.iter().zip(contributions) {
+            if term.potential.needs(term).contains(Needs::TRIANGLES) {
+                let run = Triangles::Lanes { level, ids, tile };
+                *contribution = term.potential.triangles(term, run);
+            }
+        }
+        // Zeros that follow zeros need not be written.
+        if !(silent && tile.silent) {
+            dispatch(level, triangles::Tensions { layout, arrays, index, tile });
+        }
+        TriangleSums { silent: tile.silent, ..sums }
+    }
+
+    /// Geometry and potentials of a tile of vertices and of the edges at them.
+    fn vertex_tile(&self, index: usize, tile: &mut VertexTile, contributions: &mut [Contribution]) {
+        let (layout, arrays, level, needs) = (self.layout, self.arrays, self.level, self.needs);
+        contributions.fill(Contribution::default());
+        let bends = needs.intersects(Needs::EDGES | Needs::CURVATURES);
+        let lengths = needs.contains(Needs::EDGES);
+        macro_rules! forward {
+            ($bends:literal $vectors:expr) => {{
+                type Pass<'a> = forward::Forward<'a, $bends, { $vectors }>;
+                dispatch(level, Pass { layout, arrays, index, lengths, tile })
+            }};
+        }
+        match (bends, vector_level(needs)) {
+            (false, 0) if !needs.contains(Needs::VERTICES) => return,
+            (false, 0) => forward!(false 0),
+            (false, VORONOI) => forward!(false VORONOI),
+            (false, VECTORS) => forward!(false VECTORS),
+            (false, _) => forward!(false NORMALS),
+            (true, 0) => forward!(true 0),
+            (true, VORONOI) => forward!(true VORONOI),
+            (true, VECTORS) => forward!(true VECTORS),
+            (true, _) => forward!(true NORMALS),
+        }
+        if lengths {
+            self.edges(index, contributions);
+        }
+        if !needs.contains(Needs::VERTICES) {
+            return;
+        }
+        let range = layout.vertex_tile(index);
+        tile.slopes.clear(needs, range.len());
+        let ids = &layout.vertex_ids[range];
+        for (term, contribution) in self.terms.iter().zip(contributions) {
+            if term.potential.needs(term).contains(Needs::VERTICES) {
+                let run = Vertices::Lanes { level, total: layout.num_vertices, ids, tile };
+                *contribution += term.potential.vertices(term, run);
+            }
+        }
+        macro_rules! slopes {
+            ($vectors:expr) => {{
+                type Pass<'a> = forward::Slopes<'a, { $vectors }>;
+                dispatch(level, Pass { layout, arrays, index, tile })
+            }};
+        }
+        match vector_level(needs) {
+            0 => slopes!(0),
+            VORONOI => slopes!(VORONOI),
+            VECTORS => slopes!(VECTORS),
+            _ => slopes!(NORMALS),
+        }
+    }
+
+    /// Potentials of the edges at a tile of vertices.
+    fn edges(&self, index: usize, contributions: &mut [Contribution]) {
+        let (layout, arrays) = (self.layout, self.arrays);
+        let vertices = layout.vertex_tile(index);
+        for first in vertices.clone().step_by(BLOCK) {
+            let block = first / BLOCK;
+            let steps = layout.steps[block] as usize..layout.steps[block + 1] as usize;
+            let rows = |numbers: &arrays::Numbers| -> *mut [f64; BLOCK] {
+                numbers.at(steps.start * BLOCK).cast()
+            };
+            // SAFETY: bends, lengths and moments have a row for each step, and the steps of a tile are its own.
+            let (bends, lengths_squared, moments) = unsafe {
+                use std::slice::{from_raw_parts, from_raw_parts_mut};
+                (
+                    from_raw_parts(rows(&arrays.bends), steps.len()),
+                    from_raw_parts(rows(&arrays.lengths_squared), steps.len()),
+                    from_raw_parts_mut(rows(&arrays.moments), steps.len()),
+                )
+            };
+            moments.fill([0.0; BLOCK]);
+            for (term, contribution) in self.terms.iter().zip(&mut *contributions) {
+                if term.potential.needs(term).contains(Needs::EDGES) {
+                    let lanes = BLOCK.min(vertices.end - first);
+                    let moments = &mut *moments;
+                    let block = EdgeBlock { bends, lengths_squared, moments, lanes };
+                    *contribution += term.potential.edges(term, Edges::Lanes(block));
+                }
+            }
+            // Past the end of a ring comes its first edge again.
+            let nothing = 4 * layout.triangle_ids.len() as u32;
+            let places = &layout.places[steps];
+            for lane in 0..BLOCK {
+                let ends = places.iter().position(|lanes| lanes[lane] == nothing);
+                if let Some(end) = ends {
+                    moments[end][lane] = moments[0][lane];
+                }
+            }
+        }
+    }
+}
+
+/// The third pass over a tile.
+pub fn backward(
+    level: Level,
+    needs: Needs,
+    layout: &Layout,
+    arrays: &Arrays,
+    totals: &TotalPartials,
+    index: usize,
+    forces: Forces,
+) {
+    macro_rules! backward {
+        ($bends:literal $moments:literal $tensions:literal $vectors:expr) => {{
+            type Pass<'a> = Backward<'a, $bends, $moments, $tensions, { $vectors }>;
+            dispatch(level, Pass { layout, arrays, totals, index, forces })
+        }};
+    }
+    let (bends, moments) = (needs.contains(Needs::CURVATURES), needs.contains(Needs::EDGES));
+    match (bends, moments, needs.contains(Needs::TRIANGLES), vector_level(needs)) {
+        (false, false, false, 0) => backward!(false false false 0),
+        (false, false, false, VORONOI) => backward!(false false false VORONOI),
+        (false, false, false, VECTORS) => backward!(false false false VECTORS),
+        (false, false, false, _) => backward!(false false false NORMALS),
+        (false, false, true, 0) => backward!(false false true 0),
+        (false, false, true, VORONOI) => backward!(false false true VORONOI),
+        (false, false, true, VECTORS) => backward!(false false true VECTORS),
+        (false, false, true, _) => backward!(false false true NORMALS),
+        (true, false, false, 0) => backward!(true false false 0),
+        (true, false, false, VORONOI) => backward!(true false false VORONOI),
+        (true, false, false, VECTORS) => backward!(true false false VECTORS),
+        (true, false, false, _) => backward!(true false false NORMALS),
+        (true, false, true, 0) => backward!(true false true 0),
+        (true, false, true, VORONOI) => backward!(true false true VORONOI),
+        (true, false, true, VECTORS) => backward!(true false true VECTORS),
+        (true, false, true, _) => backward!(true false true NORMALS),
+        (_, true, false, 0) => backward!(true true false 0),
+        (_, true, false, VORONOI) => backward!(true true false VORONOI),
+        (_, true, false, VECTORS) => backward!(true true false VECTORS),
+        (_, true, false, _) => backward!(true true false NORMALS),
+        (_, true, true, 0) => backward!(true true true 0),
+        (_, true, true, VORONOI) => backward!(true true true VORONOI),
+        (_, true, true, VECTORS) => backward!(true true true VECTORS),
+        (_, true, true, _) => backward!(true true true NORMALS),
+    }
+}
+
+/// How much of the vertices' vectors is needed.
+fn vector_level(needs: Needs) -> u8 {
+    debug_assert!(
+        !needs.contains(Needs::NORMALS) || needs.contains(Needs::CURVATURE_VECTORS),
+        "who wants normals wants vectors, for which there is room then"
+    );
+    match needs {
+        needs if needs.contains(Needs::NORMALS) => NORMALS,
+        needs if needs.contains(Needs::CURVATURE_VECTORS) => VECTORS,
+        needs if needs.contains(Needs::VECTORS) => VORONOI,
+        _ => 0,
+    }
+}

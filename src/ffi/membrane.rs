@@ -1,0 +1,156 @@
+//! The C interface to [`crate::membrane`]: meshes of particles, and evaluations of terms on them.
+
+use super::{guarded, slice, text};
+use crate::membrane::{self, Membrane};
+use crate::potentials::{Contribution, MAX_PARAMETERS, REGISTRY, Term};
+use std::ffi::{c_char, c_int};
+use std::slice as slices;
+
+/// Make a membrane of triangles of particles. `subject` is the class that messages shall name.
+///
+/// # Safety
+/// `subject` must end with a NUL; `triangles` must hold 3 `num_triangles` values; `membrane` must be
+/// writable.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Membrane_create(
+    subject: *const c_char,
+    triangles: *const c_int,
+    num_triangles: i64,
+    num_particles: i64,
+    membrane: *mut *mut Membrane,
+) -> c_int {
+    guarded(unsafe { text(subject) }, || {
+        let triangles = unsafe { slice(triangles.cast::<[c_int; 3]>(), num_triangles as usize) };
+        let triangles: Vec<_> = triangles.iter().map(|corners| corners.map(i64::from)).collect();
+        let made = Membrane::new(&triangles, num_particles as usize)?;
+        unsafe { membrane.write(Box::into_raw(Box::new(made))) };
+        Ok(())
+    })
+}
+
+/// End a membrane's life; null is allowed.
+///
+/// # Safety
+/// `membrane` must come from [`Helfrich_Membrane_create`] and not be used again.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Membrane_destroy(membrane: *mut Membrane) {
+    if !membrane.is_null() {
+        drop(unsafe { Box::from_raw(membrane) });
+    }
+}
+
+/// The number of membranes that exist in this process.
+#[unsafe(no_mangle)]
+pub extern "C" fn Helfrich_Membrane_count() -> i64 {
+    membrane::count()
+}
+
+/// Number of edges of a membrane.
+///
+/// # Safety
+/// `membrane` must be alive.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Membrane_numEdges(membrane: *const Membrane) -> i64 {
+    unsafe { &*membrane }.topology().edges.len() as i64
+}
+
+/// Write the two particles of each edge.
+///
+/// # Safety
+/// `membrane` must be alive; `particles` must have room for two values an edge.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Membrane_edges(membrane: *const Membrane, particles: *mut c_int) {
+    let topology = unsafe { &*membrane }.topology();
+    let out = unsafe { slices::from_raw_parts_mut(particles, 2 * topology.edges.len()) };
+    let ends = topology.edges.iter().flat_map(|edge| edge.vertices);
+    for (slot, vertex) in out.iter_mut().zip(ends) {
+        *slot = topology.particles[vertex as usize] as c_int;
+    }
+}
+
+/// One term of an evaluation, as C++ hands it over.
+#[repr(C)]
+pub struct TermInput {
+    pub(super) potential: c_int,
+    pub(super) form: c_int,
+    pub(super) switches: u32,
+    pub(super) wants_derivatives: c_int,
+    pub(super) values: [f64; MAX_PARAMETERS],
+    /// Values of single elements, null where there are none.
+    pub(super) fields: [*const f64; MAX_PARAMETERS],
+    pub(super) field_lengths: [i64; MAX_PARAMETERS],
+}
+
+impl TermInput {
+    /// # Safety
+    /// The fields must hold as many values as they say.
+    unsafe fn term(&self) -> Term<'_> {
+        let field = |k: usize| unsafe { slice(self.fields[k], self.field_lengths[k] as usize) };
+        Term {
+            potential: REGISTRY[self.potential as usize],
+            form: self.form as usize,
+            switches: self.switches,
+            values: self.values,
+            fields: std::array::from_fn(field),
+            wants_derivatives: self.wants_derivatives != 0,
+        }
+    }
+}
+
+/// Refuse a term that cannot be evaluated on a membrane.
+///
+/// # Safety
+/// `subject` must end with a NUL; `membrane` must be alive; `term` must be readable with its fields.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Membrane_checkTerm(
+    subject: *const c_char,
+    membrane: *const Membrane,
+    term: *const TermInput,
+) -> c_int {
+    let subject = unsafe { text(subject) };
+    guarded(subject, || unsafe { &*membrane }.check(&unsafe { (*term).term() }))
+}
+
+/// Let so many threads share evaluations, where that turns out faster; 0 for as many as there are.
+///
+/// # Safety
+/// `membrane` must be alive and used by no other thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Membrane_setThreads(membrane: *mut Membrane, threads: c_int) {
+    unsafe { &mut *membrane }.set_threads(usize::try_from(threads).unwrap_or(0));
+}
+
+/// Evaluate terms together. `contributions` may be null; then no energies are computed. `forces` may be null;
+/// otherwise forces are added to it.
+///
+/// # Safety
+/// `subject` must end with a NUL; `membrane` must be alive and used by no other thread; `terms` and
+/// `contributions` must hold `num_terms` values, `positions` and `forces` three values for each particle.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Membrane_evaluate(
+    subject: *const c_char,
+    membrane: *mut Membrane,
+    terms: *const TermInput,
+    num_terms: i64,
+    num_particles: i64,
+    positions: *const f64,
+    contributions: *mut Contribution,
+    forces: *mut f64,
+) -> c_int {
+    guarded(unsafe { text(subject) }, || {
+        let (count, length) = (num_terms as usize, 3 * num_particles as usize);
+        let inputs = unsafe { slice(terms, count) };
+        let contributions = if contributions.is_null() {
+            &mut []
+        } else {
+            unsafe { slices::from_raw_parts_mut(contributions, count) }
+        };
+        let positions = unsafe { slice(positions, length) };
+        let forces =
+            (!forces.is_null()).then(|| unsafe { slices::from_raw_parts_mut(forces, length) });
+        // The usual handful of terms costs no allocation.
+        let terms: smallvec::SmallVec<[Term; 8]> =
+            inputs.iter().map(|input| unsafe { input.term() }).collect();
+        unsafe { &mut *membrane }.evaluate(&terms, positions, contributions, forces)
+    })
+}

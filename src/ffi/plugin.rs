@@ -1,0 +1,52 @@
+//! The C interface of the plugin: what OpenMM calls when it loads the library, and what the force classes need.
+
+use std::ffi::{CStr, c_char, c_int, c_void};
+
+/// The version of OpenMM that this library was built against.
+#[unsafe(no_mangle)]
+pub extern "C" fn Helfrich_openmmVersion() -> *const c_char {
+    const VERSION: &CStr = match CStr::from_bytes_with_nul(
+        concat!(env!("HELFRICH_OPENMM_VERSION"), "\0").as_bytes(),
+    ) {
+        Ok(version) => version,
+        Err(_) => panic!("a version has no NUL inside"),
+    };
+    VERSION.as_ptr()
+}
+
+unsafe extern "C" {
+    fn helfrich_shim_registerSerialization() -> c_int;
+    fn helfrich_shim_registerPlatform();
+    fn helfrich_shim_adoptKernels();
+    fn helfrich_shim_createImpl(force: *const c_void) -> *mut c_void;
+}
+
+/// OpenMM's plugin entry point for platforms: registers the platform `Helfrich`.
+#[unsafe(no_mangle)]
+pub extern "C" fn registerPlatforms() {
+    // SAFETY: the shim's function takes nothing and throws nothing.
+    unsafe { helfrich_shim_registerPlatform() };
+}
+
+/// OpenMM's plugin entry point for kernels. The forces need none; their XML readers are registered here.
+#[unsafe(no_mangle)]
+pub extern "C" fn registerKernelFactories() {
+    // SAFETY: the shim's functions take nothing and throw nothing. If OpenMM is of another version the first says
+    // so on the standard error and registers nothing: a plugin in a folder must not stop the others.
+    unsafe {
+        if helfrich_shim_registerSerialization() == 0 {
+            helfrich_shim_adoptKernels();
+        }
+    }
+}
+
+/// Make the implementation of a force. The force classes are compiled into several libraries (this one,
+/// the Python extension), their implementation into this one only, so that all forces of a Context meet
+/// in one registry.
+///
+/// # Safety
+/// `force` must be a `MembraneForce` that is alive.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_createImpl(force: *const c_void) -> *mut c_void {
+    unsafe { helfrich_shim_createImpl(force) }
+}

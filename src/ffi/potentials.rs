@@ -1,0 +1,133 @@
+//! The C interface to [`crate::potentials`]: names, units, defaults and domains, which C++ and Python ask for.
+
+use super::{guarded, text};
+use crate::error::Error;
+use crate::potentials::{self, Element, REGISTRY};
+use std::ffi::{c_char, c_int};
+
+/// A scalar of a potential, for C++ and Python: `name` lives as long as the library, the unit is
+/// (kJ/mol)^`energy` nm^`length`, and a default of NaN says that the user must give a value.
+#[repr(C)]
+pub struct ParameterInfo {
+    name: *const c_char,
+    energy: c_int,
+    length: c_int,
+    default_value: f64,
+    /// 0: only as a scalar; 1: also for each vertex; 2: also for each triangle.
+    per: c_int,
+}
+
+/// Describe the parameter `index` of a potential; fails if there is none.
+///
+/// # Safety
+/// `potential` must end with a NUL; `info` must be writable.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Potential_parameter(
+    potential: *const c_char,
+    index: c_int,
+    info: *mut ParameterInfo,
+) -> c_int {
+    let subject = unsafe { text(potential) };
+    guarded(subject, || {
+        let parameters = potentials::find(subject)?.parameters();
+        let parameter = parameters.get(index as usize).ok_or_else(|| {
+            Error::Contract(format!("has {} parameters, there is no {index}", parameters.len()))
+        })?;
+        let default_value = parameter.default.unwrap_or(f64::NAN);
+        let (energy, length) = (parameter.energy.into(), parameter.length.into());
+        let per = match parameter.per {
+            None => 0,
+            Some(Element::Vertex) => 1,
+            Some(Element::Triangle) => 2,
+        };
+        let name = parameter.name.as_ptr();
+        unsafe { info.write(ParameterInfo { name, energy, length, default_value, per }) };
+        Ok(())
+    })
+}
+
+/// The name of variant `index` of a potential, and what its variants are called ("scheme"); fails if
+/// there is none.
+///
+/// # Safety
+/// `potential` must end with a NUL; `what` and `name` must be writable.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Potential_form(
+    potential: *const c_char,
+    index: c_int,
+    what: *mut *const c_char,
+    name: *mut *const c_char,
+) -> c_int {
+    let subject = unsafe { text(potential) };
+    guarded(subject, || {
+        let found = potentials::find(subject)?;
+        let (kind, names) = found.forms().unwrap_or((c"form", &[]));
+        let form = names.get(index as usize).ok_or_else(|| {
+            let kind = kind.to_string_lossy();
+            Error::Contract(format!(
+                "there is no {kind} {index}, the number must be below {}",
+                names.len()
+            ))
+        })?;
+        unsafe {
+            what.write(kind.as_ptr());
+            name.write(form.as_ptr());
+        }
+        Ok(())
+    })
+}
+
+/// The name of switch `index` of a potential; fails if there is none.
+///
+/// # Safety
+/// `potential` must end with a NUL; `name` must be writable.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Potential_switch(
+    potential: *const c_char,
+    index: c_int,
+    name: *mut *const c_char,
+) -> c_int {
+    let subject = unsafe { text(potential) };
+    guarded(subject, || match potentials::find(subject)?.switches().get(index as usize) {
+        Some(switch) => {
+            unsafe { name.write(switch.as_ptr()) };
+            Ok(())
+        }
+        None => Err(Error::Contract(format!("there is no switch {index}"))),
+    })
+}
+
+/// Refuse a value that a parameter cannot have.
+///
+/// # Safety
+/// `potential` must end with a NUL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Potential_check(
+    potential: *const c_char,
+    index: c_int,
+    value: f64,
+) -> c_int {
+    let subject = unsafe { text(potential) };
+    guarded(subject, || match potentials::find(subject)?.parameters().get(index as usize) {
+        Some(parameter) => parameter.check(value),
+        None => Err(Error::Contract(format!("there is no parameter {index}"))),
+    })
+}
+
+/// The index of a potential in the registry.
+///
+/// # Safety
+/// `potential` must end with a NUL; `index` must be writable.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Potential_find(
+    potential: *const c_char,
+    index: *mut c_int,
+) -> c_int {
+    let subject = unsafe { text(potential) };
+    guarded(subject, || {
+        let known = potentials::find(subject)?.name();
+        let position = REGISTRY.iter().position(|entry| entry.name() == known).unwrap_or(0);
+        unsafe { index.write(position as c_int) };
+        Ok(())
+    })
+}
