@@ -278,6 +278,8 @@ class TestSpectrum:
             analysis.spectrum(np.zeros((10, 8)))
         with pytest.raises(ValueError, match="two frames"):
             analysis.spectrum(np.zeros((1, 9)))
+        with pytest.raises(ValueError, match=r"spectrum: amplitudes\[1, 3\] is nan"):
+            analysis.spectrum(np.where(np.arange(9) == 3, [[0], [np.nan]], 0))
 
 
 class TestTheory:

@@ -204,8 +204,16 @@ class TestReporters:
         ("make", "error", "culprit"),
         [
             (lambda m, p: ModeReporter(p / "m.csv", 0, m, 2), ValueError, "reportInterval"),
+            (lambda m, p: ModeReporter(p / "m.csv", np.nan, m, 2), ValueError, "Interval .*nan"),
+            (lambda m, p: MembraneReporter(p / "m.csv", 1.5, m), ValueError, r"Interval .*1\.5"),
             (lambda m, p: ModeReporter(p / "m.csv", 1, m, -1), ValueError, "lmax"),
+            (lambda m, p: ModeReporter(p / "m.csv", 1, m, np.nan), ValueError, "lmax .*nan"),
             (lambda m, p: MembraneReporter(p / "m.csv", 1, m, offset=-1), ValueError, "offset"),
+            (
+                lambda m, p: ModeReporter(p / "m.csv", 1, m, 2, offset=1.5),
+                ValueError,
+                r"offset .*1\.5",
+            ),
             (lambda m, p: MembraneReporter(p / "m.csv", 1, [[0, 1]]), ValueError, "shape"),
             (lambda m, p: ModeReporter(p / "m.txt", 1, m, 2), ValueError, "suffix"),
             (lambda m, p: ModeReporter(p / "m.csv", 1, m, 2, offset=1), ValueError, "particle 92"),

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import curve_fit, least_squares
 
+from .._numbers import finite_array, positive_number, whole_number
 from . import theory
 from .correlation import autocorrelation
 
@@ -66,16 +67,18 @@ def fit_young(spectrum, radius, kappa_over_kT=None, lmin=2, lmax=None) -> Elasti
     Raises
     ------
     ValueError
-        Fewer modes than constants, or a mean or an error that is not positive.
+        Fewer modes than constants, a mean or an error that is not positive, or a number out of
+        range.
     RuntimeError
         The fit does not converge.
     """
-    if not radius > 0:
-        raise ValueError(f"radius: need a positive number, got {radius}")
-    if kappa_over_kT is not None and not kappa_over_kT > 0:
-        raise ValueError(f"kappa_over_kT: need a positive number, got {kappa_over_kT}")
+    radius = positive_number(radius, "fit_young", "radius")
+    if kappa_over_kT is not None:
+        kappa_over_kT = positive_number(kappa_over_kT, "fit_young", "kappa_over_kT")
+    lmin = whole_number(lmin, "fit_young", "lmin", 2)
     l = np.asarray(spectrum.l)
-    chosen = (l >= max(2, lmin)) & (l <= (l.max() if lmax is None else lmax))
+    lmax = l.max() if lmax is None else whole_number(lmax, "fit_young", "lmax", lmin)
+    chosen = (l >= lmin) & (l <= lmax)
     l, mean, error = l[chosen], spectrum.mean[chosen], spectrum.error[chosen]
     constants = 1 if kappa_over_kT is not None else 2
     if len(l) < constants:
@@ -161,7 +164,8 @@ def fit_damping(series, interval, lags=None, frequency=None) -> DampingFit:
     interval : float
         Time between frames, ps.
     lags : int, optional
-        Lags that are fitted. Default: n // 10, at least 10. Take one or two memories: what follows
+        Lags that are fitted, 0 … lags − 1: 3 or more, or 2 if the frequency is given, since lag 0
+        is 1 by definition. Default: n // 10, at least 10. Take one or two memories: what follows
         is noise.
     frequency : float, optional
         ω, rad/ps, if it is known. Default: fitted along.
@@ -174,19 +178,22 @@ def fit_damping(series, interval, lags=None, frequency=None) -> DampingFit:
     Raises
     ------
     ValueError
-        Too few frames or a number out of range.
+        Too few frames, a value that is not finite, or a number out of range.
     RuntimeError
         The fit does not converge, or the mode is too overdamped to tell γ without the frequency.
     """
     series = np.asarray(series, dtype=float)
     if series.ndim not in (1, 2) or len(series) < 4:
         raise ValueError(f"series: need shape (n,) or (n, k) with n ≥ 4, got {series.shape}")
-    if not interval > 0:
-        raise ValueError(f"interval: need a positive number, got {interval}")
-    if frequency is not None and not frequency > 0:
-        raise ValueError(f"frequency: need a positive number, got {frequency}")
+    finite_array(series, "fit_damping", "series")
+    interval = positive_number(interval, "fit_damping", "interval")
+    if frequency is not None:
+        frequency = positive_number(frequency, "fit_damping", "frequency")
+    n = len(series)
     if lags is None:
-        lags = min(len(series), max(10, len(series) // 10))
+        lags = min(n, max(10, n // 10))
+    # Each rate takes a lag beyond the first, at which all curves are 1.
+    lags = whole_number(lags, "fit_damping", "lags", 3 if frequency is None else 2, n)
     if series.ndim == 1 or series.shape[1] == 1:
         length = len(series) // 8
         if length < lags:

@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from .._numbers import whole_number
 from ._arrays import dot, over_frames
-from .harmonics import count_of, harmonics_of
+from .harmonics import harmonics_of
 from .solid_angles import triangle_solid_angles, vertex_solid_angles
 
 # Harmonics of so many l above those asked for are fitted too, and take up what would else leak.
@@ -103,7 +104,7 @@ def mode_amplitudes(vertices, triangles, lmax, quadrature="fit", centre=None):
     even mesh of 1002 vertices `BendingForce` has 0.97 of the energy of a smooth membrane for l = 4,
     0.88 for l = 8 and 0.76 for l = 12. Say which quadrature a spectrum was measured with.
     """
-    lmax = count_of("lmax", lmax)
+    lmax = whole_number(lmax, "mode_amplitudes", "lmax", 0)
     if quadrature not in _QUADRATURES:
         raise ValueError(f"quadrature: need one of {tuple(_QUADRATURES)}, got {quadrature!r}")
     if centre is None:
