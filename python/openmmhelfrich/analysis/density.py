@@ -72,7 +72,7 @@ def structure_factor(vertices, lmax) -> Spectrum:
     Returns
     -------
     Spectrum
-        l, S(l), its error, and its correlation time in frames. S(0) = N.
+        l, S(l), its error, both without unit, and its correlation time in frames. S(0) = N.
 
     Raises
     ------

@@ -16,11 +16,11 @@ class ElasticFit(NamedTuple):
     young_over_kT: float
     """Two-dimensional Young modulus Y over kBT, 1/nm²; noise can make it negative."""
     young_error: float
-    """Its standard error."""
+    """Its standard error, 1/nm²."""
     kappa_over_kT: float
-    """Bending rigidity κ over kBT, as given or as fitted."""
+    """Bending rigidity κ over kBT, without unit, as given or as fitted."""
     kappa_error: float
-    """Its standard error, 0 if it was given."""
+    """Its standard error, without unit, 0 if it was given."""
     reduced_chi_squared: float
     """Σ of the squared deviations in error bars, over the degrees of freedom; about 1 if (A18)
     describes the spectrum. NaN without a degree of freedom."""
@@ -32,11 +32,11 @@ class DampingFit(NamedTuple):
     friction: float
     """Damping rate γ, 1/ps."""
     friction_error: float
-    """Its standard error."""
+    """Its standard error, 1/ps."""
     frequency: float
     """Angular frequency ω of the undamped mode, rad/ps, as given or as fitted."""
     frequency_error: float
-    """Its standard error, 0 if it was given."""
+    """Its standard error, rad/ps, 0 if it was given."""
 
 
 def fit_young(spectrum, radius, kappa_over_kT=None, lmin=2, lmax=None) -> ElasticFit:
@@ -54,7 +54,7 @@ def fit_young(spectrum, radius, kappa_over_kT=None, lmin=2, lmax=None) -> Elasti
     radius : float
         r0, nm.
     kappa_over_kT : float, optional
-        κ over kBT. Default: fitted along.
+        κ over kBT, without unit. Default: fitted along.
     lmin, lmax : int, optional
         Range of the fit, 2 or more. Default: all from 2. Modes above about √N / 2 are not those of
         a continuum.

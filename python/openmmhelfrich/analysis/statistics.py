@@ -66,6 +66,11 @@ def spectrum(amplitudes):
     integrated autocorrelation time, see `autocorrelation_time`. A run shorter than a few τ
     does not know its own τ, and its error bars are too small.
 
+    The modes of one l are equivalent if the mesh has no shape of its own. A hard mesh that keeps
+    its neighbours has a mean shape, an ordered one that of an icosahedron, at l = 6. The mean
+    square contains its square, ⟨u_lm⟩², which is no fluctuation, and differences between its u_lm
+    count as fluctuations without end in τ and in the error.
+
     Parameters
     ----------
     amplitudes : array_like
