@@ -1,6 +1,7 @@
 """Sweeps: cache, resumption, errors, and a real Dask cluster that loses a worker."""
 
 import contextlib
+import functools
 import json
 import os
 import signal
@@ -30,6 +31,10 @@ def reciprocal(x):
     return {"value": 1 / x}
 
 
+def power(x, exponent):
+    return {"value": x**exponent}
+
+
 def forgetful(x):
     """Forgets to return its result at 1."""
     return None if x == 1 else {"value": x}
@@ -48,6 +53,15 @@ def worse_named(x):
 
 
 WORSE = ["file", "", "x", "x.npy", "a\0b", "a", "a/b", "\ud800", "array 0", "0"]
+
+
+class Computer:
+    """A function of its own state too."""
+
+    def method(self, x):
+        return {"value": x}
+
+    __call__ = method
 
 
 def interrupted(x, folder):
@@ -164,6 +178,30 @@ class TestHere:
         [result] = quiet(square, [{"x": 5}], cache=tmp_path, workers=0)
         assert result["array"].tolist() == [[5.0] * 3] * 2
         assert str(file) in capsys.readouterr().err
+
+    @pytest.mark.parametrize(
+        ("function", "culprit"),
+        [
+            (lambda x: {"value": x}, "a lambda"),
+            (functools.partial(power, exponent=1), "a partial of power"),
+            (functools.wraps(power)(functools.partial(power, exponent=1)), "a partial of power"),
+            (Computer().method, r"Computer\.method, which is not at the top"),
+            (Computer(), "object of class Computer"),
+        ],
+    )
+    def test_functions_without_a_name_of_their_own_need_no_cache(self, tmp_path, function, culprit):
+        with pytest.raises(TypeError, match=f"(?s){culprit}.*top of a module.*leave out the cache"):
+            quiet(function, [{"x": 2}], cache=tmp_path, workers=0)
+        assert not list(tmp_path.iterdir())
+        [result] = quiet(function, [{"x": 2}], workers=0)
+        assert result["value"] == 2
+
+    def test_nested_functions_have_no_cache(self, tmp_path):
+        def nested(x):
+            return {"value": x}
+
+        with pytest.raises(TypeError, match=r"<locals>\.nested, which is not at the top"):
+            quiet(nested, [{"x": 2}], cache=Cache(tmp_path), workers=0)
 
     def test_looks_only(self, tmp_path):
         quiet(square, [{"x": 5}], cache=tmp_path, workers=0)

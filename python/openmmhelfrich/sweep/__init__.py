@@ -19,6 +19,7 @@ machine or over the workers of any running scheduler.
 
 from __future__ import annotations
 
+import functools
 import itertools
 from collections.abc import Callable, Iterable, Mapping
 
@@ -70,7 +71,8 @@ def sweep(
     Parameters
     ----------
     function : callable
-        A pure function. It returns a dictionary of arrays, numbers,
+        A pure function; with a cache, one that is defined with ``def`` at the top of a module,
+        because stored results are found by its name. It returns a dictionary of arrays, numbers,
         strings, booleans, None, and lists of these. It is sent to the workers by value if it comes
         from a script, together with the modules beside the script; only installed packages must be
         there already.
@@ -104,7 +106,8 @@ def sweep(
     Raises
     ------
     TypeError
-        A point that is no dictionary of the above.
+        A point that is no dictionary of the above, or a lambda, partial, method or nested function
+        together with a cache.
     ValueError
         A negative number of workers, or workers beside a scheduler.
     OSError
@@ -121,6 +124,8 @@ def sweep(
         raise ValueError("sweep: give either a scheduler or a number of workers, not both")
     points = [plain_point(point) for point in points]
     name = name_of(function)
+    if cache is not None:
+        _check_named(function, name)
     store = cache if cache is None or isinstance(cache, Cache) else Cache(cache)
     keys = [Cache.key(name, point, version) for point in points]
     # Equal points are computed once.
@@ -161,6 +166,24 @@ def sweep(
     if failures:
         raise _failed(name, missing, failures, store)
     return [results[key] for key in keys]
+
+
+def _check_named(function, name):
+    """Refuse what has no name of its own, by which stored results could be told from others'."""
+    if isinstance(function, functools.partial):
+        kind = f"a partial of {name}"
+    elif name == "<lambda>":
+        kind = "a lambda"
+    elif getattr(function, "__qualname__", None) != name:
+        kind = getattr(function, "__qualname__", f"an object of class {name}")
+        kind += ", which is not at the top of a module"
+    else:
+        return
+    raise TypeError(
+        f"sweep: a cache finds results by the name of the function, and got {kind}; define a "
+        "function with a name of its own at the top of a module, with all that it depends on as "
+        "arguments, or leave out the cache"
+    )
 
 
 def _failed(name, points, failures, store):
