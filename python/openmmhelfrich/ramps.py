@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ._numbers import whole_number
 from ._units import length
 from .forces import TriangleHeightForce
 
@@ -48,13 +49,12 @@ def harden(simulation, force, min_height, steps, increments=100) -> None:
     target = length(min_height, "harden", "min_height")
     if not target >= 0:
         raise ValueError(f"harden: min_height needs 0 nm or more, got {target}")
-    for name, value in (("steps", steps), ("increments", increments)):
-        if isinstance(value, bool) or int(value) != value or value < 1:
-            raise ValueError(f"harden: {name} needs a whole number of 1 or more, got {value!r}")
+    steps = whole_number(steps, "harden", "steps", 1)
+    increments = whole_number(increments, "harden", "increments", 1)
     context = simulation.context
     parameter = force.getContextParameter("minHeight")
     start = context.getParameter(parameter) if parameter else force.getMinHeight()
-    increments = min(int(increments), int(steps))
+    increments = min(increments, steps)
     done = 0
     for increment in range(1, increments + 1):
         # The last one is the target to the last bit.
@@ -65,6 +65,6 @@ def harden(simulation, force, min_height, steps, increments=100) -> None:
         else:
             force.setMinHeight(value)
             force.updateParametersInContext(context)
-        wanted = int(steps) * increment // increments
+        wanted = steps * increment // increments
         simulation.step(wanted - done)
         done = wanted

@@ -6,6 +6,7 @@ import numpy as np
 import openmm
 from openmm import unit
 
+from ._numbers import whole_number
 from .analysis import mode_amplitudes, shape
 from .analysis._arrays import triangles_of
 from .analysis.tables import open_table
@@ -45,15 +46,12 @@ class _TableReporter:
 
     def __init__(self, file, reportInterval, triangles, offset, append):
         name = type(self).__name__
-        if int(reportInterval) != reportInterval or reportInterval < 1:
-            raise ValueError(f"{name}: reportInterval needs 1 step or more, got {reportInterval}")
-        if offset < 0:
-            raise ValueError(f"{name}: offset needs 0 or more, got {offset}")
-        self._interval = int(reportInterval)
+        self._interval = whole_number(reportInterval, name, "reportInterval", 1)
+        offset = whole_number(offset, name, "offset", 0)
         self._file, self._append = file, append
         corners = np.asarray(getattr(triangles, "triangles", triangles))
         highest = corners.max(initial=0) if corners.dtype.kind in "iu" else 0
-        corners = triangles_of(corners, int(highest) + 1) + int(offset)
+        corners = triangles_of(corners, int(highest) + 1) + offset
         # Vertices in ascending order of particle index, as in the forces.
         self._particles, inverse = np.unique(corners, return_inverse=True)
         self._triangles = inverse.reshape(corners.shape)
@@ -103,12 +101,12 @@ class ModeReporter(_TableReporter):
         ``.csv``, or ``.h5`` / ``.hdf5`` for HDF5, which needs h5py
         (``pip install openmm-helfrich[hdf5]``).
     reportInterval : int
-        Steps between rows.
+        Steps between rows, 1 or more.
     triangles : Mesh or array_like of int
         The triangles as particle indices, shape (num_triangles, 3), counter-clockwise seen from
         outside, as for the forces; or a Mesh whose vertex i is particle offset + i.
     lmax : int
-        Largest l.
+        Largest l, 0 or more.
     quadrature, centre : str
         As for `analysis.mode_amplitudes`.
     offset : int
@@ -144,9 +142,8 @@ class ModeReporter(_TableReporter):
         append=False,
     ):
         super().__init__(file, reportInterval, triangles, offset, append)
-        if int(lmax) != lmax or lmax < 0:
-            raise ValueError(f"ModeReporter: lmax needs an integer of 0 or more, got {lmax}")
-        self._lmax, self._options = int(lmax), {"quadrature": quadrature, "centre": centre}
+        self._lmax = whole_number(lmax, "ModeReporter", "lmax", 0)
+        self._options = {"quadrature": quadrature, "centre": centre}
 
     def _columns(self, simulation):
         return {f"u_{l}_{m}": "" for l in range(self._lmax + 1) for m in range(-l, l + 1)}

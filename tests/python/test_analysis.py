@@ -19,12 +19,6 @@ def sphere(request):
     return Mesh.random_sphere(1002, 1000, seed=3)
 
 
-@pytest.fixture
-def accuracy(sphere):
-    """How far harmonics up to l = 6 are from orthonormal on it."""
-    return 1e-3 if sphere.degrees.max() == 7 else 6e-3
-
-
 def directions_of(mesh):
     return mesh.vertices / np.linalg.norm(mesh.vertices, axis=1)[:, None]
 
@@ -39,14 +33,6 @@ def shape(mesh, amplitudes):
 def volume_radius(vertices, triangles):
     a, b, c = vertices[triangles.T]
     return np.cbrt(np.einsum("ti,ti->", a, np.cross(b, c)) / 6 * 3 / (4 * np.pi))
-
-
-def off_centre(vertices):
-    """How far the mean of the vertices is from the origin of the modes, over the radius.
-
-    Seen from there, a mode l has a share of its neighbours l ± 1 of about l times this.
-    """
-    return np.linalg.norm(vertices.mean(axis=0)) / 1000
 
 
 def uneven(mesh):
@@ -67,12 +53,6 @@ def cut_in_four(mesh):
         ab, bc, ca = (middle[tuple(sorted(pair))] for pair in ((a, b), (b, c), (c, a)))
         triangles += [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
     return Mesh(vertices, triangles)
-
-
-def rotation(seed):
-    q, r = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))
-    q *= np.sign(np.diag(r))
-    return q * np.linalg.det(q)
 
 
 class TestHarmonics:
@@ -131,25 +111,6 @@ class TestSolidAngles:
 
 
 class TestModeAmplitudes:
-    def test_many_modes_at_once(self, sphere, accuracy):
-        u = np.zeros((LMAX + 1) ** 2)
-        u[4:] = np.random.default_rng(5).normal(scale=0.01, size=len(u) - 4)
-        vertices = shape(sphere, u)
-        measured = analysis.mode_amplitudes(vertices, sphere.triangles, LMAX)
-        expected = u * 1000 / volume_radius(vertices, sphere.triangles)
-        tolerance = (accuracy + LMAX * off_centre(vertices)) * abs(u).max()
-        np.testing.assert_allclose(measured[4:], expected[4:], atol=tolerance)
-
-    @pytest.mark.parametrize(("l", "m"), [(2, 0), (2, -2), (3, 1), (4, -3), (6, 5), (6, 0)])
-    @pytest.mark.parametrize("amplitude", [0.001, 0.05, 0.2])
-    def test_one_mode(self, sphere, accuracy, l, m, amplitude):
-        mesh = sphere.deformed(l, m, amplitude)
-        measured = analysis.mode_amplitudes(mesh.vertices, mesh.triangles, LMAX)
-        expected = np.zeros((LMAX + 1) ** 2)
-        expected[l * l + l + m] = amplitude * 1000 / volume_radius(mesh.vertices, mesh.triangles)
-        tolerance = (accuracy + l * off_centre(mesh.vertices)) * amplitude
-        np.testing.assert_allclose(measured[4:], expected[4:], atol=tolerance)
-
     @pytest.mark.parametrize(("l", "m"), [(2, 0), (3, 1), (4, -3), (6, 5)])
     def test_surface_misses_what_triangles_cut_off(self, sphere, l, m):
         mesh = sphere.deformed(l, m, 0.02)
@@ -182,16 +143,6 @@ class TestModeAmplitudes:
             3.7 * vertices + [4000, -700, 12345], sphere.triangles, LMAX
         )
         np.testing.assert_allclose(there, here, atol=1e-11)
-
-    def test_power_of_an_l_does_not_depend_on_rotation(self, sphere):
-        u = np.zeros(16)
-        u[4:] = np.random.default_rng(2).normal(scale=0.02, size=12)
-        vertices = shape(sphere, u)
-        power = []
-        for frame in (vertices, vertices @ rotation(8).T):
-            a = analysis.mode_amplitudes(frame, sphere.triangles, 3)
-            power.append([np.sum(a[l * l : (l + 1) ** 2] ** 2) for l in range(4)])
-        np.testing.assert_allclose(power[1][2:], power[0][2:], rtol=2e-3)
 
     def test_frames_and_units(self, sphere):
         frames = np.stack([sphere.deformed(2, 0, u).vertices for u in np.linspace(-0.1, 0.1, 25)])
@@ -278,6 +229,8 @@ class TestSpectrum:
             analysis.spectrum(np.zeros((10, 8)))
         with pytest.raises(ValueError, match="two frames"):
             analysis.spectrum(np.zeros((1, 9)))
+        with pytest.raises(ValueError, match=r"spectrum: amplitudes\[1, 3\] is nan"):
+            analysis.spectrum(np.where(np.arange(9) == 3, [[0], [np.nan]], 0))
 
 
 class TestTheory:

@@ -78,7 +78,7 @@ class TestKnownAmplitudes:
     )
     @pytest.mark.parametrize("size", [1e-3, 0.03, 0.1])
     def test_of_one_mode(self, name, tolerance, size):
-        for l, m in [(2, 0), (3, -2), (5, 5), (6, 0), (6, -6)]:
+        for l, m in [(2, 0), (2, -2), (3, -2), (4, -3), (5, 5), (6, 0), (6, 5), (6, -6)]:
             u = np.zeros(49)
             u[l * l + l + m] = size
             found = analysis.mode_amplitudes(sphere(name).deformed(l, m, size), sphere(name), 6)
@@ -170,6 +170,18 @@ class TestKnownAmplitudes:
         vertices[5] = 0
         with pytest.raises(ValueError, match="vertex 5 of frame 0 is at the origin"):
             analysis.solid_angles(vertices, mesh)
+
+    @pytest.mark.parametrize("lmax", [np.nan, 2.5, -1])
+    def test_lmax_is_a_whole_number(self, lmax):
+        mesh = Mesh.icosphere(2, 1)
+        for function, arguments in (
+            (analysis.mode_amplitudes, (mesh, mesh)),
+            (analysis.density_modes, (mesh,)),
+            (analysis.structure_factor, (np.stack([mesh.vertices] * 2),)),
+            (analysis.real_harmonics, ([[0, 0, 1.0]],)),
+        ):
+            with pytest.raises(ValueError, match=f"{function.__name__}: lmax needs .*{lmax}"):
+                function(*arguments, lmax)
 
     def test_unknown_centre(self):
         mesh = Mesh.icosphere(2, 1)
@@ -266,7 +278,14 @@ class TestSources:
             (lambda f: analysis.Trajectory(f / "no.xtc"), FileNotFoundError, "no.xtc"),
             (lambda f: analysis.Trajectory(f / "run.gro"), ValueError, "none of .xtc"),
             (lambda f: analysis.Trajectory(f / "run.xtc", start=99), ValueError, "no frame"),
-            (lambda f: analysis.Trajectory(f / "run.xtc", stride=0), ValueError, "stride=0"),
+            (lambda f: analysis.Trajectory(f / "run.xtc", stride=0), ValueError, "stride.* 0"),
+            (lambda f: analysis.Trajectory(f / "run.xtc", start=-1), ValueError, "start.*-1"),
+            (lambda f: analysis.Trajectory(f / "run.xtc", None, 3, 2), ValueError, "stop.* 2"),
+            (
+                lambda f: analysis.Trajectory(f / "run.xtc", stride=np.nan),
+                ValueError,
+                "stride.*nan",
+            ),
             (lambda f: analysis.Trajectory(f / "run.xtc", [4, 92]), ValueError, "92"),
         ],
     )

@@ -178,12 +178,18 @@ class TestLandscape:
     @pytest.mark.parametrize(
         ("call", "culprit"),
         [
-            (lambda m, f: analysis.landscape(m, f, 162, [[0, 0, 0]]), "vertex: need 0 to 161"),
+            (lambda m, f: analysis.landscape(m, f, 162, [[0, 0, 0]]), "vertex needs .* 0 to 161"),
             (lambda m, f: analysis.landscape(m, f, 0, [[0, 0]]), "points: need shape"),
             (lambda m, f: analysis.landscape(m, f, 0, [[0, 0, np.nan]]), "not finite"),
             (lambda m, f: analysis.landscape(m, {}, 0, [[0, 0, 0]]), "forces: need 1 to 32"),
             (lambda m, f: analysis.sphere_grid(m, 0, -1), "half_width"),
-            (lambda m, f: analysis.plane_grid(m, 0, size=1), "size"),
+            (lambda m, f: analysis.sphere_grid(m, 0, np.inf), "half_width"),
+            (lambda m, f: analysis.plane_grid(m, 0, size=1), "plane_grid: size"),
+            (lambda m, f: analysis.plane_grid(m, 0, size=np.nan), "plane_grid: size .*nan"),
+            (lambda m, f: analysis.sphere_grid(m, 1.5), r"sphere_grid: vertex .*1\.5"),
+            (lambda m, f: analysis.sphere_grid(m, -1), "sphere_grid: vertex .*-1"),
+            (lambda m, f: analysis.plane_grid(m, np.nan), "plane_grid: vertex .*nan"),
+            (lambda m, f: analysis.landscape(m, f, 0.5, [[0, 0, 0]]), r"landscape: vertex .*0\.5"),
         ],
     )
     def test_bad_input_is_named(self, rough, call, culprit):
@@ -252,8 +258,24 @@ class TestLifetime:
         simulation = self.simulation(0.05)
         for arguments, culprit in (
             ((0,), "max_time"),
+            ((np.inf,), "max_time"),
             ((1, 0), "interval"),
+            ((1, np.nan), "interval"),
             ((1, 1, 0.5), "max_heating"),
+            ((1, 1, np.nan), "max_heating"),
         ):
-            with pytest.raises(ValueError, match=culprit):
+            with pytest.raises(ValueError, match=f"time_to_failure: {culprit}"):
                 analysis.time_to_failure(simulation, *arguments)
+
+    @pytest.mark.parametrize(
+        ("integrator", "culprit"),
+        [
+            (openmm.VariableVerletIntegrator(1e-3), "those of VariableVerletIntegrator vary"),
+            (openmm.VariableLangevinIntegrator(300, 1, 1e-3), "VariableLangevinIntegrator vary"),
+            (openmm.VerletIntegrator(0), r"step size of VerletIntegrator is 0\.0 ps"),
+        ],
+    )
+    def test_needs_time_steps_of_one_length(self, integrator, culprit):
+        simulation = Vesicle(Mesh.icosphere(2, 400)).simulation(integrator, "Reference")
+        with pytest.raises(ValueError, match=culprit):
+            analysis.time_to_failure(simulation, 1)

@@ -85,9 +85,19 @@ class TestAutocorrelation:
         ("call", "culprit"),
         [
             (lambda: analysis.autocorrelation([]), "series: need shape"),
-            (lambda: analysis.autocorrelation([1.0, np.nan]), r"value \[1\] is not finite"),
-            (lambda: analysis.autocorrelation([1.0, 2.0], 3), "lags: need 1 to 2"),
+            (lambda: analysis.autocorrelation([1.0, np.nan]), r"series\[1\] is nan.* not finite"),
+            (lambda: analysis.autocorrelation([1.0, 2.0], 3), "lags needs .* 1 to 2, got 3"),
+            (lambda: analysis.autocorrelation([1.0, 2.0], np.nan), "lags needs .*nan"),
             (lambda: analysis.mode_autocorrelation(np.zeros((5, 8))), "amplitudes"),
+            (
+                lambda: analysis.mode_autocorrelation([[np.inf], [0]]),
+                r"mode_autocorrelation: amplitudes\[0, 0\] is inf",
+            ),
+            (lambda: analysis.autocorrelation_time([]), "series: need shape"),
+            (
+                lambda: analysis.autocorrelation_time([[1, 2], [np.nan, 3]]),
+                r"autocorrelation_time: series\[1, 0\] is nan",
+            ),
         ],
     )
     def test_bad_input_is_named(self, call, culprit):
@@ -127,7 +137,7 @@ class TestErrors:
         for function in (analysis.mean_with_error, analysis.blocking):
             with pytest.raises(ValueError, match="n ≥ 2"):
                 function([1.0])
-            with pytest.raises(ValueError, match="not finite"):
+            with pytest.raises(ValueError, match=rf"{function.__name__}: series\[1\] is inf"):
                 function([1.0, np.inf])
 
 
@@ -190,14 +200,64 @@ class TestTheoryOfDynamics:
         assert theory.internal_friction(2e-3) == pytest.approx(3e-4)
 
     @pytest.mark.parametrize(
+        ("function", "arguments"),
+        [
+            (theory.stiffness, (3,)),
+            (theory.fluid_spectrum, (3, 20)),
+            (theory.elastic_spectrum, (3, 20, 1e-4, 1000)),
+            (theory.tense_spectrum, (3, 20, 3e-5, 1000)),
+            (theory.young_modulus, (0.2,)),
+            (theory.mode_frequency, (3, 50, 50, 1002, 1000)),
+            (theory.mode_period, (3, 50, 50, 1002, 1000)),
+            (theory.overdamped_time, (1e-3, 0.1)),
+            (theory.internal_friction, (1e-3, 0.2)),
+            (theory.newtonian_autocorrelation, (300, 1e-3)),
+            (theory.langevin_autocorrelation, (300, 1e-3, 0.1)),
+            (theory.brownian_autocorrelation, (300, 1e-3, 0.1)),
+            (theory.area_energy, (0.1, 1.3, 1000)),
+            (theory.volume_energy, (0.1, 0.04, 1000)),
+            (theory.bending_energy, (0.1, 50)),
+        ],
+    )
+    def test_every_argument_may_be_a_list(self, function, arguments):
+        scalar = function(*arguments)
+        assert type(scalar) is float
+        for place, value in enumerate(arguments):
+            lists = [*arguments[:place], [value, 2 * value], *arguments[place + 1 :]]
+            doubled = [*arguments[:place], 2 * value, *arguments[place + 1 :]]
+            expected = [scalar, function(*doubled)]
+            assert expected[0] != expected[1]
+            np.testing.assert_allclose(function(*lists), expected, rtol=1e-14)
+
+    def test_rigidities_may_be_a_list(self):
+        excess = [theory.area_excess(20, 31), theory.area_excess(40, 31)]
+        np.testing.assert_allclose(theory.area_excess([20, 40], 31), excess)
+        u = np.random.default_rng(1).normal(size=(2, 9))
+        energies = [theory.mode_energy(u[0], 20), theory.mode_energy(u[1], 40)]
+        np.testing.assert_allclose(theory.mode_energy(u, [20, 40]), energies)
+
+    @pytest.mark.parametrize(
         ("call", "culprit"),
         [
             (lambda: theory.langevin_autocorrelation(1, 1, -1), "friction"),
             (lambda: theory.brownian_autocorrelation(1, 1, 0), "friction"),
+            (lambda: theory.brownian_autocorrelation(1, -1, 1), "frequency"),
+            (lambda: theory.newtonian_autocorrelation(1, -1), "frequency"),
+            (lambda: theory.overdamped_time(1e-3, -0.1), r"friction.*-0\.1"),
+            (lambda: theory.overdamped_time(0, 0.1), "frequency"),
+            (lambda: theory.internal_friction(-1), "frequency"),
+            (lambda: theory.young_modulus(-1), "softness: need 0 or more, got -1"),
+            (lambda: theory.young_modulus([0.2, np.nan]), "softness.*nan"),
             (lambda: theory.tense_spectrum(2, 20, -1.3e-4, 1000), "tension_over_kT"),
+            (
+                lambda: theory.tense_spectrum(2, [20, 40], [0, -3e-4], 1000),
+                r"more than -0\.00024, .* got -0\.0003",
+            ),
+            (lambda: theory.tense_spectrum(2, 20, np.nan, 1000), "tension_over_kT.*nan"),
             (lambda: theory.mode_energy(np.zeros(5), 1), "amplitudes"),
             (lambda: theory.area_energy(0.1, 1, 0), "radius"),
-            (lambda: theory.area_excess(20, 1), "l: need 2"),
+            (lambda: theory.area_excess(20, 1), "area_excess: lmax needs .* 2 or more, got 1"),
+            (lambda: theory.area_excess(20, 2.7), r"area_excess: lmax needs .*2\.7"),
         ],
     )
     def test_bad_input_is_named(self, call, culprit):
@@ -285,6 +345,20 @@ class TestFits:
             (lambda s: analysis.fit_damping(np.ones(40), 1), "no eight parts"),
             (lambda s: analysis.fit_damping(np.ones((50, 3)), 0), "interval"),
             (lambda s: analysis.fit_damping(np.ones((50, 3)), 1, frequency=-1), "frequency"),
+            (
+                lambda s: analysis.fit_damping(np.ones((50, 3)), 1, 1),
+                "lags needs .* 3 to 50, got 1",
+            ),
+            (lambda s: analysis.fit_damping(np.ones((50, 3)), 1, 1, 0.1), "lags needs .* 2 to 50"),
+            (lambda s: analysis.fit_damping(np.ones((50, 3)), 1, np.nan), "lags needs .*nan"),
+            (
+                lambda s: analysis.fit_damping([[0], [1], [np.nan], [1]], 1),
+                r"series\[2, 0\] is nan",
+            ),
+            (lambda s: analysis.fit_young(s, np.inf), "radius"),
+            (lambda s: analysis.fit_young(s, 1, lmin=np.nan), "lmin needs .*nan"),
+            (lambda s: analysis.fit_young(s, 1, lmin=1), "lmin needs .* 2 or more, got 1"),
+            (lambda s: analysis.fit_young(s, 1, lmax=4.5), r"lmax needs .*4\.5"),
         ],
     )
     def test_bad_input_is_named(self, call, culprit):

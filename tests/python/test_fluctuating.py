@@ -118,6 +118,7 @@ class TestHarden:
         [
             ({"min_height": -1}, ValueError, "min_height"),
             ({"steps": 0}, ValueError, "steps"),
+            ({"steps": np.nan}, ValueError, "steps needs a whole number of 1 or more, got nan"),
             ({"increments": 1.5}, ValueError, "increments"),
             ({"force": 5}, TypeError, "force needs a TriangleHeightForce, got int"),
         ],

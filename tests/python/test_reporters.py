@@ -204,8 +204,16 @@ class TestReporters:
         ("make", "error", "culprit"),
         [
             (lambda m, p: ModeReporter(p / "m.csv", 0, m, 2), ValueError, "reportInterval"),
+            (lambda m, p: ModeReporter(p / "m.csv", np.nan, m, 2), ValueError, "Interval .*nan"),
+            (lambda m, p: MembraneReporter(p / "m.csv", 1.5, m), ValueError, r"Interval .*1\.5"),
             (lambda m, p: ModeReporter(p / "m.csv", 1, m, -1), ValueError, "lmax"),
+            (lambda m, p: ModeReporter(p / "m.csv", 1, m, np.nan), ValueError, "lmax .*nan"),
             (lambda m, p: MembraneReporter(p / "m.csv", 1, m, offset=-1), ValueError, "offset"),
+            (
+                lambda m, p: ModeReporter(p / "m.csv", 1, m, 2, offset=1.5),
+                ValueError,
+                r"offset .*1\.5",
+            ),
             (lambda m, p: MembraneReporter(p / "m.csv", 1, [[0, 1]]), ValueError, "shape"),
             (lambda m, p: ModeReporter(p / "m.txt", 1, m, 2), ValueError, "suffix"),
             (lambda m, p: ModeReporter(p / "m.csv", 1, m, 2, offset=1), ValueError, "particle 92"),
@@ -221,6 +229,36 @@ class TestReporters:
 
         with pytest.raises(error, match=culprit):
             report()
+
+    @pytest.mark.parametrize("lost", [1, 9])
+    def test_going_on_with_a_header_that_was_cut_off(self, mesh, tmp_path, lost):
+        path = tmp_path / "modes.csv"
+        simulation = simulate(mesh)
+        simulation.reporters.append(ModeReporter(path, 2, mesh, 1))
+        simulation.step(1)
+        header = path.read_bytes()
+        assert header.endswith(b",u_1_1\n")
+        path.write_bytes(header[:-lost])
+        simulation.reporters[:] = [ModeReporter(path, 2, mesh, 1, append=True)]
+        simulation.step(1)
+        assert path.read_bytes().startswith(header)
+        assert analysis.read_modes(path).step.tolist() == [2]
+
+    def test_files_that_are_none_of_a_reporter_are_not_appended_to(self, mesh, tmp_path):
+        path = tmp_path / "modes.csv"
+        header = "step,time (ps),u_0_0\n"
+        for text, culprit in (
+            ("notes", "do not append"),
+            ("\n", "do not append"),
+            (f"{header}2,0.1,0\nthree,0.2,0\n", "line 3: need a step"),
+            (f"{header}\n", "line 2: need a step"),
+        ):
+            path.write_text(text)
+            simulation = simulate(mesh)
+            simulation.reporters.append(ModeReporter(path, 2, mesh, 0, append=True))
+            with pytest.raises(ValueError, match=rf"modes\.csv.*{culprit}"):
+                simulation.step(2)
+            assert path.read_text() == text
 
     def test_bad_files_are_named(self, tmp_path):
         bad = tmp_path / "bad.csv"

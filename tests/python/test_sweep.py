@@ -1,6 +1,7 @@
 """Sweeps: cache, resumption, errors, and a real Dask cluster that loses a worker."""
 
 import contextlib
+import functools
 import json
 import os
 import signal
@@ -8,6 +9,7 @@ import subprocess
 import sys
 import threading
 import time
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -27,6 +29,39 @@ def square(x, folder=None, pause=0.0):
 
 def reciprocal(x):
     return {"value": 1 / x}
+
+
+def power(x, exponent):
+    return {"value": x**exponent}
+
+
+def forgetful(x):
+    """Forgets to return its result at 1."""
+    return None if x == 1 else {"value": x}
+
+
+def oddly_named(x):
+    """Arrays of names that arguments of NumPy's savez have, or that entries of a file cannot."""
+    return {name: np.arange(3) + i + x for i, name in enumerate(ODD)} | {"": 5, "array 1": "text"}
+
+
+ODD = ["file", "allow_pickle", "args", "usual"]
+
+
+def worse_named(x):
+    return {name: np.arange(3) + i + x for i, name in enumerate(WORSE)} | {"array 1": "text"}
+
+
+WORSE = ["file", "", "x", "x.npy", "a\0b", "a", "a/b", "\ud800", "array 0", "0"]
+
+
+class Computer:
+    """A function of its own state too."""
+
+    def method(self, x):
+        return {"value": x}
+
+    __call__ = method
 
 
 def interrupted(x, folder):
@@ -98,6 +133,76 @@ class TestHere:
             quiet(reciprocal, grid(x=[1, 0, 2]), cache=tmp_path, workers=0)
         assert len(list(tmp_path.rglob("*.npz"))) == 2
 
+    def test_failures_say_what_becomes_of_the_others(self, tmp_path):
+        points = grid(x=[1, 0, 2])
+        with pytest.raises(SweepError, match=f"the others are stored in {tmp_path}"):
+            quiet(reciprocal, points, cache=tmp_path, workers=0)
+        with pytest.raises(SweepError, match="the others are lost, as there is no cache"):
+            quiet(reciprocal, points, workers=0)
+
+    @pytest.mark.parametrize(("function", "names"), [(oddly_named, ODD), (worse_named, WORSE)])
+    def test_arrays_of_any_name(self, tmp_path, function, names):
+        expected = function(7)
+        for _ in range(2):  # The second time from the files.
+            [result] = quiet(function, [{"x": 7}], cache=tmp_path, workers=0)
+            assert set(result) == {*expected, "seconds"}
+            for i, name in enumerate(names):
+                np.testing.assert_array_equal(result[name], np.arange(3) + i + 7)
+            assert result["array 1"] == "text"
+        assert len(list(tmp_path.rglob("*.npz"))) == 1
+
+    def test_files_have_the_names_of_arrays(self, tmp_path):
+        quiet(oddly_named, [{"x": 5}], cache=tmp_path, workers=0)
+        [file] = tmp_path.rglob("*.npz")
+        assert np.load(file).files == ["json", *ODD]
+
+    def test_reads_what_earlier_versions_have_stored(self, tmp_path):
+        """Keys, folders and entries of files are those of the first version."""
+        file = tmp_path / "square" / "4a0d510b7f0b6e5583d5.npz"
+        file.parent.mkdir()
+        record = {"point": {"x": 5}, "result": {"number": -1, "seconds": 0.5}}
+        np.savez_compressed(file, json=np.array(json.dumps(record)), array=np.ones(2))
+        [result] = quiet(square, [{"x": 5}], cache=tmp_path, compute=False)
+        assert result.pop("array").tolist() == [1, 1]
+        assert result == {"number": -1, "seconds": 0.5}
+
+    def test_computes_again_what_is_broken_within(self, tmp_path, capsys):
+        quiet(square, [{"x": 5}], cache=tmp_path, workers=0)
+        [file] = tmp_path.rglob("*.npz")
+        with zipfile.ZipFile(file) as archive:
+            entry = archive.getinfo("array.npy")
+        content = bytearray(file.read_bytes())
+        start = entry.header_offset + 50
+        content[start : start + 20] = b"\xff" * 20
+        file.write_bytes(content)
+        [result] = quiet(square, [{"x": 5}], cache=tmp_path, workers=0)
+        assert result["array"].tolist() == [[5.0] * 3] * 2
+        assert str(file) in capsys.readouterr().err
+
+    @pytest.mark.parametrize(
+        ("function", "culprit"),
+        [
+            (lambda x: {"value": x}, "a lambda"),
+            (functools.partial(power, exponent=1), "a partial of power"),
+            (functools.wraps(power)(functools.partial(power, exponent=1)), "a partial of power"),
+            (Computer().method, r"Computer\.method, which is not at the top"),
+            (Computer(), "object of class Computer"),
+        ],
+    )
+    def test_functions_without_a_name_of_their_own_need_no_cache(self, tmp_path, function, culprit):
+        with pytest.raises(TypeError, match=f"(?s){culprit}.*top of a module.*leave out the cache"):
+            quiet(function, [{"x": 2}], cache=tmp_path, workers=0)
+        assert not list(tmp_path.iterdir())
+        [result] = quiet(function, [{"x": 2}], workers=0)
+        assert result["value"] == 2
+
+    def test_nested_functions_have_no_cache(self, tmp_path):
+        def nested(x):
+            return {"value": x}
+
+        with pytest.raises(TypeError, match=r"<locals>\.nested, which is not at the top"):
+            quiet(nested, [{"x": 2}], cache=Cache(tmp_path), workers=0)
+
     def test_looks_only(self, tmp_path):
         quiet(square, [{"x": 5}], cache=tmp_path, workers=0)
         [result] = quiet(square, [{"x": 5}], cache=tmp_path, compute=False)
@@ -111,10 +216,13 @@ class TestHere:
         [
             (square, [{"x": object()}], {}, TypeError, "'x'.*object"),
             (square, [5], {}, TypeError, "dictionary.*int"),
-            (lambda x: x, [{"x": 1}], {}, TypeError, "must return a dictionary, got int"),
-            (lambda x: {"a": {1}}, [{"x": 1}], {}, TypeError, "'a'.*set"),
-            (lambda x: {"json": 1}, [{"x": 1}], {}, TypeError, "json"),
+            (lambda x: x, [{"x": 1}], {}, SweepError, "must return a dictionary, got int: 1"),
+            (lambda x: {"a": {1}}, [{"x": 1}], {}, SweepError, "'a'.*set"),
+            (lambda x: {"json": 1}, [{"x": 1}], {}, SweepError, "json"),
+            (lambda x: {"a": np.array([None])}, [{"x": 1}], {}, SweepError, "objects.*'a'"),
             (square, [{"x": 1}], {"workers": -1}, ValueError, "workers.*-1"),
+            (square, [{"x": 1}], {"workers": np.nan}, ValueError, "sweep: workers .*nan"),
+            (square, [{"x": 1}], {"workers": 1.5}, ValueError, r"workers .*1\.5"),
             (square, [{"x": 1}], {"scheduler": "tcp://x:1"}, ValueError, "not both"),
         ],
     )
@@ -137,6 +245,18 @@ def test_cluster_of_this_machine(tmp_path):
     results = quiet(square, points, workers=2)
     assert [result["number"] for result in results] == [x**2 for x in range(6)]
     assert {int(path.name.split("-")[1]) for path in tmp_path.iterdir()}.isdisjoint({os.getpid()})
+
+
+@pytest.mark.parametrize("workers", [0, 2])
+def test_bad_results_are_failures_of_their_points(tmp_path, workers):
+    with pytest.raises(
+        SweepError,
+        match=r"(?s)forgetful failed at 1 of 4 points.*\n  \{'x': 1\}: TypeError: forgetful must "
+        "return a dictionary, got NoneType: None$",
+    ):
+        quiet(forgetful, grid(x=range(4)), cache=tmp_path, workers=workers)
+    results = quiet(forgetful, grid(x=[0, 2, 3]), cache=tmp_path, compute=False)
+    assert [result["value"] for result in results] == [0, 2, 3]
 
 
 @contextlib.contextmanager

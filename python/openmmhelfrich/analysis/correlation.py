@@ -3,6 +3,8 @@
 import numpy as np
 from scipy.fft import next_fast_len
 
+from .._numbers import finite_array, whole_number
+
 
 def autocorrelation(series, lags=None, subtract_mean=False, normalise=True):
     """Autocorrelation function C(k) = Σ_t x(t) x(t+k) / (n − k), by fast Fourier transform.
@@ -26,7 +28,8 @@ def autocorrelation(series, lags=None, subtract_mean=False, normalise=True):
     Returns
     -------
     ndarray
-        Shape (lags,) or (lags, …). Average equivalent series, such as the 2l + 1 of one l, *before*
+        Shape (lags,) or (lags, …), without unit, or in that of the series squared if it is not
+        normalised. Average equivalent series, such as the 2l + 1 of one l, *before*
         dividing by C(0): with ``normalise=False``.
 
     Raises
@@ -34,16 +37,10 @@ def autocorrelation(series, lags=None, subtract_mean=False, normalise=True):
     ValueError
         No value, a value that is not finite, or a number of lags outside of 1 … n.
     """
-    series = np.asarray(series, dtype=float)
-    if series.ndim == 0 or series.size == 0:
-        raise ValueError(f"series: need shape (n,) or (n, …), got {series.shape}")
-    if not np.isfinite(series).all():
-        raise ValueError(f"series: value {np.argwhere(~np.isfinite(series))[0]} is not finite")
+    series = _series("autocorrelation", series)
     n = len(series)
-    lags = n if lags is None else lags
-    if int(lags) != lags or not 1 <= lags <= n:
-        raise ValueError(f"lags: need 1 to {n}, the length of the series, got {lags}")
-    lags = int(lags)
+    # More lags than values have no pairs.
+    lags = n if lags is None else whole_number(lags, "autocorrelation", "lags", 1, n)
     if subtract_mean:
         series = series - series.mean(axis=0)
     # Zeros behind the series keep the circular sum of the transform from wrapping around.
@@ -70,7 +67,7 @@ def mode_autocorrelation(amplitudes, lags=None):
     Returns
     -------
     mean : ndarray
-        Shape (lags, lmax+1); column l is 1 at lag 0, to be compared with `theory`.
+        Shape (lags, lmax+1), without unit; column l is 1 at lag 0, to be compared with `theory`.
     spread : ndarray
         The standard error of the mean from the spread of the 2l + 1 modes, same shape: jackknife,
         leaving out one m at a time. NaN for l = 0.
@@ -78,12 +75,14 @@ def mode_autocorrelation(amplitudes, lags=None):
     Raises
     ------
     ValueError
-        Another shape, or a number of lags that the series does not have.
+        Another shape, a value that is not finite, or a number of lags that the series does not
+        have.
     """
     amplitudes = np.asarray(amplitudes, dtype=float)
     count = round(amplitudes.shape[-1] ** 0.5) if amplitudes.ndim == 2 else 0
     if not count or count**2 != amplitudes.shape[1]:
         raise ValueError(f"amplitudes: need shape (num_frames, (lmax+1)²), got {amplitudes.shape}")
+    finite_array(amplitudes, "mode_autocorrelation", "amplitudes")
     functions = autocorrelation(amplitudes, lags, normalise=False)
     mean, spread = (np.full((len(functions), count), np.nan) for _ in range(2))
     for l in range(count):
@@ -113,9 +112,14 @@ def autocorrelation_time(series):
     Returns
     -------
     float
-        τ, at least ½; ½ for a constant.
+        τ in steps of the series, at least ½; ½ for a constant.
+
+    Raises
+    ------
+    ValueError
+        No value, or one that is not finite.
     """
-    series = np.asarray(series, dtype=float)
+    series = _series("autocorrelation_time", series)
     series = series.reshape(len(series), -1) - series.mean()
     n = len(series)
     # Twice the length in zeros keeps the transform's circular sum from wrapping around.
@@ -129,3 +133,11 @@ def autocorrelation_time(series):
     ended = np.flatnonzero(np.arange(n) >= 5 * time)
     # A series shorter than its memory never meets the window: take the largest partial sum.
     return float(max(0.5, time[ended[0]] if len(ended) else time.max()))
+
+
+def _series(where, series):
+    """An array of finite numbers with an axis for the time."""
+    series = np.asarray(series, dtype=float)
+    if series.ndim == 0 or series.size == 0:
+        raise ValueError(f"series: need shape (n,) or (n, …), got {series.shape}")
+    return finite_array(series, where, "series")

@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from .._numbers import whole_number
 from ._arrays import over_frames
-from .harmonics import count_of, harmonics_of
+from .harmonics import harmonics_of
 from .statistics import Spectrum, spectrum
 
 
@@ -34,9 +35,10 @@ def density_modes(vertices, lmax):
     TypeError
         A Quantity that is no length.
     ValueError
-        A wrong shape, a coordinate that is not finite, a vertex at the centre, or a negative lmax.
+        A wrong shape, a coordinate that is not finite, a vertex at the centre, or an lmax that is
+        no whole number of 0 or more.
     """
-    lmax = count_of("lmax", lmax)
+    lmax = whole_number(lmax, "density_modes", "lmax", 0)
 
     def work(frames, faces, first):
         positions = frames - frames.mean(axis=1, keepdims=True)
@@ -70,12 +72,12 @@ def structure_factor(vertices, lmax) -> Spectrum:
     Returns
     -------
     Spectrum
-        l, S(l), its error, and its correlation time in frames. S(0) = N.
+        l, S(l), its error, both without unit, and its correlation time in frames. S(0) = N.
 
     Raises
     ------
     TypeError, ValueError
         As for `density_modes`; fewer than two frames.
     """
-    modes = density_modes(vertices, lmax)
+    modes = density_modes(vertices, whole_number(lmax, "structure_factor", "lmax", 0))
     return spectrum(modes)

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import curve_fit, least_squares
 
+from .._numbers import finite_array, positive_number, whole_number
 from . import theory
 from .correlation import autocorrelation
 
@@ -15,11 +16,11 @@ class ElasticFit(NamedTuple):
     young_over_kT: float
     """Two-dimensional Young modulus Y over kBT, 1/nm²; noise can make it negative."""
     young_error: float
-    """Its standard error."""
+    """Its standard error, 1/nm²."""
     kappa_over_kT: float
-    """Bending rigidity κ over kBT, as given or as fitted."""
+    """Bending rigidity κ over kBT, without unit, as given or as fitted."""
     kappa_error: float
-    """Its standard error, 0 if it was given."""
+    """Its standard error, without unit, 0 if it was given."""
     reduced_chi_squared: float
     """Σ of the squared deviations in error bars, over the degrees of freedom; about 1 if (A18)
     describes the spectrum. NaN without a degree of freedom."""
@@ -31,11 +32,11 @@ class DampingFit(NamedTuple):
     friction: float
     """Damping rate γ, 1/ps."""
     friction_error: float
-    """Its standard error."""
+    """Its standard error, 1/ps."""
     frequency: float
     """Angular frequency ω of the undamped mode, rad/ps, as given or as fitted."""
     frequency_error: float
-    """Its standard error, 0 if it was given."""
+    """Its standard error, rad/ps, 0 if it was given."""
 
 
 def fit_young(spectrum, radius, kappa_over_kT=None, lmin=2, lmax=None) -> ElasticFit:
@@ -53,7 +54,7 @@ def fit_young(spectrum, radius, kappa_over_kT=None, lmin=2, lmax=None) -> Elasti
     radius : float
         r0, nm.
     kappa_over_kT : float, optional
-        κ over kBT. Default: fitted along.
+        κ over kBT, without unit. Default: fitted along.
     lmin, lmax : int, optional
         Range of the fit, 2 or more. Default: all from 2. Modes above about √N / 2 are not those of
         a continuum.
@@ -66,16 +67,18 @@ def fit_young(spectrum, radius, kappa_over_kT=None, lmin=2, lmax=None) -> Elasti
     Raises
     ------
     ValueError
-        Fewer modes than constants, or a mean or an error that is not positive.
+        Fewer modes than constants, a mean or an error that is not positive, or a number out of
+        range.
     RuntimeError
         The fit does not converge.
     """
-    if not radius > 0:
-        raise ValueError(f"radius: need a positive number, got {radius}")
-    if kappa_over_kT is not None and not kappa_over_kT > 0:
-        raise ValueError(f"kappa_over_kT: need a positive number, got {kappa_over_kT}")
+    radius = positive_number(radius, "fit_young", "radius")
+    if kappa_over_kT is not None:
+        kappa_over_kT = positive_number(kappa_over_kT, "fit_young", "kappa_over_kT")
+    lmin = whole_number(lmin, "fit_young", "lmin", 2)
     l = np.asarray(spectrum.l)
-    chosen = (l >= max(2, lmin)) & (l <= (l.max() if lmax is None else lmax))
+    lmax = l.max() if lmax is None else whole_number(lmax, "fit_young", "lmax", lmin)
+    chosen = (l >= lmin) & (l <= lmax)
     l, mean, error = l[chosen], spectrum.mean[chosen], spectrum.error[chosen]
     constants = 1 if kappa_over_kT is not None else 2
     if len(l) < constants:
@@ -161,7 +164,8 @@ def fit_damping(series, interval, lags=None, frequency=None) -> DampingFit:
     interval : float
         Time between frames, ps.
     lags : int, optional
-        Lags that are fitted. Default: n // 10, at least 10. Take one or two memories: what follows
+        Lags that are fitted, 0 … lags − 1: 3 or more, or 2 if the frequency is given, since lag 0
+        is 1 by definition. Default: n // 10, at least 10. Take one or two memories: what follows
         is noise.
     frequency : float, optional
         ω, rad/ps, if it is known. Default: fitted along.
@@ -174,19 +178,22 @@ def fit_damping(series, interval, lags=None, frequency=None) -> DampingFit:
     Raises
     ------
     ValueError
-        Too few frames or a number out of range.
+        Too few frames, a value that is not finite, or a number out of range.
     RuntimeError
         The fit does not converge, or the mode is too overdamped to tell γ without the frequency.
     """
     series = np.asarray(series, dtype=float)
     if series.ndim not in (1, 2) or len(series) < 4:
         raise ValueError(f"series: need shape (n,) or (n, k) with n ≥ 4, got {series.shape}")
-    if not interval > 0:
-        raise ValueError(f"interval: need a positive number, got {interval}")
-    if frequency is not None and not frequency > 0:
-        raise ValueError(f"frequency: need a positive number, got {frequency}")
+    finite_array(series, "fit_damping", "series")
+    interval = positive_number(interval, "fit_damping", "interval")
+    if frequency is not None:
+        frequency = positive_number(frequency, "fit_damping", "frequency")
+    n = len(series)
     if lags is None:
-        lags = min(len(series), max(10, len(series) // 10))
+        lags = min(n, max(10, n // 10))
+    # Each rate takes a lag beyond the first, at which all curves are 1.
+    lags = whole_number(lags, "fit_damping", "lags", 3 if frequency is None else 2, n)
     if series.ndim == 1 or series.shape[1] == 1:
         length = len(series) // 8
         if length < lags:

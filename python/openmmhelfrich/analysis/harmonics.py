@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from .._numbers import whole_number
+
 
 def real_harmonics(directions, lmax):
     """Real orthonormal spherical harmonics, ∫ Y_lm Y_l'm' dΩ = δ_ll' δ_mm'.
@@ -15,15 +17,21 @@ def real_harmonics(directions, lmax):
     directions : array_like
         Unit vectors, shape (…, 3).
     lmax : int
-        Largest l.
+        Largest l, 0 or more.
 
     Returns
     -------
     ndarray
-        Shape (…, (lmax+1)²), index l² + l + m.
+        Shape (…, (lmax+1)²), index l² + l + m, without unit.
+
+    Raises
+    ------
+    ValueError
+        An lmax that is no whole number of 0 or more.
     """
     directions = np.asarray(directions, dtype=float)
-    harmonics = harmonics_of(directions[np.newaxis], count_of("lmax", lmax))[0]
+    lmax = whole_number(lmax, "real_harmonics", "lmax", 0)
+    harmonics = harmonics_of(directions[np.newaxis], lmax)[0]
     return np.moveaxis(harmonics, 0, -1)
 
 
@@ -54,10 +62,3 @@ def harmonics_of(directions, lmax):
                 result[:, l * l + l + m] = np.sqrt(2) * legendre * cosine
                 result[:, l * l + l - m] = np.sqrt(2) * legendre * sine
     return result
-
-
-def count_of(name, value):
-    """A checked integer of 0 or more."""
-    if int(value) != value or value < 0:
-        raise ValueError(f"{name}: need an integer of 0 or more, got {value}")
-    return int(value)

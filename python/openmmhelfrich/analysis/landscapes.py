@@ -7,6 +7,8 @@ import numpy as np
 import openmm
 from openmm import unit
 
+from .._numbers import positive_number, whole_number
+
 
 class Grid(NamedTuple):
     """Points to which a vertex is moved, as `sphere_grid` and `plane_grid` make them."""
@@ -33,8 +35,8 @@ def sphere_grid(mesh, vertex, half_width=None, size=320) -> Grid:
     half_width : float, optional
         Range of u and v on either side, nm. Default: twice the mean length of the vertex' edges.
     size : int
-        Points per side. An odd number has the vertex' own place at the centre. Default 320, as in
-        Figs. 16–19 of doi:10.1103/PhysRevE.108.015301.
+        Points per side, 2 or more. An odd number has the vertex' own place at the centre. Default
+        320, as in Figs. 16–19 of doi:10.1103/PhysRevE.108.015301.
 
     Returns
     -------
@@ -43,9 +45,9 @@ def sphere_grid(mesh, vertex, half_width=None, size=320) -> Grid:
     Raises
     ------
     ValueError
-        There is no such vertex, it lies at the centre, or a number is not positive.
+        There is no such vertex, it lies at the centre, or a number is out of range.
     """
-    centre, radius, normal, first, axis = _frame(mesh, vertex, half_width, size)
+    centre, radius, normal, first, axis = _frame("sphere_grid", mesh, vertex, half_width, size)
     second = np.cross(normal, first)
     u, v = np.meshgrid(axis, axis)
     distance = np.hypot(u, v)
@@ -78,7 +80,7 @@ def plane_grid(mesh, vertex, half_width=None, size=320) -> Grid:
     ValueError
         As for `sphere_grid`.
     """
-    centre, radius, normal, first, axis = _frame(mesh, vertex, half_width, size)
+    centre, radius, normal, first, axis = _frame("plane_grid", mesh, vertex, half_width, size)
     u, v = np.meshgrid(axis, axis)
     points = centre + (radius + v)[..., np.newaxis] * normal + u[..., np.newaxis] * first
     return Grid(points, axis, axis.copy())
@@ -117,7 +119,7 @@ def landscape(mesh, forces, vertex, points):
     openmm.OpenMMException
         The energy does not exist for the mesh itself either.
     """
-    vertex = _vertex(mesh, vertex)
+    vertex = whole_number(vertex, "landscape", "vertex", 0, mesh.num_vertices - 1)
     points = np.asarray(points.points if isinstance(points, Grid) else points, dtype=float)
     if points.ndim == 0 or points.shape[-1] != 3:
         raise ValueError(f"points: need shape (…, 3), got {points.shape}")
@@ -165,31 +167,25 @@ def landscape(mesh, forces, vertex, points):
     return shaped[""] if single else shaped
 
 
-def _vertex(mesh, vertex):
-    if not 0 <= vertex < mesh.num_vertices:
-        raise ValueError(f"vertex: need 0 to {mesh.num_vertices - 1}, got {vertex}")
-    return int(vertex)
-
-
-def _frame(mesh, vertex, half_width, size):
+def _frame(where, mesh, vertex, half_width, size):
     """Centre and radius of the sphere, normal and tangent at the vertex, and axis."""
-    vertex = _vertex(mesh, vertex)
+    vertex = whole_number(vertex, where, "vertex", 0, mesh.num_vertices - 1)
+    size = whole_number(size, where, "size", 2)
     centre = mesh.vertices.mean(axis=0)
     outward = mesh.vertices[vertex] - centre
     radius = np.linalg.norm(outward)
     if not radius > 0:
-        raise ValueError(f"vertex: {vertex} lies at the mean of the vertices, which has no normal")
+        raise ValueError(
+            f"{where}: vertex {vertex} lies at the mean of the vertices, which has no normal"
+        )
     ends = mesh.edges[(mesh.edges == vertex).any(axis=1)]
     others = np.where(ends[:, 0] == vertex, ends[:, 1], ends[:, 0])
     steps = mesh.vertices[others] - mesh.vertices[vertex]
     if half_width is None:
         half_width = 2 * np.linalg.norm(steps, axis=1).mean()
-    if not half_width > 0:
-        raise ValueError(f"half_width: need a positive number, got {half_width}")
-    if int(size) != size or size < 2:
-        raise ValueError(f"size: need an integer of 2 or more, got {size}")
+    half_width = positive_number(half_width, where, "half_width")
     normal = outward / radius
     tangent = steps[0] - (steps[0] @ normal) * normal
     tangent /= np.linalg.norm(tangent)
-    axis = np.linspace(-half_width, half_width, int(size))
+    axis = np.linspace(-half_width, half_width, size)
     return centre, radius, normal, tangent, axis

@@ -6,7 +6,10 @@ import numpy as np
 import openmm
 from openmm import unit
 
+from .._numbers import positive_number, whole_number
+
 _ENERGY = unit.kilojoule_per_mole
+_VARIABLE = (openmm.VariableVerletIntegrator, openmm.VariableLangevinIntegrator)
 
 
 class Lifetime(NamedTuple):
@@ -41,12 +44,12 @@ def time_to_failure(simulation, max_time, interval=100, max_heating=10.0, check=
     Parameters
     ----------
     simulation : openmm.app.Simulation
-        With positions and, for Verlet, velocities. It is at the end of the run afterwards, and of
-        no more use if that failed.
+        With positions, an integrator of fixed step size and, for Verlet, velocities. It is at the
+        end of the run afterwards, and of no more use if that failed.
     max_time : float or Quantity
         Time after which the run ends without failure, ps.
     interval : int
-        Steps between looks at the state.
+        Steps between looks at the state, 1 or more.
     max_heating : float
         Bound of the kinetic energy, above 1.
     check : callable, optional
@@ -63,18 +66,16 @@ def time_to_failure(simulation, max_time, interval=100, max_heating=10.0, check=
     Raises
     ------
     ValueError
-        A number is out of range, or the simulation is out of order before its first step.
+        A number is out of range, the integrator has variable time steps, or the simulation is out
+        of order before its first step.
     """
     if unit.is_quantity(max_time):
         max_time = max_time.value_in_unit(unit.picosecond)
-    if not max_time > 0:
-        raise ValueError(f"max_time: need a positive number, got {max_time}")
-    if int(interval) != interval or interval < 1:
-        raise ValueError(f"interval: need an integer of 1 or more, got {interval}")
+    max_time = positive_number(max_time, "time_to_failure", "max_time")
+    interval = whole_number(interval, "time_to_failure", "interval", 1)
     if not max_heating > 1:
-        raise ValueError(f"max_heating: need more than 1, got {max_heating}")
-    context, integrator = simulation.context, simulation.integrator
-    step_size = integrator.getStepSize().value_in_unit(unit.picosecond)
+        raise ValueError(f"time_to_failure: max_heating needs more than 1, got {max_heating}")
+    context, step_size = simulation.context, _step_size(simulation.integrator)
     total = int(np.ceil(max_time / step_size - 1e-9))
     began = context.getTime().value_in_unit(unit.picosecond)
 
@@ -88,7 +89,7 @@ def time_to_failure(simulation, max_time, interval=100, max_heating=10.0, check=
 
     done = 0
     while done < total:
-        count = min(int(interval), total - done)
+        count = min(interval, total - done)
         try:
             simulation.step(count)
             wrong = _look(context, bound, check)[1]
@@ -102,6 +103,22 @@ def time_to_failure(simulation, max_time, interval=100, max_heating=10.0, check=
         if wrong:
             return Lifetime(done * step_size, done, True, wrong)
     return Lifetime(done * step_size, done, False, "")
+
+
+def _step_size(integrator):
+    """The length of all time steps, ps."""
+    name = type(integrator).__name__
+    if isinstance(integrator, _VARIABLE):
+        raise ValueError(
+            f"time_to_failure: needs time steps of one length, but those of {name} vary with the "
+            "forces; use an integrator of fixed step size"
+        )
+    step_size = integrator.getStepSize().value_in_unit(unit.picosecond)
+    if not step_size > 0:
+        raise ValueError(
+            f"time_to_failure: the step size of {name} is {step_size} ps; set a positive one"
+        )
+    return step_size
 
 
 def _look(context, bound, check):

@@ -15,7 +15,7 @@ class Shape(NamedTuple):
     volume: np.ndarray
     """Volume V within them, nm³."""
     reduced_volume: np.ndarray
-    """6 √π V / A^{3/2}, 1 for a sphere."""
+    """6 √π V / A^{3/2}, without unit, 1 for a sphere."""
     radius_of_gyration: np.ndarray
     """√(λ1 + λ2 + λ3) of the gyration tensor's eigenvalues, nm."""
     asphericity: np.ndarray
@@ -23,7 +23,8 @@ class Shape(NamedTuple):
     acylindricity: np.ndarray
     """λ2 − λ1, nm²."""
     anisotropy: np.ndarray
-    """Relative shape anisotropy κ², 0 for a sphere, ¼ for a flat disk, 1 for a rod."""
+    """Relative shape anisotropy κ², without unit: 0 for a sphere, ¼ for a flat disk and 1 for a
+    rod."""
 
 
 def shape(vertices, triangles) -> Shape:

@@ -16,7 +16,8 @@ def solid_angles(vertices, triangles):
     Parameters
     ----------
     vertices : array_like, Quantity, Mesh, State, Context, Simulation, Trajectory or path
-        Shape (num_vertices, 3) or (num_frames, num_vertices, 3), from the centre of projection.
+        Shape (num_vertices, 3) or (num_frames, num_vertices, 3), nm, from the centre of
+        projection.
     triangles : array_like of int or Mesh
         Shape (num_triangles, 3), counter-clockwise seen from outside.
 

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .._numbers import finite_array
 from .correlation import autocorrelation_time
 
 
@@ -11,9 +12,9 @@ class Estimate(NamedTuple):
     """A mean with its standard error, as `mean_with_error` returns it."""
 
     mean: float
-    """Mean of all values."""
+    """Mean of all values, in the unit of the series."""
     error: float
-    """Standard error of the mean."""
+    """Standard error of the mean, in the same unit."""
     correlation_time: float
     """Integrated autocorrelation time τ in steps; ½ if values are independent."""
     effective_samples: float
@@ -26,9 +27,9 @@ class Spectrum(NamedTuple):
     l: np.ndarray
     """Mode number, 0 … lmax."""
     mean: np.ndarray
-    """⟨|u_lm|²⟩, mean over the 2l + 1 values of m and over the frames."""
+    """⟨|u_lm|²⟩, without unit, mean over the 2l + 1 values of m and over the frames."""
     error: np.ndarray
-    """Standard error of the mean."""
+    """Standard error of the mean, without unit."""
     correlation_time: np.ndarray
     """Integrated autocorrelation time of |u_lm|², in frames; ½ if frames are independent."""
 
@@ -48,7 +49,7 @@ class Spectrum(NamedTuple):
         Returns
         -------
         low, high : ndarray
-            Bounds per l; `high` is infinite where the error is too large to give one.
+            Bounds per l, without unit; `high` is infinite where the error is too large to give one.
         """
         # A mode that never moves has 0/0, and an interval of NaN.
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -65,10 +66,16 @@ def spectrum(amplitudes):
     integrated autocorrelation time, see `autocorrelation_time`. A run shorter than a few τ
     does not know its own τ, and its error bars are too small.
 
+    The modes of one l are equivalent if the mesh has no shape of its own. A hard mesh that keeps
+    its neighbours has a mean shape, an ordered one that of an icosahedron, at l = 6. The mean
+    square contains its square, ⟨u_lm⟩², which is no fluctuation, and differences between its u_lm
+    count as fluctuations without end in τ and in the error.
+
     Parameters
     ----------
     amplitudes : array_like
-        From `mode_amplitudes`, shape (num_frames, (lmax+1)²), at equal intervals of time.
+        u_lm from `mode_amplitudes`, without unit, shape (num_frames, (lmax+1)²), at equal intervals
+        of time.
 
     Returns
     -------
@@ -78,7 +85,7 @@ def spectrum(amplitudes):
     Raises
     ------
     ValueError
-        Another shape, or fewer than two frames.
+        Another shape, fewer than two frames, or an amplitude that is not finite.
     """
     amplitudes = np.asarray(amplitudes, dtype=float)
     if amplitudes.ndim != 2 or round(amplitudes.shape[1] ** 0.5) ** 2 != amplitudes.shape[1]:
@@ -86,6 +93,7 @@ def spectrum(amplitudes):
     num_frames = len(amplitudes)
     if num_frames < 2:
         raise ValueError(f"amplitudes: an error bar needs two frames or more, got {num_frames}")
+    finite_array(amplitudes, "spectrum", "amplitudes")
     modes = np.arange(round(amplitudes.shape[1] ** 0.5))
     mean, error, time = (np.empty(len(modes)) for _ in range(3))
     for l in modes:
@@ -118,7 +126,7 @@ def mean_with_error(series) -> Estimate:
     ValueError
         Another shape, fewer than two values, or a value that is not finite.
     """
-    series = _series(series)
+    series = _series("mean_with_error", series)
     time = autocorrelation_time(series)
     samples = series.size / (2 * time)
     # With a single effective sample the variance about the mean says nothing.
@@ -133,15 +141,15 @@ class Blocking(NamedTuple):
     length: np.ndarray
     """Block lengths 1, 2, 4, … in steps."""
     error: np.ndarray
-    """Standard error of the mean from blocks of this length."""
+    """Standard error of the mean from blocks of this length, in the unit of the series."""
     uncertainty: np.ndarray
-    """Standard error of that error, error / √(2 (blocks − 1))."""
+    """Standard error of that error, error / √(2 (blocks − 1)), in the same unit."""
     best: int
     """Index of the shortest length whose blocks are long against the correlation."""
 
     @property
     def mean_error(self) -> float:
-        """The error at the best length."""
+        """The error at the best length, in the unit of the series."""
         return float(self.error[self.best])
 
 
@@ -170,7 +178,7 @@ def blocking(series) -> Blocking:
     ValueError
         Another shape, fewer than two values, or a value that is not finite.
     """
-    blocks = _series(series)
+    blocks = _series("blocking", series)
     n = len(blocks)
     mean = blocks.mean()
     lengths, errors, counts = [], [], []
@@ -190,11 +198,9 @@ def blocking(series) -> Blocking:
     return Blocking(lengths, errors, errors / np.sqrt(2 * (counts - 1)), best)
 
 
-def _series(series):
+def _series(where, series):
     """Shape (n, k) with two rows or more of finite numbers."""
     series = np.asarray(series, dtype=float)
     if series.ndim not in (1, 2) or len(series) < 2 or series.size == 0:
         raise ValueError(f"series: need shape (n,) or (n, k) with n ≥ 2, got {series.shape}")
-    if not np.isfinite(series).all():
-        raise ValueError(f"series: value {np.argwhere(~np.isfinite(series))[0]} is not finite")
-    return series.reshape(len(series), -1)
+    return finite_array(series, where, "series").reshape(len(series), -1)

@@ -160,24 +160,40 @@ class _Csv:
     def __init__(self, path, columns, append):
         self.path = path
         header = [f"{name} ({unit})" if unit else name for name, unit in columns.items()]
-        if append and path.is_file() and path.stat().st_size > 0:
+        first = ",".join(header) + "\n"
+        found = ""
+        if append and path.is_file():
             with path.open(newline="", encoding="utf-8") as file:
-                found = next(csv.reader(file))
-            if found != header:
-                raise ValueError(f"{path}: its columns are {found}, not {header}; do not append")
-        else:
-            path.write_text(",".join(header) + "\n", encoding="utf-8")
+                found = file.readline()
+        # A header without its end was cut off by a kill, before there was any row.
+        if not found.endswith("\n") and first.startswith(found):
+            path.write_text(first, encoding="utf-8")
+        elif next(csv.reader([found])) != header:
+            raise ValueError(
+                f"{path}: its columns are {next(csv.reader([found]))}, not {header}; do not append"
+            )
 
     def cut(self, step):
         text = self.path.read_bytes()
         # What follows the last end of a line was cut off by a kill.
         lines = text[: text.rfind(b"\n") + 1].splitlines(keepends=True)
-        kept = [line for line in lines[1:] if float(line.split(b",", 1)[0]) <= step]
+        kept = [
+            line for number, line in enumerate(lines[1:], 2) if self._step(line, number) <= step
+        ]
         if len(b"".join([lines[0], *kept])) != len(text):
             # The file is replaced as a whole, so that a kill leaves the old one or the new one.
             new = self.path.with_name(self.path.name + ".new")
             new.write_bytes(b"".join([lines[0], *kept]))
             new.replace(self.path)
+
+    def _step(self, line, number):
+        """The step of a row, its first number."""
+        try:
+            return float(line.split(b",", 1)[0])
+        except ValueError as reason:
+            raise ValueError(
+                f"{self.path}, line {number}: need a step ({reason}); do not append"
+            ) from None
 
     def add(self, values):
         # The file is opened for each row, so that one which was moved away is noticed, and none is

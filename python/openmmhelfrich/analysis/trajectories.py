@@ -7,6 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
+from .._numbers import whole_number
+
 __all__ = ["Trajectory"]
 
 _SUFFIXES = (".xtc", ".dcd", ".pdb")
@@ -55,12 +57,9 @@ class Trajectory:
             )
         if not self.path.is_file():
             raise FileNotFoundError(f"Trajectory: there is no file {self.path}")
-        if start < 0 or stride < 1 or (stop is not None and stop < start):
-            raise ValueError(
-                "Trajectory: need start ≥ 0, stop ≥ start and stride ≥ 1, got "
-                f"start={start}, stop={stop}, stride={stride}"
-            )
-        self.start, self.stop, self.stride = start, stop, stride
+        self.start = whole_number(start, "Trajectory", "start", 0)
+        self.stop = None if stop is None else whole_number(stop, "Trajectory", "stop", self.start)
+        self.stride = whole_number(stride, "Trajectory", "stride", 1)
         self.particles = list(particles) if isinstance(particles, range) else particles
         for frames in self.chunks(1):
             self.num_vertices = frames.shape[1]

@@ -19,14 +19,16 @@ machine or over the workers of any running scheduler.
 
 from __future__ import annotations
 
+import functools
 import itertools
 from collections.abc import Callable, Iterable, Mapping
 
 from tqdm import tqdm
 
-from .backends import SweepError, on_dask, on_this_process
+from .._numbers import whole_number
+from .backends import SweepError, name_of, on_dask, on_this_process
 from .cache import Cache
-from .plain import plain_point, plain_result
+from .plain import plain_point
 
 __all__ = ["Cache", "SweepError", "grid", "sweep"]
 
@@ -69,13 +71,16 @@ def sweep(
     Parameters
     ----------
     function : callable
-        A pure function. It returns a dictionary of arrays, numbers, strings, booleans, None, and
-        lists of these. It is sent to the workers by value if it comes from a script, together with
-        the modules beside the script; only installed packages must be there already.
+        A pure function; with a cache, one that is defined with ``def`` at the top of a module,
+        because stored results are found by its name. It returns a dictionary of arrays, numbers,
+        strings, booleans, None, and lists of these. It is sent to the workers by value if it comes
+        from a script, together with the modules beside the script; only installed packages must be
+        there already.
     points : iterable of dict
         Keyword arguments: numbers, strings, booleans, None, and lists of these.
     cache : str, Path or Cache, optional
-        Folder in which results are stored and looked for, made where needed. Default: none.
+        Folder in which results are stored and looked for, made where needed. Functions of
+        different modules that share a folder need different names. Default: none.
     version : int
         Part of the key of the stored results: count it up when the function changes.
     scheduler : str, optional
@@ -101,22 +106,26 @@ def sweep(
     Raises
     ------
     TypeError
-        A point or a result that is no dictionary of the above.
+        A point that is no dictionary of the above, or a lambda, partial, method or nested function
+        together with a cache.
     ValueError
         A negative number of workers, or workers beside a scheduler.
     OSError
         The scheduler does not answer, or the cache folder cannot be written to.
     SweepError
-        The function raised an exception, or killed its worker several times, at some points; or
-        the scheduler has no workers or went away. What was finished is stored. Or results are
-        missing that must not be computed.
+        The function raised an exception, returned no dictionary of the above, or killed its worker
+        several times, at some points: the message names them, and the others are computed. Or the
+        scheduler has no workers or went away. What was finished is in the cache, if there is one.
+        Or results are missing that must not be computed.
     """
-    if workers is not None and (isinstance(workers, bool) or not int(workers) == workers >= 0):
-        raise ValueError(f"sweep: workers needs a whole number of 0 or more, got {workers!r}")
+    if workers is not None:
+        workers = whole_number(workers, "sweep", "workers", 0)
     if scheduler is not None and workers is not None:
         raise ValueError("sweep: give either a scheduler or a number of workers, not both")
     points = [plain_point(point) for point in points]
-    name = function.__name__
+    name = name_of(function)
+    if cache is not None:
+        _check_named(function, name)
     store = cache if cache is None or isinstance(cache, Cache) else Cache(cache)
     keys = [Cache.key(name, point, version) for point in points]
     # Equal points are computed once.
@@ -150,21 +159,41 @@ def sweep(
                     failures[key] = outcome
                 else:
                     result, seconds = outcome
-                    results[key] = {**plain_result(result, name), "seconds": seconds}
+                    results[key] = {**result, "seconds": seconds}
                     if store:
                         store.save(name, key, missing[key], results[key])
                 bar.update()
     if failures:
-        raise _failed(name, missing, failures)
+        raise _failed(name, missing, failures, store)
     return [results[key] for key in keys]
 
 
-def _failed(name, points, failures):
+def _check_named(function, name):
+    """Refuse what has no name of its own, by which stored results could be told from others'."""
+    if isinstance(function, functools.partial):
+        kind = f"a partial of {name}"
+    elif name == "<lambda>":
+        kind = "a lambda"
+    elif getattr(function, "__qualname__", None) != name:
+        kind = getattr(function, "__qualname__", f"an object of class {name}")
+        kind += ", which is not at the top of a module"
+    else:
+        return
+    raise TypeError(
+        f"sweep: a cache finds results by the name of the function, and got {kind}; define a "
+        "function with a name of its own at the top of a module, with all that it depends on as "
+        "arguments, or leave out the cache"
+    )
+
+
+def _failed(name, points, failures, store):
     lines = [f"  {points[key]}: {type(error).__name__}: {error}" for key, error in failures.items()]
     shown = lines[:10] + ([f"  … and {len(lines) - 10} more"] if len(lines) > 10 else [])
     error = SweepError(
         f"sweep: {name} failed at {len(failures)} of {len(points)} points; the others are "
-        "stored:\n" + "\n".join(shown)
+        + (f"stored in {store.folder}" if store else "lost, as there is no cache")
+        + ":\n"
+        + "\n".join(shown)
     )
     error.__cause__ = next(iter(failures.values()))
     return error

@@ -15,7 +15,9 @@ from pathlib import Path
 
 from tqdm import tqdm
 
-__all__ = ["SweepError", "on_dask", "on_this_process"]
+from .plain import plain_result
+
+__all__ = ["SweepError", "name_of", "on_dask", "on_this_process"]
 
 # How long to wait for the first worker of a scheduler, and between looks at its health, s.
 _FIRST_WORKER = 60
@@ -23,7 +25,7 @@ _HEALTH = 10
 
 
 class SweepError(RuntimeError):
-    """Some points of a sweep failed; the message names them. The others are stored."""
+    """Some points of a sweep failed; the message names them. A cache has the others."""
 
 
 def on_this_process(function, points, scheduler, workers):
@@ -122,10 +124,21 @@ def _deaf_to_interrupts():
 
 
 def timed(function, point):
-    """The result of the function at a point, and the processor time that it took, s."""
+    """The checked result of the function at a point, and the processor time that it took, s.
+
+    It is checked here, where it was computed, so that a bad result is a failure of this point.
+    """
     started = time.process_time()
     result = function(**point)
-    return result, time.process_time() - started
+    seconds = time.process_time() - started
+    return plain_result(result, name_of(function)), seconds
+
+
+def name_of(function):
+    """What a function is called, for messages and keys; of a partial, what is partly applied."""
+    while isinstance(function, functools.partial):
+        function = function.func
+    return getattr(function, "__name__", type(function).__name__)
 
 
 def _call(payload, point):

@@ -9,6 +9,7 @@ import os
 import sys
 import tempfile
 import zipfile
+import zlib
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -20,12 +21,17 @@ __all__ = ["RECORD", "Cache"]
 #: The entry of a file that holds the point, and those results that are no arrays.
 RECORD = "json"
 
+# How NumPy's entries end, and what they are called in files that have arrays of other names.
+_SUFFIX = ".npy"
+_NUMBERED = "array {}"
+
 
 class Cache:
     """A folder of results, one NumPy ``.npz`` file for each point of each function.
 
-    A file appears only when it is complete, so that several sweeps may share a folder and an
-    interruption leaves no broken one. ``numpy.load(file)["json"]`` shows the point.
+    Functions are told apart by their names, points by all of their arguments. A file appears only
+    when it is complete, so that several sweeps may share a folder and an interruption leaves no
+    broken one. ``numpy.load(file)["json"]`` shows the point.
 
     Parameters
     ----------
@@ -52,10 +58,17 @@ class Cache:
         try:
             with np.load(path, allow_pickle=False) as file:
                 record = json.loads(str(file[RECORD]))
-                arrays = {entry: file[entry] for entry in file.files if entry != RECORD}
+                # Without a list of names in the record the entries have those of the arrays.
+                names = record.get("arrays")
+                stored = [_NUMBERED.format(i) for i in range(len(names))] if names else file.files
+                arrays = {
+                    name: file[entry]
+                    for name, entry in zip(names or stored, stored, strict=True)
+                    if entry != RECORD
+                }
         except FileNotFoundError:
             return None
-        except (zipfile.BadZipFile, EOFError, ValueError, KeyError) as error:
+        except (zipfile.BadZipFile, zlib.error, EOFError, ValueError, KeyError) as error:
             tqdm.write(
                 f"sweep: computing {dict(point)} again: {path} is broken ({error})", sys.stderr
             )
@@ -70,11 +83,14 @@ class Cache:
         path.parent.mkdir(parents=True, exist_ok=True)
         arrays = {entry: value for entry, value in result.items() if isinstance(value, np.ndarray)}
         rest = {entry: value for entry, value in result.items() if entry not in arrays}
-        record = json.dumps({"point": point, "result": rest})
+        record = {"point": point, "result": rest}
+        if not all(map(_names_an_entry, arrays)):
+            record["arrays"] = list(arrays)
+            arrays = {_NUMBERED.format(i): value for i, value in enumerate(arrays.values())}
         handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".part")
         try:
             with os.fdopen(handle, "wb") as file:
-                np.savez_compressed(file, **{RECORD: np.array(record)}, **arrays)
+                _write(file, {RECORD: np.array(json.dumps(record)), **arrays})
             # Temporary files are for their owner alone; a folder of results may be shared.
             os.chmod(temporary, 0o666 & ~_umask())
             os.replace(temporary, path)
@@ -82,6 +98,19 @@ class Cache:
             with contextlib.suppress(FileNotFoundError):
                 os.unlink(temporary)
             raise
+
+
+def _names_an_entry(name):
+    """Whether an entry of a file can have the name of an array, and be found by it."""
+    return name != "" and name.isprintable() and not name.endswith(_SUFFIX)
+
+
+def _write(file, arrays):
+    """Do as `numpy.savez_compressed`, which has arguments that arrays must not be called like."""
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, array in arrays.items():
+            with archive.open(name + _SUFFIX, "w", force_zip64=True) as entry:
+                np.lib.format.write_array(entry, np.asanyarray(array), allow_pickle=False)
 
 
 def _umask():

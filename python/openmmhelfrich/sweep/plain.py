@@ -14,19 +14,17 @@ __all__ = ["plain_point", "plain_result"]
 def plain_result(result, name):
     """A result of the function `name`, checked, numbers as JSON keeps them; else TypeError."""
     if not isinstance(result, Mapping):
-        raise TypeError(
-            f"sweep: {name} must return a dictionary, got {type(result).__name__}: {result!r}"
-        )
+        raise TypeError(f"{name} must return a dictionary, got {_shown(result)}")
     plain = {}
     for entry, value in result.items():
         if entry in (RECORD, "seconds"):
-            raise TypeError(f"sweep: {name} must not call a result {entry!r}; take another name")
+            raise TypeError(f"{name} must not call a result {entry!r}; take another name")
         if isinstance(value, np.ndarray) and value.ndim > 0:
             if value.dtype.hasobject:
-                raise TypeError(f"sweep: {name} returned objects in the array {entry!r}")
+                raise TypeError(f"{name} returned objects in the array {entry!r}; return numbers")
             plain[str(entry)] = value
         else:
-            plain[str(entry)] = _plain_value(value, f"sweep: {name}: result {entry!r}")
+            plain[str(entry)] = _plain_value(value, f"{name}: result {entry!r}")
     return plain
 
 
@@ -34,8 +32,14 @@ def plain_point(point):
     """A point, checked, with numbers and lists as JSON keeps them; else TypeError."""
     where = "sweep: point"
     if not isinstance(point, Mapping):
-        raise TypeError(f"{where} must be a dictionary, got {type(point).__name__}: {point!r}")
+        raise TypeError(f"{where} must be a dictionary, got {_shown(point)}")
     return {str(name): _plain_value(value, f"{where}: {name!r}") for name, value in point.items()}
+
+
+def _shown(value):
+    """The type of a value, and the value if it is short."""
+    text = repr(value)
+    return f"{type(value).__name__}: {text if len(text) <= 80 else text[:79] + '…'}"
 
 
 def _plain_value(value, where):

@@ -10,16 +10,22 @@ def check_modes(l):
         raise ValueError(f"l: need 2 or more, got {lowest}")
 
 
-def check_positive(name, value):
-    """Refuse what is not a positive number, or an array of them."""
-    if not np.all(np.asarray(value) > 0):
-        raise ValueError(f"{name}: need a positive number, got {value}")
+def positive(name, value):
+    """Positive numbers as an array of floats; ValueError for others and for NaN."""
+    array = np.asarray(value, dtype=float)
+    return _only(array, array > 0, f"{name}: need a positive number")
 
 
-def check_not_negative(name, value):
-    """Refuse negative numbers and NaN."""
-    if not np.all(np.asarray(value) >= 0):
-        raise ValueError(f"{name}: need 0 or more, got {value}")
+def not_negative(name, value):
+    """Numbers of 0 or more as an array of floats; ValueError for others and for NaN."""
+    array = np.asarray(value, dtype=float)
+    return _only(array, array >= 0, f"{name}: need 0 or more")
+
+
+def _only(array, good, need):
+    if not good.all():
+        raise ValueError(f"{need}, got {array[~good][0]:g}")
+    return array
 
 
 def plain(value):

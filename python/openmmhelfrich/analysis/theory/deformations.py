@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ._checks import check_not_negative, check_positive, plain
+from ._checks import not_negative, plain, positive
 
 
 def area_energy(amplitude, modulus, radius):
@@ -13,10 +13,10 @@ def area_energy(amplitude, modulus, radius):
     Parameters
     ----------
     amplitude : float or array_like
-        u_20.
-    modulus : float
+        u_20, without unit.
+    modulus : float or array_like
         kA, kJ/mol/nm².
-    radius : float
+    radius : float or array_like
         r0, nm.
 
     Returns
@@ -29,8 +29,7 @@ def area_energy(amplitude, modulus, radius):
     ValueError
         A negative modulus, or a radius that is not positive.
     """
-    check_not_negative("modulus", modulus)
-    check_positive("radius", radius)
+    modulus, radius = not_negative("modulus", modulus), positive("radius", radius)
     return plain(2 / np.pi * modulus * np.asarray(amplitude, dtype=float) ** 4 * radius**2)
 
 
@@ -42,10 +41,10 @@ def volume_energy(amplitude, modulus, radius):
     Parameters
     ----------
     amplitude : float or array_like
-        u_20.
-    modulus : float
+        u_20, without unit.
+    modulus : float or array_like
         kV, kJ/mol/nm³.
-    radius : float
+    radius : float or array_like
         r0, nm.
 
     Returns
@@ -58,8 +57,7 @@ def volume_energy(amplitude, modulus, radius):
     ValueError
         A negative modulus, or a radius that is not positive.
     """
-    check_not_negative("modulus", modulus)
-    check_positive("radius", radius)
+    modulus, radius = not_negative("modulus", modulus), positive("radius", radius)
     u = np.asarray(amplitude, dtype=float)
     return plain(3 / (8 * np.pi) * modulus * u**4 * radius**3)
 
@@ -70,8 +68,8 @@ def bending_energy(amplitude, rigidity):
     Parameters
     ----------
     amplitude : float or array_like
-        u_20.
-    rigidity : float
+        u_20, without unit.
+    rigidity : float or array_like
         κ, kJ/mol.
 
     Returns
@@ -84,5 +82,5 @@ def bending_energy(amplitude, rigidity):
     ValueError
         A negative rigidity.
     """
-    check_not_negative("rigidity", rigidity)
+    rigidity = not_negative("rigidity", rigidity)
     return plain(rigidity * (8 * np.pi + 12 * np.asarray(amplitude, dtype=float) ** 2))

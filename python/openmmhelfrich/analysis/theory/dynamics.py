@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ._checks import check_modes, check_not_negative, check_positive, plain
+from ._checks import check_modes, not_negative, plain, positive
 from .spectra import stiffness
 
 
@@ -13,13 +13,13 @@ def mode_frequency(l, rigidity, mass, num_vertices, radius):
     ----------
     l : int or array_like
         Mode number, 2 or more.
-    rigidity : float
+    rigidity : float or array_like
         Bending rigidity κ, kJ/mol.
-    mass : float
+    mass : float or array_like
         Mass m of one vertex, amu; the vesicle's is M = N m.
-    num_vertices : int
+    num_vertices : int or array_like
         Number N of vertices.
-    radius : float
+    radius : float or array_like
         Radius r0 of the vesicle, nm.
 
     Returns
@@ -33,20 +33,30 @@ def mode_frequency(l, rigidity, mass, num_vertices, radius):
         An l below 2, or another argument that is not positive.
     """
     check_modes(l)
-    for name, value in (
-        ("rigidity", rigidity),
-        ("mass", mass),
-        ("num_vertices", num_vertices),
-        ("radius", radius),
-    ):
-        check_positive(name, value)
-    return plain(np.sqrt(4 * np.pi * rigidity / (num_vertices * mass * radius**2) * stiffness(l)))
+    total = positive("num_vertices", num_vertices) * positive("mass", mass)
+    rigidity, radius = positive("rigidity", rigidity), positive("radius", radius)
+    return plain(np.sqrt(4 * np.pi * rigidity / (total * radius**2) * stiffness(l)))
 
 
 def mode_period(l, rigidity, mass, num_vertices, radius):
-    """Period of an undamped mode, τ_l = 2π / ω_l with ω_l of `mode_frequency`, ps.
+    """Period of an undamped mode, τ_l = 2π / ω_l with ω_l of `mode_frequency`.
 
     The slowest is τ_2, about 11 460 ps for the vesicle of the paper.
+
+    Parameters
+    ----------
+    l, rigidity, mass, num_vertices, radius
+        As for `mode_frequency`: κ in kJ/mol, m in amu, r0 in nm.
+
+    Returns
+    -------
+    float or ndarray
+        τ_l, ps.
+
+    Raises
+    ------
+    ValueError
+        As for `mode_frequency`.
     """
     return 2 * np.pi / mode_frequency(l, rigidity, mass, num_vertices, radius)
 
@@ -57,16 +67,22 @@ def overdamped_time(frequency, friction):
     Parameters
     ----------
     frequency : float or array_like
-        ω of the undamped mode, rad/ps.
-    friction : float
-        γ, 1/ps. The formula holds for γ much larger than 2ω, and always for Brownian dynamics.
+        ω of the undamped mode, rad/ps, above 0.
+    friction : float or array_like
+        γ, 1/ps, above 0. The formula holds for γ much larger than 2ω, and always for Brownian
+        dynamics.
 
     Returns
     -------
     float or ndarray
         Relaxation time of u_lm, ps; that of |u_lm|² is half as long.
+
+    Raises
+    ------
+    ValueError
+        A frequency or friction that is not positive.
     """
-    return plain(friction / np.asarray(frequency, dtype=float) ** 2)
+    return plain(positive("friction", friction) / positive("frequency", frequency) ** 2)
 
 
 def internal_friction(frequency, ratio=0.15):
@@ -78,17 +94,21 @@ def internal_friction(frequency, ratio=0.15):
     Parameters
     ----------
     frequency : float or array_like
-        ω_l, rad/ps, see `mode_frequency`.
-    ratio : float
-        γ_l / ω_l. Default 0.15.
+        ω_l, rad/ps, 0 or more, see `mode_frequency`.
+    ratio : float or array_like
+        γ_l / ω_l, 0 or more, without unit. Default 0.15.
 
     Returns
     -------
     float or ndarray
         γ_l, 1/ps, a rate as in `langevin_autocorrelation`.
+
+    Raises
+    ------
+    ValueError
+        A negative frequency or ratio.
     """
-    check_not_negative("ratio", ratio)
-    return plain(ratio * np.asarray(frequency, dtype=float))
+    return plain(not_negative("ratio", ratio) * not_negative("frequency", frequency))
 
 
 def newtonian_autocorrelation(time, frequency):
@@ -99,14 +119,19 @@ def newtonian_autocorrelation(time, frequency):
     time : float or array_like
         t, ps.
     frequency : float or array_like
-        ω, rad/ps; it broadcasts against the time.
+        ω, rad/ps, 0 or more; it broadcasts against the time.
 
     Returns
     -------
     float or ndarray
-        1 at t = 0.
+        The normalised autocorrelation, without unit, 1 at t = 0.
+
+    Raises
+    ------
+    ValueError
+        A negative frequency.
     """
-    return plain(np.cos(np.asarray(frequency, dtype=float) * np.asarray(time, dtype=float)))
+    return plain(np.cos(not_negative("frequency", frequency) * np.asarray(time, dtype=float)))
 
 
 def langevin_autocorrelation(time, frequency, friction):
@@ -134,19 +159,17 @@ def langevin_autocorrelation(time, frequency, friction):
     Returns
     -------
     float or ndarray
-        The normalised autocorrelation.
+        The normalised autocorrelation, without unit.
 
     Raises
     ------
     ValueError
         A negative frequency or friction.
     """
-    check_not_negative("frequency", frequency)
-    check_not_negative("friction", friction)
     t, omega, gamma = np.broadcast_arrays(
         np.abs(np.asarray(time, dtype=float)),
-        np.asarray(frequency, dtype=float),
-        np.asarray(friction, dtype=float),
+        not_negative("frequency", frequency),
+        not_negative("friction", friction),
     )
     square = (omega - gamma / 2) * (omega + gamma / 2)
     shifted = np.sqrt(np.abs(square))
@@ -172,22 +195,21 @@ def brownian_autocorrelation(time, frequency, friction):
     time : float or array_like
         t, ps; the function is even in t.
     frequency : float or array_like
-        ω, rad/ps.
+        ω, rad/ps, 0 or more.
     friction : float or array_like
-        γ, 1/ps, above 0.
+        γ, 1/ps, above 0. The three arguments broadcast against each other.
 
     Returns
     -------
     float or ndarray
-        1 at t = 0.
+        The normalised autocorrelation, without unit, 1 at t = 0.
 
     Raises
     ------
     ValueError
-        A friction that is not positive.
+        A negative frequency, or a friction that is not positive.
     """
-    check_positive("friction", friction)
-    rate = np.asarray(frequency, dtype=float) ** 2 / np.asarray(friction, dtype=float)
+    rate = not_negative("frequency", frequency) ** 2 / positive("friction", friction)
     return plain(np.exp(-np.abs(np.asarray(time, dtype=float)) * rate))
 
 

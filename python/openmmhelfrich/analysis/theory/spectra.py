@@ -2,13 +2,26 @@
 
 import numpy as np
 
-from ._checks import check_modes, check_not_negative, check_positive, plain
+from ..._numbers import whole_number
+from ._checks import check_modes, not_negative, plain, positive
 
 
 def stiffness(l):
-    """The factor (l+2)(l+1) l (l−1) by which bending grows with the mode number; 24 for l = 2."""
+    """The factor (l+2)(l+1) l (l−1) by which bending grows with the mode number (A16).
+
+    Parameters
+    ----------
+    l : int or array_like
+        Mode number.
+
+    Returns
+    -------
+    float or ndarray
+        The factor, without unit: 0 for l = 0 and 1, 24 for l = 2. Times κ it is the stiffness of a
+        mode, in the unit of κ.
+    """
     l = np.asarray(l, dtype=float)
-    return (l + 2) * (l + 1) * l * (l - 1)
+    return plain((l + 2) * (l + 1) * l * (l - 1))
 
 
 def fluid_spectrum(l, kappa_over_kT):
@@ -20,13 +33,13 @@ def fluid_spectrum(l, kappa_over_kT):
     ----------
     l : int or array_like
         Mode number, 2 or more: l = 0 and 1 change size and place, which bending does not resist.
-    kappa_over_kT : float
-        Bending rigidity κ over kBT.
+    kappa_over_kT : float or array_like
+        Bending rigidity κ over kBT, without unit.
 
     Returns
     -------
     float or ndarray
-        ⟨|u_lm|²⟩, the same for every m.
+        ⟨|u_lm|²⟩, without unit, the same for every m.
 
     Raises
     ------
@@ -34,8 +47,7 @@ def fluid_spectrum(l, kappa_over_kT):
         An l below 2, or a rigidity that is not positive.
     """
     check_modes(l)
-    check_positive("kappa_over_kT", kappa_over_kT)
-    return plain(1 / (kappa_over_kT * stiffness(l)))
+    return plain(1 / (positive("kappa_over_kT", kappa_over_kT) * stiffness(l)))
 
 
 def elastic_spectrum(l, kappa_over_kT, young_over_kT, radius):
@@ -47,17 +59,17 @@ def elastic_spectrum(l, kappa_over_kT, young_over_kT, radius):
     ----------
     l : int or array_like
         Mode number, 2 or more.
-    kappa_over_kT : float
-        Bending rigidity κ over kBT.
-    young_over_kT : float
+    kappa_over_kT : float or array_like
+        Bending rigidity κ over kBT, without unit.
+    young_over_kT : float or array_like
         Two-dimensional Young modulus Y over kBT, 1/nm². `young_modulus` gives that of a mesh.
-    radius : float
+    radius : float or array_like
         Radius r0 of the vesicle, nm.
 
     Returns
     -------
     float or ndarray
-        ⟨|u_lm|²⟩, the same for every m.
+        ⟨|u_lm|²⟩, without unit, the same for every m.
 
     Raises
     ------
@@ -65,9 +77,8 @@ def elastic_spectrum(l, kappa_over_kT, young_over_kT, radius):
         An l below 2, a rigidity or radius that is not positive, or a negative Young modulus.
     """
     check_modes(l)
-    check_positive("kappa_over_kT", kappa_over_kT)
-    check_positive("radius", radius)
-    check_not_negative("young_over_kT", young_over_kT)
+    kappa_over_kT, radius = positive("kappa_over_kT", kappa_over_kT), positive("radius", radius)
+    young_over_kT = not_negative("young_over_kT", young_over_kT)
     n = np.asarray(l, dtype=float) * (np.asarray(l, dtype=float) + 1)
     shear = young_over_kT * radius**2 * 3 * (n - 2) / (3 * n - 2)
     return plain(1 / (kappa_over_kT * stiffness(l) + shear))
@@ -78,15 +89,20 @@ def young_modulus(softness):
 
     Parameters
     ----------
-    softness : float
-        Ξ = (d / h̄)², the square of least over mean triangle height.
+    softness : float or array_like
+        Ξ = (d / h̄)², the square of least over mean triangle height, without unit, 0 or more.
 
     Returns
     -------
-    float
+    float or ndarray
         Y over kBT, 1/nm².
+
+    Raises
+    ------
+    ValueError
+        A negative softness.
     """
-    return 1.8e-3 * (softness / 0.59) ** 2
+    return plain(1.8e-3 * (not_negative("softness", softness) / 0.59) ** 2)
 
 
 def tense_spectrum(l, kappa_over_kT, tension_over_kT, radius):
@@ -101,17 +117,17 @@ def tense_spectrum(l, kappa_over_kT, tension_over_kT, radius):
     ----------
     l : int or array_like
         Mode number, 2 or more.
-    kappa_over_kT : float
-        Bending rigidity κ over kBT.
-    tension_over_kT : float
+    kappa_over_kT : float or array_like
+        Bending rigidity κ over kBT, without unit.
+    tension_over_kT : float or array_like
         σ over kBT, 1/nm². A sphere is stable above −6 κ / r0².
-    radius : float
+    radius : float or array_like
         Radius r0 of the vesicle, nm.
 
     Returns
     -------
     float or ndarray
-        ⟨|u_lm|²⟩, the same for every m.
+        ⟨|u_lm|²⟩, without unit, the same for every m.
 
     Raises
     ------
@@ -120,14 +136,17 @@ def tense_spectrum(l, kappa_over_kT, tension_over_kT, radius):
         is not stable.
     """
     check_modes(l)
-    check_positive("kappa_over_kT", kappa_over_kT)
-    check_positive("radius", radius)
-    reduced = tension_over_kT * radius**2 / kappa_over_kT
-    if not reduced > -6:
+    kappa_over_kT, radius = positive("kappa_over_kT", kappa_over_kT), positive("radius", radius)
+    tension, least = np.broadcast_arrays(
+        np.asarray(tension_over_kT, dtype=float), -6 * kappa_over_kT / radius**2
+    )
+    buckled = ~(tension > least)
+    if buckled.any():
         raise ValueError(
-            f"tension_over_kT: need more than {-6 * kappa_over_kT / radius**2:.6g}, where a sphere "
-            f"buckles, got {tension_over_kT}"
+            f"tension_over_kT: need more than {least[buckled][0]:.6g}, where a sphere buckles, got "
+            f"{tension[buckled][0]:g}"
         )
+    reduced = tension * radius**2 / kappa_over_kT
     n = np.asarray(l, dtype=float) * (np.asarray(l, dtype=float) + 1)
     return plain(1 / (kappa_over_kT * (n - 2) * (n + reduced)))
 
@@ -142,21 +161,22 @@ def mode_energy(amplitudes, rigidity):
     Parameters
     ----------
     amplitudes : array_like
-        u_lm at index l² + l + m, shape (…, (lmax+1)²).
-    rigidity : float
-        κ; the result has its unit.
+        u_lm at index l² + l + m, without unit, shape (…, (lmax+1)²).
+    rigidity : float or array_like
+        κ, kJ/mol, or in any other unit of energy, which the result then has; an array has one for
+        each set of amplitudes.
 
     Returns
     -------
     float or ndarray
-        E, shape (…).
+        E, kJ/mol, shape (…).
 
     Raises
     ------
     ValueError
         The last axis has no (lmax+1)² entries, or the rigidity is not positive.
     """
-    check_positive("rigidity", rigidity)
+    rigidity = positive("rigidity", rigidity)
     u = np.asarray(amplitudes, dtype=float)
     count = round(u.shape[-1] ** 0.5) if u.ndim else 0
     if not count or count**2 != u.shape[-1]:
@@ -175,22 +195,21 @@ def area_excess(kappa_over_kT, lmax):
 
     Parameters
     ----------
-    kappa_over_kT : float
-        Bending rigidity κ over kBT.
+    kappa_over_kT : float or array_like
+        Bending rigidity κ over kBT, without unit.
     lmax : int
         Largest mode of the vesicle, 2 or more.
 
     Returns
     -------
-    float
+    float or ndarray
         The excess, without unit.
 
     Raises
     ------
     ValueError
-        An lmax below 2, or a rigidity that is not positive.
+        An lmax that is no whole number of 2 or more, or a rigidity that is not positive.
     """
-    check_modes(lmax)
-    check_positive("kappa_over_kT", kappa_over_kT)
-    l = np.arange(2, int(lmax) + 1)
-    return float(np.sum((2 * l + 1) / (l * (l + 1))) / (8 * np.pi * kappa_over_kT))
+    l = np.arange(2, whole_number(lmax, "area_excess", "lmax", 2) + 1)
+    kappa_over_kT = positive("kappa_over_kT", kappa_over_kT)
+    return plain(np.sum((2 * l + 1) / (l * (l + 1))) / (8 * np.pi * kappa_over_kT))
