@@ -122,6 +122,48 @@ def test_report(results, tmp_path):
             assert (tmp_path / "reproduction" / picture["file"]).exists()
 
 
+def test_report_takes_in_a_figure_anew_and_leaves_the_others(tmp_path):
+    """Names of pictures that begin alike belong to different figures."""
+    record = {
+        "target": "Fig. 6",
+        "title": "Spectra",
+        "quick": False,
+        "parameters": "",
+        "reduced": [],
+        "rows": [{"what": "one | two", "measured": "1", "expected": "2", "passed": False}],
+        "notes": [],
+        "tables": [{"caption": "All:", "header": ["a", "b"], "rows": [["1", "2|3"]]}],
+        "seconds": 1.0,
+    }
+
+    def write(name, *pictures):
+        pictures = [{"file": f"{name}{suffix}.png", "caption": "x"} for suffix in pictures]
+        text = json.dumps(record | {"name": name, "pictures": pictures})
+        (tmp_path / f"{name}.json").write_text(text, encoding="utf-8")
+        for picture in pictures:
+            (tmp_path / picture["file"]).write_bytes(b"")
+
+    write("fig06", "", "_old")
+    write("fig06b", "")
+    run("report.py", "--results", tmp_path, "--out", tmp_path / "docs")
+    (tmp_path / "fig06b.json").unlink()
+    write("fig06", "", "_ratio")
+    printed = run("report.py", "--results", tmp_path, "--out", tmp_path / "docs").stdout
+    pictures = {path.name for path in (tmp_path / "docs" / "reproduction").glob("*.png")}
+    assert pictures == {"fig06.png", "fig06_ratio.png", "fig06b.png"}
+    assert "outside: fig06: one | two: measured 1, expected 2" in printed
+    report = (tmp_path / "docs" / "reproduction.md").read_text(encoding="utf-8")
+    assert "| a | b |\n| --- | --- |\n| 1 | 2\\|3 |" in report
+    assert "| one \\| two | 1 | 2 | **outside** |" in report
+
+
+def test_a_figure_that_needs_files_says_which_are_missing(tmp_path):
+    result = run("fig08_red_cell.py", "--quick", "--files", tmp_path, check=False)
+    assert result.returncode == 4
+    assert str(tmp_path / "SM_RBC_C0.txt") in result.stderr
+    assert "--files FOLDER" in result.stderr
+
+
 def test_report_of_nothing(tmp_path):
     result = run("report.py", "--out", tmp_path, check=False)
     assert result.returncode != 0
