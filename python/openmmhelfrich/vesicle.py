@@ -224,7 +224,9 @@ class Vesicle:
     def max_time_step(self):
         """Largest time step with which the paper's runs last, ps: 0.1 √Ξ τ_fastest (Fig. 5).
 
-        It is a rule of thumb for the defaults of the other moduli, not a proof of stability.
+        It is a rule of thumb for the defaults of the other moduli, not a proof of stability. The
+        repulsion of the heights gets no softer with the rigidity: below 20 kBT take the value of 20
+        kBT. Brownian steps, which have no inertia, need to be some twenty times shorter.
         """
         return 0.1 * math.sqrt(self._softness) * self.tau_fastest
 
