@@ -121,7 +121,7 @@ def main():
         shape=["oblate", "prolate"],
         reduced_volume=volumes,
         softness=[0.037],
-        subdivision=[figure.choose(10, 5)],
+        subdivision=[10],
         duration=[duration],
         samples=[round(100 * duration)],
         time_step=[time_step],
