@@ -22,10 +22,11 @@ robust curvature energy discretization*, Phys. Rev. E **108**, 015301 (2023),
 [doi:10.1103/PhysRevE.108.015301](https://doi.org/10.1103/PhysRevE.108.015301), computed anew with
 this library. `examples/paper/` has a script for each; `--quick` makes a small version in seconds to
 minutes, `make paper` all of these; without it a script has the size shown here. This page is
-written by
-`examples/paper/report.py` from the numbers of the scripts; what is behind those of the
-fluctuations is told in [reproduction_fluctuations.md](reproduction_fluctuations.md). Times are
-those of one processor core, on a busy machine, where they are up to twice those of an idle one.
+written by `examples/paper/report.py` from the numbers of the scripts; what is behind those of the
+fluctuations, and why some lie outside, is told in
+[reproduction_fluctuations.md](reproduction_fluctuations.md). Times are those of one processor core,
+on a busy machine, where they are up to twice those of an idle one; figures that show the same runs
+have the same time.
 """
 
 

@@ -74,7 +74,7 @@ def check(figure, num_vertices, factors):
         "falls with Ξ, below the 2/3 of free heights",
         all(np.diff([level for level, _ in levels]) < 0) and levels[0][0] < GAS_AND_HEIGHTS,
     )
-    figure.check("the first of these", levels[0][0], 1, 0.1, levels[0][1])
+    figure.check("S of long waves at Ξ = 0.037", levels[0][0], 1, 0.1, levels[0][1])
     mean, error = (values[-5:].mean() for values in factors[softest])
     figure.check("S of short waves, l ≥ 2.5 √N, Ξ = 0.037", mean, 1, 0.1, error)
     figure.note(
