@@ -45,8 +45,7 @@ def main():
     figure.parameters(
         f"N = {size['base']}, κ = 20 kBT, r0 = 1000 nm, Ξ = 0.037, Jülicher where not varied; "
         f"kV = 0; LangevinMiddle, 300 K, γ = ω_2, Δt = 0.075 √Ξ τ_fastest, ordered meshes; "
-        f"{size['samples']} samples of {PERIODS} τ_2 ({size['same']} of other r0 and schemes, "
-        f"{size['small']} of N < 1000, {size['few']} of other N, κ, Ξ)"
+        f"{size['samples']} samples of {PERIODS} τ_2"
     )
     check(figure, size, spectra)
     base = Point(size["base"])

@@ -24,15 +24,13 @@ GAS_AND_HEIGHTS = 2 / 3
 def main():
     figure = Figure("sm05", "SM 5", "Density modes of the vertices", __doc__)
     size = figure.choose(FULL, QUICK)
-    points = {Point(size["base"], softness=softness): size["few"] for softness in SOFTNESS}
-    # The softest point is that of Fig. 6 with all of its samples.
-    points[Point(size["base"])] = size["samples"]
+    points = {Point(size["base"], softness=softness): size["samples"] for softness in SOFTNESS}
     runs = measure(points, figure)
     lmax = int(2.6 * size["base"] ** 0.5)
     factors = {point.softness: structure(of_point, lmax) for point, of_point in runs.items()}
     figure.parameters(
         f"N = {size['base']}, κ = 20 kBT, r0 = 1000 nm, Jülicher, kV = 0; 20 frames of each of "
-        f"{len(runs[Point(size['base'])])} samples at Ξ = 0.037, {size['few']} at others"
+        f"{size['samples']} samples"
     )
     check(figure, size["base"], factors)
     draw(figure, size["base"], factors)

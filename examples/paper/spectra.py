@@ -6,17 +6,14 @@ import numpy as np
 from fluctuations import RADIUS, SOFTNESS, VERSION, fluctuate
 from openmmhelfrich.analysis import Spectrum, spectrum, theory
 
-# Numbers of samples: at the paper's parameters, of small meshes, of other radii and schemes, and of
-# all other points.
+# Numbers of samples: of the finest mesh, whose runs take minutes, and of all other points.
 FULL = {
     "base": 1002,
     "vertices": (252, 492, 1002, 1962, 4002),
     "rigidities": (10.0, 20.0, 40.0),
     "radii": (500.0, 1000.0, 2000.0),
     "samples": 10,
-    "small": 10,
-    "same": 10,
-    "few": 4,
+    "finest": 4,
 }
 QUICK = {
     "base": 252,
@@ -24,9 +21,7 @@ QUICK = {
     "rigidities": (20.0, 40.0),
     "radii": (500.0, 1000.0),
     "samples": 2,
-    "small": 2,
-    "same": 2,
-    "few": 2,
+    "finest": 2,
 }
 PERIODS, FRAMES_PER_PERIOD = 10, 8
 SCHEMES = {"Julicher": "Jülicher", "GompperKrollBarycentric": "GK barycentric"}
@@ -53,24 +48,18 @@ def named(point):
 def points_of(size):
     """The points that are needed, and the number of samples of each."""
     base = Point(size["base"])
-    wanted = {}
-
-    def add(samples, **changes):
-        point = base._replace(**changes)
-        wanted[point] = max(samples, wanted.get(point, 0))
-
-    add(size["samples"])
-    for scheme in SCHEMES:
-        add(size["same"], scheme=scheme)
-    for radius in size["radii"]:
-        add(size["same"], radius=radius)
-    for num_vertices in size["vertices"]:
-        add(size["small"] if num_vertices < 1000 else size["few"], num_vertices=num_vertices)
-    for rigidity in size["rigidities"]:
-        add(size["few"], rigidity=rigidity)
-    for softness in SOFTNESS:
-        add(size["few"], softness=softness)
-    return wanted
+    varied = {
+        "scheme": SCHEMES,
+        "radius": size["radii"],
+        "num_vertices": size["vertices"],
+        "rigidity": size["rigidities"],
+        "softness": SOFTNESS,
+    }
+    points = [base._replace(**{name: value}) for name in varied for value in varied[name]]
+    return {
+        point: size["finest" if point.num_vertices > 4000 else "samples"]
+        for point in dict.fromkeys([base, *points])
+    }
 
 
 def arguments_of(point, samples):
@@ -107,12 +96,10 @@ def first_seed(point):
 
 def measure(points, figure):
     """The runs of each point: {point: [result, …]}."""
-    if not figure.quick and min(points.values()) < max(points.values()):
-        most = max(points.values())
-        few = [point for point, samples in points.items() if samples < most]
-        figure.reduced(
-            f"{points[few[0]]} samples in place of {most} of N > 1002 and of other κ and Ξ."
-        )
+    most = max(points.values())
+    for point, samples in points.items():
+        if samples < most:
+            figure.reduced(f"{samples} samples in place of {most} of N = {point.num_vertices}.")
     arguments = [arguments_of(point, samples) for point, samples in points.items()]
     flat = [one for of_point in arguments for one in of_point]
     results = iter(figure.sweep(fluctuate, flat, VERSION))
