@@ -82,7 +82,7 @@ def check(figure, size, spectra):
     base = Point(size["base"])
     if not figure.quick:
         for scheme in SCHEMES:
-            note_common_fit(figure, spectra, scheme)
+            check_common_fit(figure, spectra, scheme)
     compared = {
         "Jülicher": base,
         "GK barycentric": base._replace(scheme="GompperKrollBarycentric"),
@@ -127,9 +127,10 @@ def check(figure, size, spectra):
         )
 
 
-def note_common_fit(figure, spectra, scheme):
+def check_common_fit(figure, spectra, scheme):
     """The rigidity that all soft meshes of a scheme together have, and their corrections."""
     label = SCHEMES[scheme]
+    fitted = 0
     for least in (FINE, 0):
         soft_meshes = [
             (point.num_vertices, point.rigidity, *ratio_of(found, point))
@@ -137,6 +138,10 @@ def note_common_fit(figure, spectra, scheme):
             if (point.softness, point.scheme) == (SOFTNESS[0], scheme)
             and point.num_vertices > least
         ]
+        if len(soft_meshes) == fitted:
+            # There are none of fewer vertices.
+            continue
+        fitted = len(soft_meshes)
         (rigidity, c, young), errors, quality = fit_meshes(soft_meshes)
         if least:
             figure.check(
@@ -150,7 +155,7 @@ def note_common_fit(figure, spectra, scheme):
 
 
 def note_ten_frames(figure, point, runs):
-    """What ten frames τ_2 apart, as many as the paper's Table III has, show of the deviations."""
+    """What ten frames τ_2 apart show of the deviations: what a run of the paper's Table III has."""
     modes = np.array([run["fit"][::FRAMES_PER_PERIOD][:10] for run in runs], dtype=float)
     l = np.arange(2, int(point.num_vertices**0.5 / 3) + 1)
     fluid = theory.fluid_spectrum(l, point.rigidity)
@@ -161,7 +166,7 @@ def note_ten_frames(figure, point, runs):
     near = abs(ratio - 1) < 2 * error / fluid[:, None]
     means = ratio.mean(axis=0)
     figure.note(
-        f"Of ten frames τ_2 apart, the length of the paper's runs, l = 2 … {l[-1]} together are "
+        f"Of ten frames τ_2 apart, those of a run of Table III, l = 2 … {l[-1]} together are "
         f"{means.mean():.2f} of (A17), from run to run ± {means.std(ddof=1):.2f}, and "
         f"{near.mean():.0%} of the values lie within two of their standard errors of it."
     )

@@ -128,28 +128,17 @@ def expected(name, friction, l, num_vertices, times):
 
 
 def check(figure, num_vertices, measured):
-    """The rms deviation of the mean over m from theory must be less than the rms spread."""
+    """Compare all autocorrelations with the theory of one mode."""
+    names = {"verlet": "(A30) with γ_l = 0.15 ω_l", "brownian": "(A39)", "langevin": "(A35–A37)"}
     for (name, friction, l), found in measured.items():
-        omega = frequency_of(l, num_vertices)
-
-        def claim(which, theoretical, title=TITLES[name, friction], l=l, found=found):
-            deviation = rms(found.mean - theoretical)
-            spread = rms(found.spread)
-            figure.claim(
-                f"{title}, l = {l}: rms deviation from {which}",
-                f"{deviation:.3f}",
-                f"below the spread of the m's, {spread:.3f}",
-                deviation < spread,
-            )
-
-        which = {"verlet": "(A30) with γ_l = 0.15 ω_l", "brownian": "(A39)"}.get(name, "(A35–A37)")
-        claim(which, expected(name, friction, l, num_vertices, found.times))
+        what = f"{TITLES[name, friction]}, l = {l}: rms deviation from"
+        single = expected(name, friction, l, num_vertices, found.times)
+        check_deviation(figure, f"{what} {names[name]}", found, single)
         if name == "langevin":
+            omega = frequency_of(l, num_vertices)
             total = friction + INTERNAL_FRICTION * omega
-            claim(
-                "the same with γ + 0.15 ω_l",
-                theory.langevin_autocorrelation(found.times, omega, total),
-            )
+            braked = theory.langevin_autocorrelation(found.times, omega, total)
+            check_deviation(figure, f"{what} (A35–A37) with γ + 0.15 ω_l", found, braked)
     figure.table(
         "Rms deviations from the two coupled modes of two_modes.py, which have no free parameter:",
         ["", *(f"l = {l}" for l in modes_of(num_vertices))],
@@ -162,6 +151,14 @@ def check(figure, num_vertices, measured):
             ]
             for (name, friction), title in TITLES.items()
         ],
+    )
+
+
+def check_deviation(figure, what, found, theoretical):
+    """The rms deviation of the mean over m from theory must be less than the rms spread."""
+    deviation, spread = rms(found.mean - theoretical), rms(found.spread)
+    figure.claim(
+        what, f"{deviation:.3f}", f"below the spread of the m's, {spread:.3f}", deviation < spread
     )
 
 
