@@ -13,21 +13,38 @@ def invoke(*arguments):
     return CliRunner().invoke(main, ["bench", *(str(word) for word in arguments)])
 
 
-def test_table():
-    arguments = ("--platform", "reference", "--size", 42, "--size", 252)
-    result = invoke(*arguments, "--seconds", 0.02, "--repeats", 2, "--integrator", "Verlet")
+TABLE = ("--platform", "reference", "--size", 42, "--size", 252, "--integrator", "Verlet")
+
+
+def rows_of(result):
     assert result.exit_code == 0, result.output
     rows = [line.split() for line in result.output.splitlines() if " Reference " in line]
     assert [row[:2] for row in rows] == [["42", "Reference"], ["252", "Reference"]]
-    for row in rows:
-        steps, cost, empty, ratio = map(float, row[2:])
-        assert steps == pytest.approx(1e6 / cost, rel=0.02)
-        assert ratio == pytest.approx(cost / empty, rel=0.05)
-        # Several times as much on any machine.
-        assert cost > empty
-    assert float(rows[1][3]) > float(rows[0][3])
+    return [row[2:] for row in rows]
+
+
+def test_table_is_measured():
+    """Steps are made and timed; how long they take is the machine's affair."""
+    result = invoke(*TABLE, "--seconds", 0.001, "--repeats", 2)
+    for row in rows_of(result):
+        assert all(float(cell) > 0 for cell in row)
     assert f"OpenMM {openmm.Platform.getOpenMMVersion()}" in result.output
     assert "Verlet, 0.1 ps" in result.output
+
+
+def test_table_of_known_times(monkeypatch):
+    times = iter([(4.5, 0.8), (20.0, 5.0)])
+
+    def measured(steppers, repeats, seconds):
+        assert (repeats, seconds) == (3, 0.25)
+        ours, empty = next(times)
+        return {("ours", "Reference"): ours, ("empty", "Reference"): empty}
+
+    monkeypatch.setattr(_benchmark, "fastest", measured)
+    assert rows_of(invoke(*TABLE, "--seconds", 0.25, "--repeats", 3)) == [
+        ["222222", "4.5", "0.8", "5.62"],
+        ["50000", "20.0", "5.0", "4.00"],
+    ]
 
 
 @pytest.mark.parametrize(
