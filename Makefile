@@ -39,6 +39,8 @@ format: $(VENV)/.requirements ## format Rust, C++ and Python in place
 	@$(VENV)/bin/ruff check -q --fix-only $(PY)
 	@$(VENV)/bin/ruff format -q $(PY)
 
+# Properties are tested on the same examples each time; another number looks for others.
+test-rust: export PROPTEST_RNG_SEED ?= 1
 test-rust: $(VENV)/.requirements # Rust's tests, and its documentation
 	@echo "== Rust"
 	@$(CARGO) test -q --release --locked

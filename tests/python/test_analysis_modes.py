@@ -195,6 +195,7 @@ def run(tmp_path_factory):
     folder = tmp_path_factory.mktemp("trajectory")
     mesh = Mesh.icosphere(3, 100)
     integrator = openmm.LangevinMiddleIntegrator(300, 0.01, 0.01)
+    integrator.setRandomNumberSeed(1)
     simulation = Vesicle(mesh).simulation(integrator, "Reference")
     simulation.context.setVelocitiesToTemperature(300, 1)
     box = 400 * np.eye(3)

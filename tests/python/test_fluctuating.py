@@ -74,6 +74,7 @@ class TestHarden:
         if parameter:
             force.setContextParameter("minHeight", parameter)
         integrator = openmm.LangevinMiddleIntegrator(300, 0.01, 0.2)
+        integrator.setRandomNumberSeed(1)
         platform = openmm.Platform.getPlatformByName("Reference")
         simulation = openmm.app.Simulation(mesh.topology(), system, integrator, platform)
         simulation.context.setPositions(mesh.vertices)
