@@ -29,7 +29,7 @@ def test_tiny_run(tmp_path):
         "--platform", "Reference", "--jax-python", tmp_path / "none", "--output", output,
     ]  # fmt: skip
     said = subprocess.run(
-        list(map(str, command)), capture_output=True, text=True, check=True, timeout=300
+        list(map(str, command)), capture_output=True, text=True, check=True, timeout=600
     )
     text = output.read_text(encoding="utf-8")
     assert text.replace("(figures.png)", "(benchmarks.png)") in said.stdout

@@ -28,7 +28,7 @@ def run(script, *arguments, check=True):
         capture_output=True,
         text=True,
         encoding="utf-8",
-        timeout=120,
+        timeout=600,
         check=check,
     )
 

@@ -820,7 +820,7 @@ def test_any_number_of_threads_gives_the_same_bits(tmp_path: Path):
             # A mesh of this size would be tried on a GPU, whose driver has threads of its own.
             env={**os.environ, "OPENMM_CPU_THREADS": str(threads), "HELFRICH_BACKEND": "cpu"},
             check=True,
-            timeout=120,
+            timeout=300,
         )
         with np.load(out) as data:
             results[threads] = dict(data)

@@ -89,7 +89,7 @@ class TestMissingTools:
             env=environment,
             capture_output=True,
             text=True,
-            timeout=60,
+            timeout=300,
         )
 
     def test_nothing_is_missing(self, tmp_path):
