@@ -127,7 +127,7 @@ class TestHere:
         [second] = quiet(square, [{"x": 5}], cache=tmp_path, workers=0)
         assert second["number"] == first["number"] == 25
         assert str(file) in capsys.readouterr().err
-        assert Cache(tmp_path).load("square", file.stem, {"x": 5})["number"] == 25
+        assert Cache(tmp_path).load("test_sweep.square", file.stem, {"x": 5})["number"] == 25
         assert not list(tmp_path.rglob("*.part"))
 
     def test_files_say_their_point(self, tmp_path):
@@ -165,13 +165,40 @@ class TestHere:
 
     def test_reads_what_earlier_versions_have_stored(self, tmp_path):
         """Keys, folders and entries of files are those of the first version."""
-        file = tmp_path / "square" / "4a0d510b7f0b6e5583d5.npz"
+        file = tmp_path / "test_sweep.square" / "08cb407e3233c390c40a.npz"
         file.parent.mkdir()
         record = {"point": {"x": 5}, "result": {"number": -1, "seconds": 0.5}}
         np.savez_compressed(file, json=np.array(json.dumps(record)), array=np.ones(2))
         [result] = quiet(square, [{"x": 5}], cache=tmp_path, compute=False)
         assert result.pop("array").tolist() == [1, 1]
         assert result == {"number": -1, "seconds": 0.5}
+
+    @pytest.mark.parametrize("how", [["one.py"], ["-m", "one"], ["-m", "imports"]])
+    def test_functions_of_equal_names_in_different_modules(self, tmp_path, how):
+        """A module is the same whether it is run, as a file or by its name, or imported."""
+        cache = tmp_path / "cache"
+        text = """
+from openmmhelfrich.sweep import sweep
+
+def value(x):
+    return {{"value": {0} * x}}
+
+def main():
+    [result] = sweep(value, [{{"x": 5}}], cache="cache", workers=0, progress=False)
+    print(result["value"])
+
+if __name__ == "__main__":
+    main()
+"""
+        (tmp_path / "one.py").write_text(text.format(1))
+        (tmp_path / "two.py").write_text(text.format(2))
+        (tmp_path / "imports.py").write_text("import one\none.main()\n")
+        for command, expected in ((["two.py"], "10"), (how, "5")):
+            said = subprocess.run(
+                [sys.executable, *command], cwd=tmp_path, capture_output=True, text=True, check=True
+            )
+            assert said.stdout.strip() == expected
+        assert sorted(path.name for path in cache.iterdir()) == ["one.value", "two.value"]
 
     def test_computes_again_what_is_broken_within(self, tmp_path, capsys):
         quiet(square, [{"x": 5}], cache=tmp_path, workers=0)

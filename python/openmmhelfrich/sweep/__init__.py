@@ -21,7 +21,9 @@ from __future__ import annotations
 
 import functools
 import itertools
+import sys
 from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
 
 from tqdm import tqdm
 
@@ -72,15 +74,15 @@ def sweep(
     ----------
     function : callable
         A pure function; with a cache, one that is defined with ``def`` at the top of a module,
-        because stored results are found by its name. It returns a dictionary of arrays, numbers,
+        because stored results are found by the names of both. It returns a dictionary of arrays, numbers,
         strings, booleans, None, and lists of these. It is sent to the workers by value if it comes
         from a script, together with the modules beside the script; only installed packages must be
         there already.
     points : iterable of dict
         Keyword arguments: numbers, strings, booleans, None, and lists of these.
     cache : str, Path or Cache, optional
-        Folder in which results are stored and looked for, made where needed. Functions of
-        different modules that share a folder need different names. Default: none.
+        Folder in which results are stored and looked for, made where needed; sweeps of several
+        functions may share it. Default: none.
     version : int
         Part of the key of the stored results: count it up when the function changes.
     scheduler : str, optional
@@ -124,16 +126,15 @@ def sweep(
         raise ValueError("sweep: give either a scheduler or a number of workers, not both")
     points = [plain_point(point) for point in points]
     name = name_of(function)
-    if cache is not None:
-        _check_named(function, name)
+    stored_name = name if cache is None else _stored_name(function, name)
     store = cache if cache is None or isinstance(cache, Cache) else Cache(cache)
-    keys = [Cache.key(name, point, version) for point in points]
+    keys = [Cache.key(stored_name, point, version) for point in points]
     # Equal points are computed once.
     results: dict[str, dict] = {}
     missing: dict[str, dict] = {}
     for key, point in zip(keys, points, strict=True):
         if key not in results and key not in missing:
-            stored = store.load(name, key, point) if store else None
+            stored = store.load(stored_name, key, point) if store else None
             if stored is None:
                 missing[key] = point
             else:
@@ -161,15 +162,19 @@ def sweep(
                     result, seconds = outcome
                     results[key] = {**result, "seconds": seconds}
                     if store:
-                        store.save(name, key, missing[key], results[key])
+                        store.save(stored_name, key, missing[key], results[key])
                 bar.update()
     if failures:
         raise _failed(name, missing, failures, store)
     return [results[key] for key in keys]
 
 
-def _check_named(function, name):
-    """Refuse what has no name of its own, by which stored results could be told from others'."""
+def _stored_name(function, name):
+    """By what stored results are told from those of other functions: module and name.
+
+    The module of a script is called after its file, as where another script imports it. Refuses
+    what has no name of its own.
+    """
     if isinstance(function, functools.partial):
         kind = f"a partial of {name}"
     elif name == "<lambda>":
@@ -178,12 +183,22 @@ def _check_named(function, name):
         kind = getattr(function, "__qualname__", f"an object of class {name}")
         kind += ", which is not at the top of a module"
     else:
-        return
+        return f"{_module_name(function.__module__)}.{name}"
     raise TypeError(
         f"sweep: a cache finds results by the name of the function, and got {kind}; define a "
         "function with a name of its own at the top of a module, with all that it depends on as "
         "arguments, or leave out the cache"
     )
+
+
+def _module_name(name):
+    """The name of a module; of one that is run, what it would be called if it were imported."""
+    main = sys.modules["__main__"]
+    if name != "__main__":
+        return name
+    if main.__spec__:
+        return main.__spec__.name
+    return Path(main.__file__).stem if hasattr(main, "__file__") else name
 
 
 def _failed(name, points, failures, store):

@@ -29,7 +29,7 @@ _NUMBERED = "array {}"
 class Cache:
     """A folder of results, one NumPy ``.npz`` file for each point of each function.
 
-    Functions are told apart by their names, points by all of their arguments. A file appears only
+    Functions are told apart by their modules and names, points by all of their arguments. A file appears only
     when it is complete, so that several sweeps may share a folder and an interruption leaves no
     broken one. ``numpy.load(file)["json"]`` shows the point.
 
@@ -49,8 +49,8 @@ class Cache:
         return hashlib.sha256(text.encode()).hexdigest()[:20]
 
     def path(self, name: str, key: str) -> Path:
-        """Where the result of a function of this name is, or would be."""
-        return self.folder / name.strip("_<>") / f"{key}.npz"
+        """Where the result of the function ``module.name`` is, or would be."""
+        return self.folder / name / f"{key}.npz"
 
     def load(self, name: str, key: str, point: Mapping) -> dict | None:
         """The stored result; None if there is none, or only the remains of one."""
