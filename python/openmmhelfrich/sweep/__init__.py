@@ -74,10 +74,10 @@ def sweep(
     ----------
     function : callable
         A pure function; with a cache, one that is defined with ``def`` at the top of a module,
-        because stored results are found by the names of both. It returns a dictionary of arrays, numbers,
-        strings, booleans, None, and lists of these. It is sent to the workers by value if it comes
-        from a script, together with the modules beside the script; only installed packages must be
-        there already.
+        because stored results are found by the names of both. It returns a dictionary of arrays,
+        numbers, strings, booleans, None, and lists of these. It is sent to the workers by value if
+        it comes from a script, together with the modules beside the script; only installed packages
+        must be there already.
     points : iterable of dict
         Keyword arguments: numbers, strings, booleans, None, and lists of these.
     cache : str, Path or Cache, optional

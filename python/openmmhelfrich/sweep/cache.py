@@ -29,9 +29,9 @@ _NUMBERED = "array {}"
 class Cache:
     """A folder of results, one NumPy ``.npz`` file for each point of each function.
 
-    Functions are told apart by their modules and names, points by all of their arguments. A file appears only
-    when it is complete, so that several sweeps may share a folder and an interruption leaves no
-    broken one. ``numpy.load(file)["json"]`` shows the point.
+    Functions are told apart by their modules and names, points by all of their arguments. A file
+    appears only when it is complete, so that several sweeps may share a folder and an interruption
+    leaves no broken one. ``numpy.load(file)["json"]`` shows the point.
 
     Parameters
     ----------
