@@ -9,6 +9,7 @@ modulus of 25 µN/m; its files have the nodes and the springs used here.
 """
 
 import argparse
+import hashlib
 import os
 import sys
 from pathlib import Path
@@ -28,13 +29,22 @@ CASES = {
 SAMPLES = 200
 
 
-def red_cell(file, duration, seed, compatible=False):
+def digest(file):
+    """Of the contents of a configuration and of the files beside it that it names."""
+    named = {file.parent / word for word in file.read_text(encoding="utf-8").split()}
+    contents = [path.read_bytes() for path in (file, *sorted(named)) if path.is_file()]
+    return hashlib.sha256(b"\0".join(contents)).hexdigest()
+
+
+def red_cell(file, contents, duration, seed, compatible=False):
     """Run one configuration.
 
     Parameters
     ----------
     file : str
         VCM's.
+    contents : str
+        Its `digest`, by which results of other contents are told from stored ones.
     duration : float
         ps.
     seed : int
@@ -126,7 +136,13 @@ def main():
             )
             sys.exit(MISSING)
     points = [
-        {"file": str(folder / file), "duration": duration, "seed": 1, "compatible": compatible}
+        {
+            "file": str(folder / file),
+            "contents": digest(folder / file),
+            "duration": duration,
+            "seed": 1,
+            "compatible": compatible,
+        }
         for file, compatible, _ in CASES.values()
     ]
     cells = dict(zip(CASES, figure.sweep(red_cell, points, description="red cells"), strict=True))
