@@ -85,7 +85,6 @@ class Figure:
         self._rows: list[dict] = []
         self._notes: list[str] = []
         self._tables: list[dict] = []
-        self._reduced: list[str] = []
         self._parameters = ""
         self._pictures: list[dict] = []
         self._seconds = 0.0
@@ -126,10 +125,6 @@ class Figure:
     def parameters(self, text):
         """Say what was simulated."""
         self._parameters = text
-
-    def reduced(self, text):
-        """Say in what this run is smaller than the paper's."""
-        self._reduced.append(text)
 
     def note(self, text):
         """Say something about the result, with its numbers."""
@@ -179,7 +174,6 @@ class Figure:
             "title": self.title,
             "quick": self.quick,
             "parameters": self._parameters,
-            "reduced": self._reduced,
             "rows": self._rows,
             "notes": self._notes,
             "tables": self._tables,

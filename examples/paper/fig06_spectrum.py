@@ -27,6 +27,7 @@ from spectra import (
     points_of,
     pooled,
     ratio_of,
+    still_share,
 )
 
 # Y is read off the small l, where the shear modulus matters and the mesh resolves bending. From
@@ -40,18 +41,18 @@ FINE = 1000
 def main():
     figure = Figure("fig06", "Fig. 6 a–f", "Fluctuation spectra of vesicles", __doc__)
     size = figure.choose(FULL, QUICK)
-    runs = measure(points_of(size), figure)
+    runs = measure(points_of(size), size["samples"], figure)
     spectra = {point: pooled(of_point, "fit") for point, of_point in runs.items()}
     figure.parameters(
         f"N = {size['base']}, κ = 20 kBT, r0 = 1000 nm, Ξ = 0.037, Jülicher where not varied; "
         f"kV = 0; LangevinMiddle, 300 K, γ = ω_2, Δt = 0.075 √Ξ τ_fastest, ordered meshes; "
         f"{size['samples']} samples of {PERIODS} τ_2"
     )
-    check(figure, size, spectra)
+    check(figure, size, runs, spectra)
     base = Point(size["base"])
     note_ten_frames(figure, base, runs[base])
-    hardest = base._replace(softness=SOFTNESS[-1])
-    note_mean_shape(figure, hardest, runs[hardest])
+    note_mean_shape(figure, base._replace(softness=SOFTNESS[-1]), runs)
+    note_mean_shape(figure, base._replace(num_vertices=size["vertices"][-1]), runs)
     tabulate(figure, runs, spectra)
     draw(figure, size, spectra)
     figure.finish()
@@ -78,11 +79,11 @@ def young_of(found, point):
     )
 
 
-def check(figure, size, spectra):
+def check(figure, size, runs, spectra):
     base = Point(size["base"])
     if not figure.quick:
         for scheme in SCHEMES:
-            check_common_fit(figure, spectra, scheme)
+            check_common_fit(figure, runs, spectra, scheme)
     compared = {
         "Jülicher": base,
         "GK barycentric": base._replace(scheme="GompperKrollBarycentric"),
@@ -127,13 +128,20 @@ def check(figure, size, spectra):
         )
 
 
-def check_common_fit(figure, spectra, scheme):
+def fluctuating(runs, found, point):
+    """As `ratio_of`, without what the mean shape adds."""
+    l, ratio, error = ratio_of(found, point)
+    still, _ = still_share(runs, "fit")
+    return l, ratio * (1 - still[2:]), error
+
+
+def check_common_fit(figure, runs, spectra, scheme):
     """The rigidity that all soft meshes of a scheme together have, and their corrections."""
     label = SCHEMES[scheme]
     fitted = 0
     for least in (FINE, 0):
         soft_meshes = [
-            (point.num_vertices, point.rigidity, *ratio_of(found, point))
+            (point.num_vertices, point.rigidity, *fluctuating(runs[point], found, point))
             for point, found in spectra.items()
             if (point.softness, point.scheme) == (SOFTNESS[0], scheme)
             and point.num_vertices > least
@@ -148,7 +156,8 @@ def check_common_fit(figure, spectra, scheme):
                 f"rigidity in all soft spectra over κ, {label}", rigidity, 1, 0.05, errors[0]
             )
         figure.note(
-            f"{label}, all soft meshes of N > {least}, l ≤ √N/3, formula of mesh_corrections.py: "
+            f"{label}, all soft meshes of N > {least}, l ≤ √N/3, without their mean shapes, "
+            "formula of mesh_corrections.py: "
             f"a = {rigidity:.3f} ± {errors[0]:.3f}, c = {c:.2f} ± {errors[1]:.2f}, "
             f"y = {young:.3f} ± {errors[2]:.3f}, χ² per degree of freedom {quality:.2f}"
         )
@@ -174,11 +183,10 @@ def note_ten_frames(figure, point, runs):
 
 def note_mean_shape(figure, point, runs):
     """How much of l = 6 is a shape that stays, that of the icosahedron the mesh was made of."""
-    modes = np.array([run["fit"][:, 36:49] for run in runs], dtype=float)
-    share = (modes.mean(axis=1) ** 2).sum() / (modes**2).mean(axis=1).sum()
+    still, error = still_share(runs[point], "fit")
     figure.note(
-        f"Ξ = {point.softness:g}: {share:.0%} of l = 6 does not fluctuate. It is the mean shape, "
-        "on which the twelve vertices of five neighbours stand out as corners of an icosahedron."
+        f"{named(point)}: {still[6]:.1%} ± {error[6]:.1%} of l = 6 do not fluctuate. It is the "
+        "mean shape, with corners of an icosahedron at the twelve vertices of five neighbours."
     )
 
 

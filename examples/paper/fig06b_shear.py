@@ -35,7 +35,7 @@ BLOCKS = 10
 def main():
     figure = Figure("fig06b", "Fig. 6, l = 2", "Shear modulus of fluid meshes", __doc__)
     size = figure.choose(FULL, QUICK)
-    runs = measure(points_of(size), figure)
+    runs = measure(points_of(size), size["samples"], figure)
     elastic = {point: elasticity(of_point) for point, of_point in runs.items()}
     spectra = {point: pooled(of_point, "fit") for point, of_point in runs.items()}
     figure.parameters("the runs of Fig. 6; displacements against the ordered mesh, l ≤ 8 fitted")

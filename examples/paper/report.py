@@ -87,8 +87,6 @@ def section(figure):
     """The part of the report on one figure."""
     size = " (quick version)" if figure["quick"] else ""
     lines = [f"## {figure['target']}: {figure['title']}{size}", "", figure["parameters"]]
-    if figure["reduced"] and not figure["quick"]:
-        lines += ["", "Reduced: " + " ".join(figure["reduced"])]
     for picture in figure["pictures"]:
         lines += ["", f"![{picture['caption']}](reproduction/{picture['file']})"]
         lines += ["", f"*{picture['caption']}*"]

@@ -24,8 +24,8 @@ GAS_AND_HEIGHTS = 2 / 3
 def main():
     figure = Figure("sm05", "SM 5", "Density modes of the vertices", __doc__)
     size = figure.choose(FULL, QUICK)
-    points = {Point(size["base"], softness=softness): size["samples"] for softness in SOFTNESS}
-    runs = measure(points, figure)
+    points = [Point(size["base"], softness=softness) for softness in SOFTNESS]
+    runs = measure(points, size["samples"], figure)
     lmax = int(2.6 * size["base"] ** 0.5)
     factors = {point.softness: structure(of_point, lmax) for point, of_point in runs.items()}
     figure.parameters(

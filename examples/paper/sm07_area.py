@@ -22,7 +22,7 @@ from spectra import FULL, QUICK, Point, measure, named, points_of
 def main():
     figure = Figure("sm07", "SM 7", "Mean area of fluctuating vesicles", __doc__)
     size = figure.choose(FULL, QUICK)
-    runs = measure(points_of(size), figure)
+    runs = measure(points_of(size), size["samples"], figure)
     areas = {point: mean_area(of_point) for point, of_point in runs.items()}
     figure.parameters("the runs of Fig. 6; targets A0 are the areas of the ordered meshes")
     check(figure, size, runs, areas)

@@ -1,19 +1,18 @@
 """The runs of Fig. 6, which Supplements 5 and 7 share, and their spectra."""
 
+import itertools
 from typing import NamedTuple
 
 import numpy as np
 from fluctuations import RADIUS, SOFTNESS, VERSION, fluctuate
 from openmmhelfrich.analysis import Spectrum, spectrum, theory
 
-# Numbers of samples: of the finest mesh, whose runs take minutes, and of all other points.
 FULL = {
     "base": 1002,
     "vertices": (252, 492, 1002, 1962, 4002),
     "rigidities": (10.0, 20.0, 40.0),
     "radii": (500.0, 1000.0, 2000.0),
     "samples": 10,
-    "finest": 4,
 }
 QUICK = {
     "base": 252,
@@ -21,7 +20,6 @@ QUICK = {
     "rigidities": (20.0, 40.0),
     "radii": (500.0, 1000.0),
     "samples": 2,
-    "finest": 2,
 }
 PERIODS, FRAMES_PER_PERIOD = 10, 8
 SCHEMES = {"Julicher": "Jülicher", "GompperKrollBarycentric": "GK barycentric"}
@@ -46,7 +44,7 @@ def named(point):
 
 
 def points_of(size):
-    """The points that are needed, and the number of samples of each."""
+    """The points that are needed: the base, and each parameter varied alone."""
     base = Point(size["base"])
     varied = {
         "scheme": SCHEMES,
@@ -56,10 +54,7 @@ def points_of(size):
         "softness": SOFTNESS,
     }
     points = [base._replace(**{name: value}) for name in varied for value in varied[name]]
-    return {
-        point: size["finest" if point.num_vertices > 4000 else "samples"]
-        for point in dict.fromkeys([base, *points])
-    }
+    return list(dict.fromkeys([base, *points]))
 
 
 def arguments_of(point, samples):
@@ -94,19 +89,11 @@ def first_seed(point):
     )
 
 
-def measure(points, figure):
-    """The runs of each point: {point: [result, …]}."""
-    most = max(points.values())
-    for point, samples in points.items():
-        if samples < most:
-            figure.reduced(f"{samples} samples in place of {most} of N = {point.num_vertices}.")
-    arguments = [arguments_of(point, samples) for point, samples in points.items()]
-    flat = [one for of_point in arguments for one in of_point]
-    results = iter(figure.sweep(fluctuate, flat, VERSION))
-    return {
-        point: [next(results) for _ in of_point]
-        for point, of_point in zip(points, arguments, strict=True)
-    }
+def measure(points, samples, figure):
+    """The runs of each point, so many samples of it: {point: [result, …]}."""
+    arguments = [one for point in points for one in arguments_of(point, samples)]
+    results = iter(figure.sweep(fluctuate, arguments, VERSION))
+    return {point: list(itertools.islice(results, samples)) for point in points}
 
 
 def pooled(runs, name):
@@ -118,6 +105,24 @@ def pooled(runs, name):
         np.sqrt(np.sum([one.error**2 for one in each], axis=0)) / len(each),
         np.mean([one.correlation_time for one in each], axis=0),
     )
+
+
+def still_share(runs, name):
+    """How much of ⟨|u_lm|²⟩ is a mean shape, which does not fluctuate, and its error, for each l.
+
+    The shape is common to all samples, whose noise is not: products of the means of different
+    samples have its square as their mean.
+    """
+    modes = np.array([run[name] for run in runs], dtype=float)
+    means, powers = modes.mean(axis=1), (modes**2).mean(axis=(0, 1))
+    pairs = len(runs) * (len(runs) - 1)
+    squares = (means.sum(axis=0) ** 2 - (means**2).sum(axis=0)) / pairs
+    noise = means.var(axis=0, ddof=1)
+    variances = 4 * squares.clip(min=0) * noise / len(runs) + 2 * noise**2 / pairs
+    starts = np.arange(round(len(powers) ** 0.5)) ** 2
+    total = np.add.reduceat(powers, starts)
+    error = np.sqrt(np.add.reduceat(variances, starts))
+    return np.add.reduceat(squares, starts) / total, error / total
 
 
 def ratio_of(found, point):

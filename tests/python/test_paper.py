@@ -23,7 +23,7 @@ def run(script, *arguments, check=True):
         capture_output=True,
         text=True,
         encoding="utf-8",
-        timeout=300,
+        timeout=600,
         check=check,
     )
 
@@ -129,7 +129,6 @@ def test_report_takes_in_a_figure_anew_and_leaves_the_others(tmp_path):
         "title": "Spectra",
         "quick": False,
         "parameters": "",
-        "reduced": [],
         "rows": [{"what": "one | two", "measured": "1", "expected": "2", "passed": False}],
         "notes": [],
         "tables": [{"caption": "All:", "header": ["a", "b"], "rows": [["1", "2|3"]]}],
