@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import openmm
 from openmm import unit
@@ -239,8 +241,9 @@ def _group_names(system):
             names.setdefault(force.getForceGroup(), []).append(force.getName())
     joined, taken = {}, set()
     for group, parts in sorted(names.items()):
-        # A comma would end the column. Equal names, of several vesicles, get their group's number.
-        name = "+".join(parts).replace(",", ";")
+        # These would end the column or its line. Equal names, of several vesicles, get their
+        # group's number.
+        name = re.sub('[,"\r\n]', ";", "+".join(parts))
         if name in taken or name in ("potential", "kinetic"):
             name = f"{name}_{group}"
         taken.add(name)

@@ -85,6 +85,30 @@ class TestFiles:
         for name, value in analysis.shape(now, mesh)._asdict().items():
             assert table[name][-1] == pytest.approx(value, rel=1e-12)
 
+    def test_forces_of_any_name(self, mesh, tmp_path, suffix):
+        """Parentheses, commas and quotes in names, and one name twice."""
+        names = ["bending (inner)", "bending (outer)", 'a "b", c', "x", "x"]
+        system = openmm.System()
+        for _ in mesh.vertices:
+            system.addParticle(50)
+        for group, name in enumerate(names):
+            force = openmm.CustomExternalForce(f"{group + 1}")
+            force.addParticle(0)
+            force.setName(name)
+            force.setForceGroup(group)
+            system.addForce(force)
+        integrator = openmm.VerletIntegrator(0.01)
+        platform = openmm.Platform.getPlatformByName("Reference")
+        simulation = openmm.app.Simulation(mesh.topology(), system, integrator, platform)
+        simulation.context.setPositions(mesh.vertices)
+        path = tmp_path / f"names.{suffix}"
+        simulation.reporters.append(MembraneReporter(path, 1, mesh))
+        simulation.step(2)
+        table = analysis.read_table(path)
+        columns = ["bending (inner)", "bending (outer)", "a ;b;; c", "x", "x_4"]
+        for number, name in enumerate(columns, 1):
+            assert table[f"{name}_energy"].tolist() == [number, number]
+
     def test_a_resumed_run_has_each_row_once(self, mesh, tmp_path, suffix):
         """The run goes on from a checkpoint that is older than the last rows of the files."""
         paths = [tmp_path / f"{name}.{suffix}" for name in ("modes", "membrane")]
@@ -265,7 +289,9 @@ class TestReporters:
         for text, culprit in (
             ("", "no header"),
             ("step,time (ps)\n1,2\n3,x\n", "line 3"),
-            ("step,time (ps)\n1,2,3\n", "line 2"),
+            ("step,time (ps)\n1,2,3\n", "line 2: need 2 numbers .there are 3"),
+            ("step,time (ps),area (nm^2)\n1,2,3\n7\n", "line 3: need 3 numbers .there are 1"),
+            ("step,area (nm^2),area (a)\n1,2,3\n", "line 1: there are two columns 'area'"),
         ):
             bad.write_text(text)
             with pytest.raises(ValueError, match=culprit):

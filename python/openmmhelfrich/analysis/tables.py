@@ -14,6 +14,9 @@ __all__ = ["Modes", "open_table", "read_modes", "read_table"]
 _HDF5 = (".h5", ".hdf5")
 _MODE = re.compile(r"u_(\d+)_(-?\d+)")
 
+# The unit of a column, in the last parentheses of its header: names may have others.
+_UNIT = re.compile(r" \([^()]*\)$")
+
 
 class Modes(NamedTuple):
     """Amplitudes over time, as `read_modes` returns them."""
@@ -92,7 +95,7 @@ def read_table(path) -> dict[str, np.ndarray]:
     ImportError
         An HDF5 file without h5py.
     ValueError
-        The file is no table of numbers; the message names the line.
+        The file is no table of numbers, or has two columns of one name; the message names the line.
     """
     path = Path(path)
     if not path.is_file():
@@ -108,11 +111,17 @@ def read_table(path) -> dict[str, np.ndarray]:
     lines = text[: text.rfind("\n") + 1].splitlines()
     if not lines:
         raise ValueError(f"read_table: {path} has no header")
-    names = [name.split(" (")[0] for name in next(csv.reader(lines[:1]))]
+    names = [_UNIT.sub("", name) for name in next(csv.reader(lines[:1]))]
+    if len(set(names)) != len(names):
+        twice = next(name for name in names if names.count(name) > 1)
+        raise ValueError(f"read_table: {path}, line 1: there are two columns {twice!r}")
     rows = np.empty((len(lines) - 1, len(names)))
     for number, line in enumerate(lines[1:]):
+        words = line.split(",")
         try:
-            rows[number] = [float(word) for word in line.split(",")]
+            if len(words) != len(names):
+                raise ValueError(f"there are {len(words)}")
+            rows[number] = [float(word) for word in words]
         except ValueError as reason:
             raise ValueError(
                 f"read_table: {path}, line {number + 2}: need {len(names)} numbers ({reason})"
