@@ -20,6 +20,7 @@ machine or over the workers of any running scheduler.
 from __future__ import annotations
 
 import functools
+import inspect
 import itertools
 import sys
 from collections.abc import Callable, Iterable, Mapping
@@ -81,8 +82,9 @@ def sweep(
     points : iterable of dict
         Keyword arguments: numbers, strings, booleans, None, and lists of these.
     cache : str, Path or Cache, optional
-        Folder in which results are stored and looked for, made where needed; sweeps of several
-        functions may share it. Default: none.
+        Folder in which results are stored and looked for, made where needed. Sweeps of several
+        functions may share it if their modules, as they are imported, or their names differ; those
+        of notebooks are all in a module ``__main__``. Default: none.
     version : int
         Part of the key of the stored results: count it up when the function changes.
     scheduler : str, optional
@@ -183,7 +185,7 @@ def _stored_name(function, name):
         kind = getattr(function, "__qualname__", f"an object of class {name}")
         kind += ", which is not at the top of a module"
     else:
-        return f"{_module_name(function.__module__)}.{name}"
+        return f"{_module_name(function)}.{name}"
     raise TypeError(
         f"sweep: a cache finds results by the name of the function, and got {kind}; define a "
         "function with a name of its own at the top of a module, with all that it depends on as "
@@ -191,14 +193,20 @@ def _stored_name(function, name):
     )
 
 
-def _module_name(name):
-    """The name of a module; of one that is run, what it would be called if it were imported."""
+def _module_name(function):
+    """The name of a function's module; of a script, what it would be called if it were imported."""
+    if function.__module__ != "__main__":
+        return function.__module__
     main = sys.modules["__main__"]
-    if name != "__main__":
-        return name
-    if main.__spec__:
-        return main.__spec__.name
-    return Path(main.__file__).stem if hasattr(main, "__file__") else name
+    code = getattr(inspect.unwrap(function), "__code__", None)
+    file = Path(code.co_filename if code else "")
+    # A script that is run by another one, such as a profiler, is not the main module's file; and
+    # the path of one that is may be relative to where it was started.
+    if not file.is_file() and file.name != Path(getattr(main, "__file__", "")).name:
+        return "__main__"  # of a notebook, or of a program on standard input
+    spec = getattr(main, "__spec__", None)
+    is_module = spec is not None and spec.origin and Path(spec.origin).resolve() == file.resolve()
+    return spec.name if is_module else file.stem
 
 
 def _failed(name, points, failures, store):
