@@ -1,5 +1,6 @@
 """The commands `run` and `info`: their files read back, and runs that are killed and go on."""
 
+import contextlib
 import csv
 import os
 import re
@@ -416,21 +417,32 @@ class TestKill:
     # Reports so rare that a signal comes between two of them, of 2 fs.
     INTERVAL = 700
 
-    def start(self, path, out, steps, *more):
-        arguments = ["run", path, "--platform", "Reference", "--out", out, "--steps", steps, *more]
-        return subprocess.Popen(
-            [sys.executable, "-m", "openmmhelfrich", *map(str, arguments)],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-        )
+    @pytest.fixture
+    def start(self):
+        """A function that starts the command; no process outlives the test."""
+        with contextlib.ExitStack() as stack:
 
-    def wait_for_frames(self, out, count):
+            def start(path, out, steps, *more):
+                arguments = ["run", path, "--platform", "Reference", "--out", out, "--steps", steps]
+                process = subprocess.Popen(
+                    [sys.executable, "-m", "openmmhelfrich", *map(str, [*arguments, *more])],
+                    stdout=subprocess.PIPE,
+                    stderr=subprocess.STDOUT,
+                    text=True,
+                )
+                stack.enter_context(process)
+                stack.callback(process.kill)
+                return process
+
+            yield start
+
+    def wait_for_frames(self, process, out, count):
         """Until the run has written more frames than that."""
         deadline = time.monotonic() + 120
         while time.monotonic() < deadline:
             if self.frames(out) > count:
                 return
+            assert process.poll() is None, process.communicate()[0]
             time.sleep(0.005)
         raise AssertionError("no frames were written")
 
@@ -446,8 +458,9 @@ class TestKill:
     def path(self, folder):
         return config(folder, StepSizeInFs="2", ReportIntervalInFs=str(2 * self.INTERVAL))
 
-    def finish(self, path, out, steps):
-        process = self.start(path, out, steps, "--resume")
+    @staticmethod
+    def finish(start, path, out, steps):
+        process = start(path, out, steps, "--resume")
         output, _ = process.communicate(timeout=120)
         assert process.returncode == 0, output
         return output
@@ -460,30 +473,30 @@ class TestKill:
         job.close()
         return contents(out)
 
-    def test_sigkill(self, path, folder):
+    def test_sigkill(self, start, path, folder):
         out = folder.path / "out"
-        process = self.start(path, out, self.ENDLESS, "--checkpoint", 0)
-        self.wait_for_frames(out, 3)
+        process = start(path, out, self.ENDLESS, "--checkpoint", 0)
+        self.wait_for_frames(process, out, 3)
         process.kill()
         process.communicate()
         steps = (self.frames(out) + 3) * self.INTERVAL
-        output = self.finish(path, out, steps)
+        output = self.finish(start, path, out, steps)
         assert 0 < int(re.search(r"resumed at step (\d+)", output)[1]) < steps
         left = {name: data for name, data in contents(out).items() if not name.endswith(".new")}
         assert left == self.unbroken(path, folder, steps)
 
     @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-    def test_interrupt(self, path, folder, number):
+    def test_interrupt(self, start, path, folder, number):
         out = folder.path / "out"
-        process = self.start(path, out, self.ENDLESS)
-        self.wait_for_frames(out, 1)
+        process = start(path, out, self.ENDLESS)
+        self.wait_for_frames(process, out, 1)
         process.send_signal(number)
         output, _ = process.communicate(timeout=120)
         assert process.returncode == 128 + number
         stopped = int(re.search(r"Interrupted at step (\d+)\. Go on with --resume", output)[1])
         steps = stopped + 3 * self.INTERVAL
         # Nothing that was done is done again, although no checkpoint was due.
-        assert f"resumed at step {stopped}" in self.finish(path, out, steps)
+        assert f"resumed at step {stopped}" in self.finish(start, path, out, steps)
         assert contents(out) == self.unbroken(path, folder, steps)
 
 

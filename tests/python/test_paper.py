@@ -55,7 +55,7 @@ def test_writes_numbers_and_picture(results, name):
     assert record["quick"]
     assert record["rows"]
     assert all(row["passed"] for row in record["rows"])
-    assert record["seconds"] > 0.1
+    assert record["seconds"] > 0
     for picture in record["pictures"]:
         path = folder / picture["file"]
         pixels = np.asarray(Image.open(path).convert("RGB"))
