@@ -16,7 +16,7 @@ import time
 import numpy as np
 import openmm
 from openmm import unit
-from openmmhelfrich.analysis import autocorrelation_time, theory
+from openmmhelfrich.analysis import mean_with_error, theory
 from openmmhelfrich.mesh import Mesh
 from openmmhelfrich.vesicle import Vesicle
 from tqdm import tqdm
@@ -136,12 +136,6 @@ def sample(simulation, steps, name):
     return series, len(states) * interval / seconds
 
 
-def mean_and_error(values):
-    """Mean, and its standard error with the correlation between samples taken into account."""
-    count = len(values) / (2 * autocorrelation_time(values))
-    return values.mean(), values.std() / np.sqrt(count)
-
-
 def drift(time, values):
     """Change of a value over the whole run by a straight line through it."""
     return np.polyfit(time, values, 1)[0] * (time[-1] - time[0])
@@ -167,14 +161,14 @@ def report_verlet(series, vesicle, duration):
 
 def report_langevin(series, vesicle, duration):
     temperature = 2 * series.kinetic / (3 * vesicle.mesh.num_vertices * theory.BOLTZMANN)
-    mean, error = mean_and_error(temperature)
+    mean, error, *_ = mean_with_error(temperature)
     print(f"  temperature        {mean:.2f} ± {error:.2f} K, set to {TEMPERATURE:.0f} K")
-    mean, error = mean_and_error(series.potential)
+    mean, error, *_ = mean_with_error(series.potential)
     print(f"  potential energy   {mean:.1f} ± {error:.1f} kJ/mol")
 
 
 def report_brownian(series, vesicle, duration):
-    mean, error = mean_and_error(series.potential)
+    mean, error, *_ = mean_with_error(series.potential)
     print(f"  potential energy   {mean:.1f} ± {error:.1f} kJ/mol, to compare with LangevinMiddle")
     steps = np.diff(series.centre, axis=0)
     measured = np.mean(steps**2) / (2 * np.diff(series.time).mean())

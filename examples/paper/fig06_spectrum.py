@@ -14,7 +14,7 @@ import numpy as np
 from _paper import Figure
 from fluctuations import RADIUS, SOFTNESS
 from mesh_corrections import SOFTENING, bending_ratio, fit_meshes, fit_shear, shear_ratio
-from openmmhelfrich.analysis import fit_young, theory
+from openmmhelfrich.analysis import fit_young, mean_shape, mean_with_error, theory
 from spectra import (
     FRAMES_PER_PERIOD,
     FULL,
@@ -25,9 +25,8 @@ from spectra import (
     measure,
     named,
     points_of,
-    pooled,
     ratio_of,
-    still_share,
+    spectrum_of,
 )
 
 # Y is read off the small l, where the shear modulus matters and the mesh resolves bending. From
@@ -42,7 +41,7 @@ def main():
     figure = Figure("fig06", "Fig. 6 a–f", "Fluctuation spectra of vesicles", __doc__)
     size = figure.choose(FULL, QUICK)
     runs = measure(points_of(size), size["samples"], figure)
-    spectra = {point: pooled(of_point, "fit") for point, of_point in runs.items()}
+    spectra = {point: spectrum_of(of_point) for point, of_point in runs.items()}
     figure.parameters(
         f"N = {size['base']}, κ = 20 kBT, r0 = 1000 nm, Ξ = 0.037, Jülicher where not varied; "
         f"kV = 0; LangevinMiddle, 300 K, γ = ω_2, Δt = 0.075 √Ξ τ_fastest, ordered meshes; "
@@ -51,18 +50,21 @@ def main():
     check(figure, size, runs, spectra)
     base = Point(size["base"])
     note_ten_frames(figure, base, runs[base])
-    note_mean_shape(figure, base._replace(softness=SOFTNESS[-1]), runs)
-    note_mean_shape(figure, base._replace(num_vertices=size["vertices"][-1]), runs)
     tabulate(figure, runs, spectra)
     draw(figure, size, spectra)
     figure.finish()
 
 
-def mean_ratio(found, point, first, last):
+def mean_ratio(runs, point, first, last):
     """Mean of the ratio to (A17) over l = first … last, each l alike, and its error."""
-    l, ratio, error = ratio_of(found, point)
-    chosen = (l >= first) & (l <= last)
-    return ratio[chosen].mean(), np.sqrt(np.sum(error[chosen] ** 2)) / chosen.sum()
+    modes = np.array([run["fit"] for run in runs], dtype=float) ** 2
+    ratios = [
+        modes[:, :, l**2 : (l + 1) ** 2].mean(axis=2) / theory.fluid_spectrum(l, point.rigidity)
+        for l in range(first, last + 1)
+    ]
+    # Frame by frame, since what one l has in excess others may lack.
+    found = mean_with_error(np.mean(ratios, axis=0).T)
+    return found.mean, found.error
 
 
 def young_of(found, point):
@@ -91,7 +93,7 @@ def check(figure, size, runs, spectra):
     }
     # The largest l that a mesh resolves within a third or so: 10 for N = 1002.
     last = int(base.num_vertices**0.5 / 3)
-    means = {name: mean_ratio(spectra[point], point, 2, last) for name, point in compared.items()}
+    means = {name: mean_ratio(runs[point], point, 2, last) for name, point in compared.items()}
     if not figure.quick:
         for name, (mean, error) in means.items():
             figure.check(
@@ -131,12 +133,12 @@ def check(figure, size, runs, spectra):
 def fluctuating(runs, found, point):
     """As `ratio_of`, without what the mean shape adds."""
     l, ratio, error = ratio_of(found, point)
-    still, _ = still_share(runs, "fit")
+    still = mean_shape([run["fit"] for run in runs]).share
     return l, ratio * (1 - still[2:]), error
 
 
 def check_common_fit(figure, runs, spectra, scheme):
-    """The rigidity that all soft meshes of a scheme together have, and their corrections."""
+    """The rigidity that the soft meshes of a scheme together have, and their corrections."""
     label = SCHEMES[scheme]
     fitted = 0
     for least in (FINE, 0):
@@ -151,13 +153,17 @@ def check_common_fit(figure, runs, spectra, scheme):
             continue
         fitted = len(soft_meshes)
         (rigidity, c, young), errors, quality = fit_meshes(soft_meshes)
+        vesicles = f"{fitted} soft vesicle{'s' * (fitted > 1)} of N > {least}"
         if least:
             figure.check(
-                f"rigidity in all soft spectra over κ, {label}", rigidity, 1, 0.05, errors[0]
+                f"rigidity in the spectra over κ, {label}, {vesicles}",
+                rigidity,
+                1,
+                0.05,
+                errors[0],
             )
         figure.note(
-            f"{label}, all soft meshes of N > {least}, l ≤ √N/3, without their mean shapes, "
-            "formula of mesh_corrections.py: "
+            f"{label}, {vesicles}, l ≤ √N/3, without mean shapes, formula of mesh_corrections.py: "
             f"a = {rigidity:.3f} ± {errors[0]:.3f}, c = {c:.2f} ± {errors[1]:.2f}, "
             f"y = {young:.3f} ± {errors[2]:.3f}, χ² per degree of freedom {quality:.2f}"
         )
@@ -181,24 +187,16 @@ def note_ten_frames(figure, point, runs):
     )
 
 
-def note_mean_shape(figure, point, runs):
-    """How much of l = 6 is a shape that stays, that of the icosahedron the mesh was made of."""
-    still, error = still_share(runs[point], "fit")
-    figure.note(
-        f"{named(point)}: {still[6]:.1%} ± {error[6]:.1%} of l = 6 do not fluctuate. It is the "
-        "mean shape, with corners of an icosahedron at the twelve vertices of five neighbours."
-    )
-
-
 def tabulate(figure, runs, spectra):
     """Every spectrum in figures, up to l = 10, and the Y that its smallest l have."""
     shown = range(2, 11)
     rows, sums = [], []
     for point, found in spectra.items():
         _, ratio, error = ratio_of(found, point)
-        _, summed, _ = ratio_of(pooled(runs[point], "vertices"), point)
+        _, summed, _ = ratio_of(spectrum_of(runs[point], "vertices"), point)
         young, young_error = young_of(found, point)
         temperature = np.mean([run["temperature"] for run in runs[point]])
+        still = mean_shape([run["fit"] for run in runs[point]])
         count = min(len(shown), len(ratio))
         gap = [""] * (len(shown) - count)
         values = zip(ratio[:count], error[:count], strict=True)
@@ -207,12 +205,15 @@ def tabulate(figure, runs, spectra):
             + [f"{value:.2f} ± {uncertain:.2f}" for value, uncertain in values]
             + gap
             + [f"{young:.2f} ± {young_error:.2f}"]
+            + [f"{still.share[6]:.1%} ± {still.error[6]:.1%}"]
         )
         sums.append([named(point)] + [f"{value:.2f}" for value in summed[:count]] + gap)
     orders = [f"l = {l}" for l in shown]
     figure.table(
-        "⟨|u_lm|²⟩ over (A17), by the least-squares fit of `mode_amplitudes`:",
-        ["vesicle", "runs", "T / K", *orders, "Y r0² / N kBT"],
+        "⟨|u_lm|²⟩ over (A17), by the least-squares fit of `mode_amplitudes`, and what of l = 6 "
+        "does not fluctuate but is a mean shape, with corners of an icosahedron at the twelve "
+        "vertices of five neighbours:",
+        ["vesicle", "runs", "T / K", *orders, "Y r0² / N kBT", "still at l = 6"],
         rows,
     )
     figure.table(

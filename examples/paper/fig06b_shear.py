@@ -19,7 +19,7 @@ from displacements import moduli, shear_modulus
 from fluctuations import SOFTNESS
 from mesh_corrections import SOFTENING, bending_ratio
 from openmmhelfrich.analysis import theory
-from spectra import FULL, QUICK, measure, named, points_of, pooled, ratio_of
+from spectra import FULL, QUICK, measure, named, points_of, ratio_of, spectrum_of
 
 MODES = np.array([2, 3, 4, 5])
 
@@ -37,7 +37,7 @@ def main():
     size = figure.choose(FULL, QUICK)
     runs = measure(points_of(size), size["samples"], figure)
     elastic = {point: elasticity(of_point) for point, of_point in runs.items()}
-    spectra = {point: pooled(of_point, "fit") for point, of_point in runs.items()}
+    spectra = {point: spectrum_of(of_point) for point, of_point in runs.items()}
     figure.parameters("the runs of Fig. 6; displacements against the ordered mesh, l ≤ 8 fitted")
     soft = [point for point in runs if point.softness == SOFTNESS[0]]
     for point in soft:

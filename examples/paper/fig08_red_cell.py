@@ -19,6 +19,7 @@ import numpy as np
 import openmmhelfrich as helfrich
 from _paper import MISSING, Figure, fastest_platform
 from _snapshots import along_axes, draw_meshes
+from openmmhelfrich.analysis import mean_with_error
 
 CASES = {
     # Name: (file, whether C0 goes with VCM's |S|, energy of bending at the start, kJ/mol).
@@ -188,10 +189,8 @@ def check(figure, case, cell, duration):
 def note(figure, case, cell):
     half = cell["energies"][len(cell["energies"]) // 2 :]
     means = ", ".join(
-        f"{term.split()[0]} {mean:.0f} ± {error:.0f}"
-        for term, mean, error in zip(
-            cell["terms"], half.mean(axis=0), _blocked_error(half), strict=True
-        )
+        f"{term.split()[0]} {energy.mean:.0f} ± {energy.error:.0f}"
+        for term, energy in zip(cell["terms"], map(mean_with_error, half.T), strict=True)
     )
     last = along_axes(helfrich.Mesh(cell["shapes"][-1], cell["triangles"]))
     diameter, middle, rim = thickness(last)
@@ -218,12 +217,6 @@ def draw(figure, cells):
     figure.save(graph, "_energies", "Energies per term over time.")
     path = figure.picture("", "The fluid membrane at the start and at the end, and cut in halves.")
     draw_meshes(path, panels, 4, views=views, edges=False)
-
-
-def _blocked_error(samples, blocks=5):
-    """Standard error of the means of columns, from blocks longer than the correlation time."""
-    means = np.array([block.mean(axis=0) for block in np.array_split(samples, blocks)])
-    return means.std(axis=0, ddof=1) / np.sqrt(blocks)
 
 
 if __name__ == "__main__":

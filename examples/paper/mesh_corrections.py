@@ -16,7 +16,7 @@ import numpy as np
 from scipy.optimize import curve_fit
 
 # c of soft meshes, as `fit_meshes` finds it at full size.
-SOFTENING = {"Julicher": 2.4, "GompperKrollBarycentric": 3.1}
+SOFTENING = {"Julicher": 2.3, "GompperKrollBarycentric": 2.6}
 
 
 def bending_ratio(num_vertices, rigidity, l, c, a=1.0):

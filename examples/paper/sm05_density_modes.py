@@ -46,10 +46,9 @@ def structure(runs, lmax):
     return mean_and_error(per_l)
 
 
-def plateau(factor, num_vertices):
-    """Mean of S over l = 3 … √N / 2, where waves are long against the spacing, and its error."""
-    chosen = slice(3, int(num_vertices**0.5 / 2) + 1)
-    mean, error = (values[chosen] for values in factor)
+def plateau(factor, first, last=None):
+    """Mean of S over l = first … last, by default the largest there is, and its error."""
+    mean, error = (values[first : None if last is None else last + 1] for values in factor)
     return mean.mean(), np.sqrt((error**2).sum()) / len(mean)
 
 
@@ -65,7 +64,9 @@ def check(figure, num_vertices, factors):
         "rises with Ξ",
         all(np.diff(heights) > 0),
     )
-    levels = [plateau(factors[softness], num_vertices) for softness in factors]
+    # Where waves are long against the spacing of the vertices, and where they are short.
+    long, short = int(num_vertices**0.5 / 2), int(np.ceil(2.5 * num_vertices**0.5))
+    levels = [plateau(factors[softness], 3, long) for softness in factors]
     figure.claim(
         "S of long waves, l = 3 … √N/2",
         ", ".join(f"{level:.3f} ± {error:.3f}" for level, error in levels),
@@ -73,7 +74,7 @@ def check(figure, num_vertices, factors):
         all(np.diff([level for level, _ in levels]) < 0) and levels[0][0] < GAS_AND_HEIGHTS,
     )
     figure.check("S of long waves at Ξ = 0.037", levels[0][0], 1, 0.1, levels[0][1])
-    mean, error = (values[-5:].mean() for values in factors[softest])
+    mean, error = plateau(factors[softest], short)
     figure.check("S of short waves, l ≥ 2.5 √N, Ξ = 0.037", mean, 1, 0.1, error)
     figure.note(
         "The paper's curves go to 1 at small Ξ. Here S of short waves does; that of long waves "

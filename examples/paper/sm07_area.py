@@ -14,7 +14,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from _paper import Figure, mean_and_error
 from fluctuations import AREA_MODULUS, SOFTNESS, heights_virial, vesicle_of
-from openmmhelfrich.analysis import autocorrelation_time
+from openmmhelfrich.analysis import mean_with_error
 from openmmhelfrich.vesicle import KBT
 from spectra import FULL, QUICK, Point, measure, named, points_of
 
@@ -32,9 +32,7 @@ def main():
 
 def mean_area(runs):
     """⟨A⟩/4π r0² and its error, from the frames of all samples."""
-    frames = np.concatenate([run["area"] for run in runs])
-    time = autocorrelation_time(frames)
-    return frames.mean(), np.sqrt(2 * time * frames.var() / len(frames))
+    return mean_with_error(np.transpose([run["area"] for run in runs]))[:2]
 
 
 def strain(point, area):

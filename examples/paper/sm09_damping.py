@@ -3,7 +3,8 @@
 The damped oscillation (A35–A37) is fitted to the autocorrelations of u_lm in the Verlet run of
 `fig09_10_autocorrelation.py`, over three periods. The paper finds γ_l ≈ 0.15 ω_l at Ξ = 0.037. The
 same fit to the two coupled oscillators of `two_modes.py`, which have no friction at all, tells how
-much of that is the beat with flow of the vertices within the surface: most of it for l = 2 and 3.
+much of that is the beat with flow of the vertices within the surface: a third of it at l = 2 and
+half at l = 3.
 """
 
 import matplotlib.pyplot as plt

@@ -3,9 +3,8 @@
 import itertools
 from typing import NamedTuple
 
-import numpy as np
 from fluctuations import RADIUS, SOFTNESS, VERSION, fluctuate
-from openmmhelfrich.analysis import Spectrum, spectrum, theory
+from openmmhelfrich.analysis import spectrum, theory
 
 FULL = {
     "base": 1002,
@@ -96,33 +95,9 @@ def measure(points, samples, figure):
     return {point: list(itertools.islice(results, samples)) for point in points}
 
 
-def pooled(runs, name):
-    """Spectrum of several samples: the mean over them, with the error of their mean."""
-    each = [spectrum(run[name]) for run in runs]
-    return Spectrum(
-        each[0].l,
-        np.mean([one.mean for one in each], axis=0),
-        np.sqrt(np.sum([one.error**2 for one in each], axis=0)) / len(each),
-        np.mean([one.correlation_time for one in each], axis=0),
-    )
-
-
-def still_share(runs, name):
-    """How much of ⟨|u_lm|²⟩ is a mean shape, which does not fluctuate, and its error, for each l.
-
-    The shape is common to all samples, whose noise is not: products of the means of different
-    samples have its square as their mean.
-    """
-    modes = np.array([run[name] for run in runs], dtype=float)
-    means, powers = modes.mean(axis=1), (modes**2).mean(axis=(0, 1))
-    pairs = len(runs) * (len(runs) - 1)
-    squares = (means.sum(axis=0) ** 2 - (means**2).sum(axis=0)) / pairs
-    noise = means.var(axis=0, ddof=1)
-    variances = 4 * squares.clip(min=0) * noise / len(runs) + 2 * noise**2 / pairs
-    starts = np.arange(round(len(powers) ** 0.5)) ** 2
-    total = np.add.reduceat(powers, starts)
-    error = np.sqrt(np.add.reduceat(variances, starts))
-    return np.add.reduceat(squares, starts) / total, error / total
+def spectrum_of(runs, name="fit"):
+    """The spectrum of all samples of a point."""
+    return spectrum([run[name] for run in runs])
 
 
 def ratio_of(found, point):

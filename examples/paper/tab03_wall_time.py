@@ -8,6 +8,7 @@ are not spread by Dask nor stored, because timings belong to the machine and to 
 import sys
 from pathlib import Path
 
+import matplotlib.pyplot as plt
 from _paper import Figure
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "benches"))
@@ -31,11 +32,13 @@ def main():
         f"Δt = {TIME_STEP:g} ps, {TEMPERATURE:g} K; platform {platform.getName()}, {threads} "
         "threads; " + ", ".join(f"{name}: {value}" for name, value in machine().items()) + "."
     )
+    rows = []
     for num_vertices, (_, cards, _) in TABLE.items():
         integrator = openmm.LangevinMiddleIntegrator(TEMPERATURE, FRICTION, TIME_STEP)
         seconds, steps, temperature = run(
             num_vertices, integrator, platform, properties, figure.quick
         )
+        rows.append((num_vertices, seconds, *cards))
         figure.spent(seconds / (100 if figure.quick else 1))
         figure.claim(
             f"N = {num_vertices}, {steps} steps",
@@ -43,7 +46,21 @@ def main():
             f"less than the {clock(cards[0])} and {clock(cards[1])} of the paper's graphics cards",
             seconds < min(cards),
         )
+    draw(figure, rows)
     figure.finish()
+
+
+def draw(figure, rows):
+    sizes, *times = zip(*rows, strict=True)
+    page, axis = plt.subplots(figsize=(5, 3.6), layout="constrained")
+    labels = ("this library, on the processor", "paper, 3000 cores", "paper, 16 000 cores")
+    for seconds, label, marker in zip(times, labels, "os^", strict=True):
+        axis.plot(sizes, seconds, f"{marker}-", label=label)
+    axis.set(xscale="log", yscale="log", xlabel="N", ylabel="wall time of 10 τ_2 (s)")
+    axis.set_xticks(sizes, [f"{size:d}" for size in sizes])
+    axis.minorticks_off()
+    axis.legend()
+    figure.save(page, caption="Wall time of 10 τ_2 here and on the paper's graphics cards")
 
 
 if __name__ == "__main__":

@@ -74,6 +74,20 @@ class TestHarmonics:
         expected = np.sqrt(3 / (4 * np.pi)) * np.eye(3)
         np.testing.assert_allclose(y[:, [3, 1, 2]], expected, atol=1e-15)
 
+    @pytest.mark.parametrize(
+        ("directions", "message"),
+        [
+            ([[0, 0, 1.0], [0, 0, 2]], r"directions\[1\] has the length 2"),
+            ([0, 0, 1.1], "directions has the length 1.1"),
+            ([0, 1.0], r"need shape \(…, 3\), got \(2,\)"),
+            (1.0, r"need shape \(…, 3\), got \(\)"),
+            ([[0, 0, np.nan]], r"directions\[0, 2\] is nan"),
+        ],
+    )
+    def test_directions_are_unit_vectors(self, directions, message):
+        with pytest.raises(ValueError, match=f"real_harmonics: .*{message}"):
+            analysis.real_harmonics(directions, 2)
+
     def test_poles_are_finite(self):
         assert np.isfinite(analysis.real_harmonics([[0, 0, 1.0], [0, 0, -1.0]], 12)).all()
 
@@ -231,6 +245,68 @@ class TestSpectrum:
             analysis.spectrum(np.zeros((1, 9)))
         with pytest.raises(ValueError, match=r"spectrum: amplitudes\[1, 3\] is nan"):
             analysis.spectrum(np.where(np.arange(9) == 3, [[0], [np.nan]], 0))
+
+    @pytest.mark.parametrize("function", [analysis.spectrum, analysis.mean_shape])
+    @pytest.mark.parametrize(
+        ("runs", "message"),
+        [
+            ([np.zeros((5, 9)), np.zeros((5, 8))], r"of run 1: need shape .*, got \(5, 8\)"),
+            ([np.zeros((5, 9)), np.zeros((5, 4))], "of run 1: there are 4 modes, and 9 in run 0"),
+            ([np.zeros((5, 9)), np.zeros((1, 9))], "of run 1: .*two frames or more, got 1"),
+            ([np.zeros((5, 9)), np.zeros(9)], r"of run 1: need shape .*, got \(9,\)"),
+            ([np.ones((2, 9)), [[1] * 9, [np.inf] * 9]], r"of run 1\[1, 0\] is inf"),
+            (np.zeros((3, 0, 9)), "of run 0: .*two frames or more, got 0"),
+            ([], r"need shape .*, got \(0,\)"),
+            (5.0, r"need shape .*, got \(\)"),
+        ],
+    )
+    def test_bad_runs(self, function, runs, message):
+        with pytest.raises(ValueError, match=f"{function.__name__}: amplitudes.*{message}"):
+            function(runs)
+
+    def test_runs_of_one_length_are_averaged(self):
+        runs = [self.correlated(500, 10, 3, seed) for seed in range(4)]
+        found, each = analysis.spectrum(runs), [analysis.spectrum(run) for run in runs]
+        np.testing.assert_allclose(found.mean, np.mean([one.mean for one in each], axis=0))
+        expected = np.sqrt(np.sum([one.error**2 for one in each], axis=0)) / 4
+        np.testing.assert_allclose(found.error[2:], expected[2:], rtol=0.1)
+        np.testing.assert_allclose(found.correlation_time[2:], 5, rtol=0.4)
+        for name, values in analysis.spectrum(np.array(runs))._asdict().items():
+            assert np.array_equal(values, getattr(found, name))
+        assert np.array_equal(analysis.spectrum(runs[:1]).error, each[0].error)
+
+    def test_longer_runs_weigh_more(self):
+        run = self.correlated(3000, 10, 3, 1)
+        parts = analysis.spectrum([run[:1000], run[1000:]])
+        whole = analysis.spectrum(run)
+        np.testing.assert_allclose(parts.mean, whole.mean)
+        np.testing.assert_allclose(parts.error[2:], whole.error[2:], rtol=0.15)
+
+    def test_a_mean_shape(self):
+        """Shares, spectra and their errors with a shape that all runs have, over many trials."""
+        shape = np.zeros(16)
+        shape[9:] = np.sqrt(theory.fluid_spectrum(3, 20)) * np.array([0, 3, 0, 0, 1, 0, 2])
+        truth = theory.fluid_spectrum(3, 20) * (1 + 14 / 7)
+        pulls, share_pulls = [], []
+        for seed in range(30):
+            runs = [
+                shape + self.correlated(length, 10, 3, 100 * seed + number)
+                for number, length in enumerate((400, 500, 600, 700, 800))
+            ]
+            found = analysis.spectrum(runs)
+            pulls.append((found.mean[3] - truth) / found.error[3])
+            still = analysis.mean_shape(runs)
+            share_pulls.append((still.share[2:] - [0, 2 / 3]) / still.error[2:])
+            assert found.correlation_time[3] == pytest.approx(5, rel=0.4)
+        for some in (pulls, *np.transpose(share_pulls)):
+            assert abs(np.mean(some)) < 0.6
+            assert 0.6 < np.std(some) < 1.4
+        # What one run takes for fluctuations has a much larger error.
+        assert analysis.spectrum(runs[0]).error[3] > 5 * found.error[3]
+
+    def test_one_run_has_no_mean_shape(self):
+        with pytest.raises(ValueError, match="two independent runs or more, got 1"):
+            analysis.mean_shape(np.ones((5, 9)))
 
 
 class TestTheory:

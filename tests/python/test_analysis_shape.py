@@ -97,6 +97,14 @@ class TestShape:
             rough.area / (4 * np.pi) * (3 * rough.volume / (4 * np.pi)) ** (-2 / 3) - 1
         )
 
+    def test_inside_out_has_no_excess(self, rough):
+        reverse = rough.triangles[:, ::-1]
+        with pytest.raises(ValueError, match="area_excess: the mesh is inside out"):
+            analysis.area_excess(rough, reverse)
+        frames = np.stack([rough.vertices, rough.vertices * [1, 1, -1]])
+        with pytest.raises(ValueError, match="area_excess: frame 1 is inside out"):
+            analysis.area_excess(frames, rough)
+
     def test_of_rods_and_disks(self):
         sphere = Mesh.icosphere(6, 100)
         rotation = Rotation.random(random_state=1)

@@ -134,20 +134,6 @@ def test_samples_of_all_vesicles_but_those_of_other_softness_have_seeds_of_their
     assert len(set(seeds)) == len(seeds)
 
 
-def test_the_share_of_a_mean_shape():
-    from spectra import still_share
-
-    random = np.random.default_rng(4)
-    shape = np.zeros(16)
-    shape[6], shape[11] = 3.0, 1.0  # l = 2 and 3, whose sums of squares are 9 and 1
-    runs = [{"modes": shape + random.normal(size=(400, 16))} for _ in range(10)]
-    share, error = still_share(runs, "modes")
-    # Each l has the variances of 2 l + 1 modes beside the shape.
-    expected = np.array([0, 0, 9 / (9 + 5), 1 / (1 + 7)])
-    assert np.all(error < 0.02)
-    assert np.all(abs(share - expected) < [*(4 * error[:2]), 0.02, 0.02])
-
-
 def test_integrators_have_seeds_of_their_own():
     from fig09_10_autocorrelation import FULL, points_of
 

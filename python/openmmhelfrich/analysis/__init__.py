@@ -23,7 +23,16 @@ from .lifetime import Lifetime, time_to_failure
 from .modes import mode_amplitudes
 from .shape import Shape, area_excess, gyration_tensor, shape
 from .solid_angles import solid_angles
-from .statistics import Blocking, Estimate, Spectrum, blocking, mean_with_error, spectrum
+from .statistics import (
+    Blocking,
+    Estimate,
+    MeanShape,
+    Spectrum,
+    blocking,
+    mean_shape,
+    mean_with_error,
+    spectrum,
+)
 from .tables import Modes, read_modes, read_table
 from .trajectories import Trajectory
 
@@ -34,6 +43,7 @@ __all__ = [
     "Estimate",
     "Grid",
     "Lifetime",
+    "MeanShape",
     "Modes",
     "Shape",
     "Spectrum",
@@ -50,6 +60,7 @@ __all__ = [
     "gyration_tensor",
     "landscape",
     "mean_curvature",
+    "mean_shape",
     "mean_with_error",
     "mode_amplitudes",
     "mode_autocorrelation",

@@ -80,4 +80,6 @@ def structure_factor(vertices, lmax) -> Spectrum:
         As for `density_modes`; fewer than two frames.
     """
     modes = density_modes(vertices, whole_number(lmax, "structure_factor", "lmax", 0))
+    if modes.ndim < 2 or len(modes) < 2:
+        raise ValueError("structure_factor: an error bar needs two frames or more, got 1")
     return spectrum(modes)

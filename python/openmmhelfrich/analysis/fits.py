@@ -40,7 +40,7 @@ class DampingFit(NamedTuple):
 
 
 def fit_young(spectrum, radius, kappa_over_kT=None, lmin=2, lmax=None) -> ElasticFit:
-    """Shear modulus of a vesicle from its spectrum, by (A18).
+    """Young modulus of a vesicle from its spectrum, by (A18).
 
     ln ⟨|u_lm|²⟩ = −ln [κ (l+2)(l+1) l (l−1) + Y r0² · 3 (l² + l − 2) / (3 (l² + l) − 2)]
 

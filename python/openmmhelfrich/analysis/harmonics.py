@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .._numbers import whole_number
+from .._numbers import finite_array, whole_number
 
 
 def real_harmonics(directions, lmax):
@@ -27,9 +27,20 @@ def real_harmonics(directions, lmax):
     Raises
     ------
     ValueError
-        An lmax that is no whole number of 0 or more.
+        Another shape, a vector whose length is not 1 within 1e-6, or an lmax that is no whole
+        number of 0 or more.
     """
-    directions = np.asarray(directions, dtype=float)
+    directions = finite_array(directions, "real_harmonics", "directions")
+    if directions.ndim == 0 or directions.shape[-1] != 3:
+        raise ValueError(f"real_harmonics: directions: need shape (…, 3), got {directions.shape}")
+    lengths = np.linalg.norm(directions, axis=-1)
+    wrong = np.argwhere(abs(lengths - 1) > 1e-6)
+    if len(wrong):
+        place = tuple(wrong[0].tolist())
+        index = f"[{', '.join(map(str, place))}]" if place else ""
+        raise ValueError(
+            f"real_harmonics: directions{index} has the length {lengths[place]:g}; divide by it"
+        )
     lmax = whole_number(lmax, "real_harmonics", "lmax", 0)
     harmonics = harmonics_of(directions[np.newaxis], lmax)[0]
     return np.moveaxis(harmonics, 0, -1)

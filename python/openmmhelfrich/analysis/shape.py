@@ -124,10 +124,19 @@ def area_excess(vertices, triangles):
 
     Raises
     ------
-    TypeError, ValueError
+    TypeError
         As for `shape`.
+    ValueError
+        As for `shape`; a frame that is inside out, whose volume is negative.
     """
-    return shape(vertices, triangles).reduced_volume ** (-2 / 3) - 1
+    reduced = np.asarray(shape(vertices, triangles).reduced_volume)
+    inverted = np.flatnonzero(reduced <= 0)
+    if len(inverted):
+        frame = f"frame {inverted[0]}" if reduced.ndim else "the mesh"
+        raise ValueError(
+            f"area_excess: {frame} is inside out, its volume is not positive; reverse its triangles"
+        )
+    return reduced[()] ** (-2 / 3) - 1
 
 
 def _tensor(positions):

@@ -1,5 +1,6 @@
 """Means over a run, with error bars that know about correlation in time."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -58,24 +59,39 @@ class Spectrum(NamedTuple):
         return self.mean / (1 + share), high
 
 
-def spectrum(amplitudes):
-    """Fluctuation spectrum ⟨|u_lm|²⟩ per l with error bars.
+class MeanShape(NamedTuple):
+    """How much of a spectrum does not fluctuate, as `mean_shape` returns it; equal lengths."""
+
+    l: np.ndarray
+    """Mode number, 0 … lmax."""
+    share: np.ndarray
+    """Σ_m ⟨u_lm⟩² / Σ_m ⟨u_lm²⟩, without unit, free of bias and so below 0 now and then."""
+    error: np.ndarray
+    """Standard error of the share, without unit, from the differences between runs."""
+
+
+def spectrum(amplitudes) -> Spectrum:
+    """Fluctuation spectrum ⟨|u_lm|²⟩ per l with error bars, of one run or of several.
 
     The standard error is √(2 τ σ² / n): σ² is the variance of |u_lm|², n the number of
     frames times 2l + 1, because the modes of one l are equivalent on a sphere, and τ their
     integrated autocorrelation time, see `autocorrelation_time`. A run shorter than a few τ
-    does not know its own τ, and its error bars are too small.
+    does not know its own τ, and its error bars are too small. Several runs are averaged with the
+    numbers of their frames as weights w, and their errors added up as √(Σ w² ε²).
 
-    The modes of one l are equivalent if the mesh has no shape of its own. A hard mesh that keeps
-    its neighbours has a mean shape, an ordered one that of an icosahedron, at l = 6. The mean
-    square contains its square, ⟨u_lm⟩², which is no fluctuation, and differences between its u_lm
-    count as fluctuations without end in τ and in the error.
+    The modes of one l are equivalent if the mesh has no shape of its own. A mesh that keeps its
+    neighbours has a mean shape ⟨u_lm⟩, see `mean_shape`: an ordered one that of an icosahedron, at
+    l = 6, the more so the harder or finer it is. Its square, which is no fluctuation, is part of
+    the mean square. From one run it cannot be told from fluctuations without end, which τ and the
+    error then take it for; from several it can, and the error is that of u_lm − ⟨u_lm⟩ together
+    with that of ⟨u_lm⟩².
 
     Parameters
     ----------
-    amplitudes : array_like
+    amplitudes : array_like, or sequence of array_like
         u_lm from `mode_amplitudes`, without unit, shape (num_frames, (lmax+1)²), at equal intervals
-        of time.
+        of time; or several of these with equal lmax and interval, from independent runs of one
+        vesicle.
 
     Returns
     -------
@@ -85,23 +101,57 @@ def spectrum(amplitudes):
     Raises
     ------
     ValueError
-        Another shape, fewer than two frames, or an amplitude that is not finite.
+        Another shape, fewer than two frames in a run, or an amplitude that is not finite.
     """
-    amplitudes = np.asarray(amplitudes, dtype=float)
-    if amplitudes.ndim != 2 or round(amplitudes.shape[1] ** 0.5) ** 2 != amplitudes.shape[1]:
-        raise ValueError(f"amplitudes: need shape (num_frames, (lmax+1)²), got {amplitudes.shape}")
-    num_frames = len(amplitudes)
-    if num_frames < 2:
-        raise ValueError(f"amplitudes: an error bar needs two frames or more, got {num_frames}")
-    finite_array(amplitudes, "spectrum", "amplitudes")
-    modes = np.arange(round(amplitudes.shape[1] ** 0.5))
-    mean, error, time = (np.empty(len(modes)) for _ in range(3))
-    for l in modes:
-        squares = amplitudes[:, l**2 : (l + 1) ** 2] ** 2
-        mean[l] = squares.mean()
-        time[l] = autocorrelation_time(squares)
-        error[l] = np.sqrt(2 * time[l] * squares.var() / squares.size)
-    return Spectrum(modes, mean, error, time)
+    runs = _runs("spectrum", amplitudes)
+    weights = _weights(runs)
+    num_modes = runs[0].shape[1]
+    shape, variance = _common_shape(runs, weights) if len(runs) > 1 else np.zeros((2, num_modes))
+    error, time = _fluctuations(runs, weights, shape)
+    modes, (mean, wandering) = _over_m(_powers(runs, weights), 4 * shape**2 * variance)
+    width = 2 * modes + 1
+    return Spectrum(modes, mean / width, np.sqrt(error**2 + wandering / width**2), time)
+
+
+def mean_shape(runs) -> MeanShape:
+    """How much of ⟨|u_lm|²⟩ is a mean shape, which does not fluctuate, for each l.
+
+    ⟨u_lm⟩² is estimated without bias from the means ū_i of independent runs, as a mean over
+    products of different runs, whose noise has nothing in common: (Σ w_i ū_i)² less the variance
+    of that sum, which the differences between the runs tell.
+
+    Parameters
+    ----------
+    runs : sequence of array_like
+        u_lm from `mode_amplitudes`, without unit, shape (num_frames, (lmax+1)²) each, of two or
+        more independent runs of one vesicle that keep its orientation. Their weights w are the
+        numbers of their frames.
+
+    Returns
+    -------
+    MeanShape
+        l, share and its error. In a spectrum, mean · (1 − share) is what fluctuates.
+
+    Raises
+    ------
+    ValueError
+        Fewer than two runs, another shape, fewer than two frames in a run, or an amplitude that is
+        not finite.
+    """
+    runs = _runs("mean_shape", runs)
+    if len(runs) < 2:
+        raise ValueError("mean_shape: a shape shows in two independent runs or more, got 1")
+    weights = _weights(runs)
+    shape, variance = _common_shape(runs, weights)
+    squares = shape**2 - variance
+    noise = 4 * squares.clip(min=0) * variance + 2 * variance**2 / (1 - (weights**2).sum())
+    modes, (squares, noise, powers) = _over_m(squares, noise, _powers(runs, weights))
+    rest = (2 * modes + 1) * _fluctuations(runs, weights, shape)[0]
+    # A mode that never moves has 0/0, and a share of NaN.
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = squares / powers
+        error = np.sqrt((1 - share) ** 2 * noise + share**2 * rest**2) / powers
+    return MeanShape(modes, share, error)
 
 
 def mean_with_error(series) -> Estimate:
@@ -196,6 +246,70 @@ def blocking(series) -> Blocking:
         long_enough = lengths.astype(float) ** 3 > 2 * n * (errors / errors[0]) ** 4
     best = int(np.argmax(long_enough)) if long_enough.any() else len(lengths) - 1
     return Blocking(lengths, errors, errors / np.sqrt(2 * (counts - 1)), best)
+
+
+def _runs(where, amplitudes):
+    """The amplitudes of one or several runs as a list of arrays (num_frames, (lmax+1)²)."""
+    if isinstance(amplitudes, np.ndarray):
+        several = amplitudes.ndim == 3 and len(amplitudes) > 0
+    else:
+        several = isinstance(amplitudes, Sequence) and any(np.ndim(run) == 2 for run in amplitudes)
+    runs = [np.asarray(run, dtype=float) for run in (amplitudes if several else [amplitudes])]
+    for number, run in enumerate(runs):
+        name = f"amplitudes of run {number}" if several else "amplitudes"
+        if run.ndim != 2 or round(run.shape[1] ** 0.5) ** 2 != run.shape[1]:
+            raise ValueError(
+                f"{where}: {name}: need shape (num_frames, (lmax+1)²), got {run.shape}"
+            )
+        if run.shape[1] != runs[0].shape[1]:
+            raise ValueError(
+                f"{where}: {name}: there are {run.shape[1]} modes, and {runs[0].shape[1]} in run 0"
+            )
+        if len(run) < 2:
+            raise ValueError(
+                f"{where}: {name}: an error bar needs two frames or more, got {len(run)}"
+            )
+        finite_array(run, where, name)
+    return runs
+
+
+def _weights(runs):
+    """The share of each run in all frames."""
+    counts = np.array([len(run) for run in runs])
+    return counts / counts.sum()
+
+
+def _common_shape(runs, weights):
+    """The mean of each mode over all runs, and the variance of this mean."""
+    means = np.array([run.mean(axis=0) for run in runs])
+    shape = weights @ means
+    squares = (weights**2).sum()
+    return shape, weights @ (means - shape) ** 2 * squares / (1 - squares)
+
+
+def _powers(runs, weights):
+    """⟨u_lm²⟩ of each mode over all runs."""
+    return sum(weight * (run**2).mean(axis=0) for run, weight in zip(runs, weights, strict=True))
+
+
+def _over_m(*each):
+    """The l of modes, and sums of the arguments over m."""
+    modes = np.arange(round(len(each[0]) ** 0.5))
+    return modes, [np.add.reduceat(values, modes**2) for values in each]
+
+
+def _fluctuations(runs, weights, shape):
+    """The error of the mean square of u_lm − shape per l, and its correlation time."""
+    modes = np.arange(round(len(shape) ** 0.5))
+    variance, time = np.zeros((2, len(modes)))
+    for l in modes:
+        of_l = slice(l**2, (l + 1) ** 2)
+        for run, weight in zip(runs, weights, strict=True):
+            squares = (run[:, of_l] - shape[of_l]) ** 2
+            memory = autocorrelation_time(squares)
+            time[l] += weight * memory
+            variance[l] += weight**2 * 2 * memory * squares.var() / squares.size
+    return np.sqrt(variance), time
 
 
 def _series(where, series):

@@ -44,16 +44,53 @@ class Cache:
 
     @staticmethod
     def key(name: str, point: Mapping, version: int = 1) -> str:
-        """The name of a result: 20 hexadecimal digits of the SHA-256 of what it depends on."""
+        """The name of a result: 20 hexadecimal digits of the SHA-256 of what it depends on.
+
+        Parameters
+        ----------
+        name : str
+            Of the function, ``module.name``.
+        point : mapping
+            Its arguments, such as JSON has.
+        version : int
+            Of the function.
+
+        Returns
+        -------
+        str
+        """
         text = json.dumps([name, version, point], sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()[:20]
 
     def path(self, name: str, key: str) -> Path:
-        """Where the result of the function ``module.name`` is, or would be."""
+        """Where a result is, or would be.
+
+        Parameters
+        ----------
+        name, key : str
+            The function, ``module.name``, and what `key` makes of it and a point.
+
+        Returns
+        -------
+        Path
+        """
         return self.folder / name / f"{key}.npz"
 
     def load(self, name: str, key: str, point: Mapping) -> dict | None:
-        """The stored result; None if there is none, or only the remains of one."""
+        """Look for a result.
+
+        Parameters
+        ----------
+        name, key : str
+            As for `path`.
+        point : mapping
+            The arguments, which must be those that were stored.
+
+        Returns
+        -------
+        dict or None
+            None if there is no such result, or a broken file, which is said on standard error.
+        """
         path = self.path(name, key)
         try:
             with np.load(path, allow_pickle=False) as file:
@@ -78,7 +115,20 @@ class Cache:
         return {**record["result"], **arrays}
 
     def save(self, name: str, key: str, point: Mapping, result: Mapping) -> None:
-        """Store a result, at once and completely or not at all."""
+        """Store a result, at once and completely or not at all.
+
+        Parameters
+        ----------
+        name, key, point
+            As for `load`.
+        result : mapping
+            Arrays, and what JSON has.
+
+        Raises
+        ------
+        OSError
+            The folder cannot be written to.
+        """
         path = self.path(name, key)
         path.parent.mkdir(parents=True, exist_ok=True)
         arrays = {entry: value for entry, value in result.items() if isinstance(value, np.ndarray)}
