@@ -313,7 +313,7 @@ class TestDensity:
         points = np.random.default_rng(0).normal(size=(400, 500, 3))
         points /= np.linalg.norm(points, axis=2, keepdims=True)
         for one in (points[0], points[:1]):
-            with pytest.raises(ValueError, match="structure_factor: .* two frames or more, got 1"):
+            with pytest.raises(ValueError, match=r"structure_factor: .* two frames or more, got 1"):
                 analysis.structure_factor(one, 10)
         s = analysis.structure_factor(points, 10)
         assert s.mean[0] == pytest.approx(500)
