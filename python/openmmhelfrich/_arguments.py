@@ -1,250 +1,30 @@
-"""Arguments of the force classes: triangles of any kind, scalars with units, names.
+"""Constructors and methods of the force classes that take what users have.
 
 SWIG makes classes that take lists of integers and plain numbers. The functions here, which the
-generated ``forces.py`` calls once for each class, give them constructors that take what users
-have: a `Mesh`, arrays, Quantities. What the scalars are called and which units they have is asked
-of the core, so a new potential needs no word here.
+generated ``forces.py`` calls once for each class, let them take a `Mesh`, arrays and Quantities.
 """
 
 from __future__ import annotations
 
-import ctypes
 import functools
 import inspect
-import math
-import operator
-from typing import NamedTuple
 
 import numpy as np
-from openmm import XmlSerializer, unit
+from openmm import XmlSerializer
 
-from . import _core
+from ._values import (
+    Scalar,
+    capitalised,
+    element_values,
+    form_name,
+    form_number,
+    plain_value,
+    scalar,
+    scalars_of,
+    triangles,
+)
 
-__all__ = ["Scalar", "accept_arrays", "accept_units", "scalar", "scalars_of", "triangles"]
-
-
-class Scalar(NamedTuple):
-    """A scalar parameter of a force class."""
-
-    name: str
-    #: The unit of plain numbers.
-    unit: unit.Unit
-    #: The default, or ``inspect.Parameter.empty``.
-    default: object
-    #: The setter for values of single elements, None if there is only the scalar.
-    element_setter: str | None
-
-
-class _ParameterInfo(ctypes.Structure):
-    _fields_ = [
-        ("name", ctypes.c_char_p),
-        ("energy", ctypes.c_int),
-        ("length", ctypes.c_int),
-        ("default", ctypes.c_double),
-        ("per", ctypes.c_int),
-    ]
-
-
-#: How the setters for values of single vertices and triangles are called, by the core's code.
-_ELEMENT_SETTERS = {0: None, 1: "setVertex{}", 2: "setTriangle{}s"}
-
-
-def scalars_of(force: str) -> list[Scalar]:
-    """The scalars of a force class, in the order of its constructor.
-
-    Parameters
-    ----------
-    force : str
-        The name of the class.
-    """
-    core = _core.library()
-    found = []
-    info = _ParameterInfo()
-    while core.Helfrich_Potential_parameter(force.encode(), len(found), ctypes.byref(info)) == 0:
-        dimension = unit.kilojoule_per_mole**info.energy * unit.nanometer**info.length
-        default = inspect.Parameter.empty if math.isnan(info.default) else info.default
-        name = info.name.decode()
-        setter = _ELEMENT_SETTERS[info.per]
-        setter = setter and setter.format(_capitalised(name))
-        found.append(Scalar(name, dimension, default, setter))
-    return found
-
-
-def _capitalised(name: str) -> str:
-    return name[0].upper() + name[1:]
-
-
-def form_name(force: str) -> str | None:
-    """What the variants of a force class are called ("scheme"), None if it has none."""
-    what, name = ctypes.c_char_p(), ctypes.c_char_p()
-    status = _core.library().Helfrich_Potential_form(
-        force.encode(), 0, ctypes.byref(what), ctypes.byref(name)
-    )
-    return what.value.decode() if status == 0 else None
-
-
-def _plain(where: str, parameter: Scalar, value):
-    """`value` without its unit, which must be that of the parameter."""
-    if not unit.is_quantity(value):
-        return value
-    if not value.unit.is_compatible(parameter.unit):
-        wanted = parameter.unit.get_symbol()
-        raise TypeError(f"{where} must be in units of {wanted}, got {value}")
-    return value.value_in_unit(parameter.unit)
-
-
-def element_values(force: str, parameter: Scalar, values) -> list[float]:
-    """Plain numbers, one for each vertex or triangle.
-
-    Parameters
-    ----------
-    force : str
-        The name of the class, for messages.
-    parameter : Scalar
-        What the numbers are.
-    values : array_like of float, or Quantity
-        In OpenMM's units if they are plain.
-
-    Raises
-    ------
-    TypeError
-        If the values are not numbers, or a Quantity with another dimension.
-    ValueError
-        If they are not one list.
-    """
-    where = f"{force}: {parameter.name}"
-    plain = _plain(where, parameter, values)
-    if isinstance(plain, (list, tuple)):
-        plain = [_plain(where, parameter, value) for value in plain]
-    try:
-        array = np.asarray(plain)
-    except ValueError:
-        raise TypeError(f"{where} must be a list of numbers, got lists of unequal length") from None
-    if array.ndim != 1:
-        raise ValueError(f"{where} must be one list of numbers, got the shape {array.shape}")
-    if array.size and array.dtype.kind not in "iuf":
-        raise TypeError(f"{where} must be a list of numbers, got dtype {array.dtype}")
-    array = array.astype(np.float64)
-    return array.tolist()
-
-
-def form_number(force: str, what: str, value) -> int:
-    """The number of a variant: a constant of the class, or its name.
-
-    Parameters
-    ----------
-    force : str
-        The name of the class.
-    what : str
-        What its variants are called, for messages.
-    value : int or str
-        A constant such as ``BendingForce.GompperKroll``, or ``"GompperKroll"``.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If the value is neither, or an unknown name.
-    """
-    if isinstance(value, str):
-        names = _form_names(force)
-        if value not in names:
-            known = ", ".join(names)
-            raise ValueError(f"{force}: there is no {what} {value!r}; known are: {known}")
-        return names.index(value)
-    if isinstance(value, (bool, np.bool_)):
-        raise TypeError(f"{force}: {what} must be a constant of the class, got {value!r}")
-    try:
-        return operator.index(value)
-    except TypeError:
-        raise TypeError(f"{force}: {what} must be a constant of the class, got {value!r}") from None
-
-
-def _form_names(force: str) -> list[str]:
-    names = []
-    what, name = ctypes.c_char_p(), ctypes.c_char_p()
-    find = _core.library().Helfrich_Potential_form
-    while find(force.encode(), len(names), ctypes.byref(what), ctypes.byref(name)) == 0:
-        names.append(name.value.decode())
-    return names
-
-
-def scalar(force: str, parameter: Scalar, value) -> float:
-    """A plain number in OpenMM's units.
-
-    Parameters
-    ----------
-    force : str
-        The name of the class, for messages.
-    parameter : Scalar
-        What the number is.
-    value : float or Quantity
-        In OpenMM's units if it is plain.
-
-    Raises
-    ------
-    TypeError
-        If the value is not one number, or a Quantity with another dimension.
-    """
-    where = f"{force}: {parameter.name}"
-    value = _plain(where, parameter, value)
-    if isinstance(value, (bool, np.bool_, str, bytes)):
-        raise TypeError(f"{where} must be a number, got {value!r}")
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        raise TypeError(f"{where} must be one number, got {value!r}") from None
-
-
-def triangles(force: str, given, offset: int = 0) -> np.ndarray:
-    """Triangles as a contiguous array of C integers, shape (num_triangles, 3).
-
-    Parameters
-    ----------
-    force : str
-        The name of the class, for messages.
-    given : Mesh or array_like of int
-        A Mesh, or particle indices of shape (num_triangles, 3).
-    offset : int
-        Added to every index, so that vertex ``i`` is particle ``offset + i``.
-
-    Raises
-    ------
-    TypeError
-        If the indices are not integers.
-    ValueError
-        If the shape is another, or an index does not fit a C int.
-    """
-    given = getattr(given, "triangles", given)
-    try:
-        array = np.asarray(given)
-    except ValueError:
-        raise ValueError(
-            f"{force}: triangles must be triples of particle indices, got lists of unequal length"
-        ) from None
-    if array.size == 0:
-        array = np.empty((0, 3), dtype=np.int64)
-    if array.ndim != 2 or array.shape[1] != 3:
-        raise ValueError(
-            f"{force}: triangles must have shape (num_triangles, 3), got {array.shape}"
-        )
-    if array.dtype.kind not in "iu":
-        raise TypeError(
-            f"{force}: triangles must be integers (particle indices), got dtype {array.dtype}"
-        )
-    if isinstance(offset, bool) or not isinstance(offset, (int, np.integer)):
-        raise TypeError(f"{force}: offset must be an integer, got {offset!r}")
-    limits = np.iinfo(np.intc)
-    # Python's integers do not wrap, as those of an array would.
-    for extreme in (array.min(axis=1), array.max(axis=1)) if len(array) else ():
-        for triangle in (int(np.argmin(extreme)), int(np.argmax(extreme))):
-            if not limits.min <= int(extreme[triangle]) + int(offset) <= limits.max:
-                indices = tuple(int(index) + int(offset) for index in array[triangle].tolist())
-                raise ValueError(
-                    f"{force}: triangle {triangle} has the indices {indices}, "
-                    "which are beyond what OpenMM can number"
-                )
-    shifted = array.astype(np.int64) + int(offset)
-    return np.ascontiguousarray(shifted, dtype=np.intc)
+__all__ = ["accept_arrays", "accept_units"]
 
 
 def accept_units(force: type) -> None:
@@ -274,7 +54,7 @@ def accept_units(force: type) -> None:
         for s in known:
             given = arguments[s.name]
             where = f"{name}: {s.name}"
-            if s.element_setter is not None and np.ndim(_plain(where, s, given)) > 0:
+            if s.element_setter is not None and np.ndim(plain_value(where, s, given)) > 0:
                 elements[s] = element_values(name, s, given)
                 # Any scalar is allowed to be 1, until the values themselves are accepted.
                 given = 1.0
@@ -287,7 +67,7 @@ def accept_units(force: type) -> None:
                 raise ValueError(f"{name}: {s.name} is an empty list; give one value or many")
             self._setElementValues(s.name, list_)
             # The scalar is not used beside them; their mean is what a reader would expect.
-            getattr(self, "set" + _capitalised(s.name))(float(np.mean(list_)))
+            getattr(self, "set" + capitalised(s.name))(float(np.mean(list_)))
         self._addTriangleBuffer(corners.data)
 
     init.__signature__ = signature.replace(
@@ -304,7 +84,7 @@ def accept_units(force: type) -> None:
 def _accept_unit_in_setter(force: type, parameter: Scalar) -> None:
     """Let the setters of a scalar, and of its values for elements, take Quantities and arrays."""
     name = force.__name__
-    method = "set" + _capitalised(parameter.name)
+    method = "set" + capitalised(parameter.name)
     swig_setter = getattr(force, method)
 
     @functools.wraps(swig_setter)
@@ -325,7 +105,7 @@ def _accept_unit_in_setter(force: type, parameter: Scalar) -> None:
 
 def _accept_name_in_setter(force: type, form: str) -> None:
     """Let the setter of the variant take its name."""
-    method = "set" + _capitalised(form)
+    method = "set" + capitalised(form)
     swig_setter = getattr(force, method)
 
     @functools.wraps(swig_setter)

@@ -12,7 +12,8 @@ import numpy as np
 import openmm
 from openmm import app, unit
 
-from .analysis import theory
+from ._quantities import checked_field, checked_number
+from .analysis import theory, triangle_areas
 from .forces import (
     BendingForce,
     DihedralForce,
@@ -132,34 +133,36 @@ class Vesicle:
         if not isinstance(mesh, Mesh):
             raise TypeError(f"Vesicle: mesh needs a Mesh, got {type(mesh).__name__}")
         self._mesh = mesh
-        self._rigidity = _field("rigidity", rigidity, _ENERGY, mesh)
-        self._area_modulus = _number("area_modulus", area_modulus, _ENERGY / nm**2)
-        self._volume_modulus = _number("volume_modulus", volume_modulus, _ENERGY / nm**3)
-        self._softness = _number("softness", softness, unit.dimensionless)
-        self._epsilon = _number("epsilon", epsilon, _ENERGY)
-        self._mass = _number("mass", mass, unit.dalton, zero=False)
+        self._rigidity = checked_field("rigidity", rigidity, _ENERGY, mesh)
+        self._area_modulus = checked_number("area_modulus", area_modulus, _ENERGY / nm**2)
+        self._volume_modulus = checked_number("volume_modulus", volume_modulus, _ENERGY / nm**3)
+        self._softness = checked_number("softness", softness, unit.dimensionless)
+        self._epsilon = checked_number("epsilon", epsilon, _ENERGY)
+        self._mass = checked_number("mass", mass, unit.dalton, zero=False)
         self._scheme = scheme
-        self._spontaneous_curvature = _field(
+        self._spontaneous_curvature = checked_field(
             "spontaneous_curvature", spontaneous_curvature, nm**-1, mesh, negative=True
         )
         self._unsigned = bool(unsigned_spontaneous_curvature)
-        self._dihedral_stiffness = _number("dihedral_stiffness", dihedral_stiffness, _ENERGY)
+        self._dihedral_stiffness = checked_number("dihedral_stiffness", dihedral_stiffness, _ENERGY)
         self._dihedral_form = dihedral_form
-        self._triangle_area_modulus = _number(
+        self._triangle_area_modulus = checked_number(
             "triangle_area_modulus", triangle_area_modulus, _ENERGY / nm**2
         )
-        self._plaquette_stiffness = _number("plaquette_stiffness", plaquette_stiffness, _ENERGY)
-        self._min_triangle_area = _number("min_triangle_area", min_triangle_area, nm**2)
-        self._min_height = _plain(mesh.min_height(self._softness), nm)
-        self._area = _number("area", mesh.area if area is None else area, nm**2, zero=False)
+        self._plaquette_stiffness = checked_number(
+            "plaquette_stiffness", plaquette_stiffness, _ENERGY
+        )
+        self._min_triangle_area = checked_number("min_triangle_area", min_triangle_area, nm**2)
+        self._min_height = mesh.min_height(self._softness)
+        self._area = checked_number("area", mesh.area if area is None else area, nm**2, zero=False)
         if reduced_volume is None:
             volume = mesh.volume if volume is None else volume
         elif volume is None:
-            ratio = _number("reduced_volume", reduced_volume, unit.dimensionless, zero=False)
+            ratio = checked_number("reduced_volume", reduced_volume, unit.dimensionless, zero=False)
             volume = ratio * 4 / 3 * math.pi * self.radius**3
         else:
             raise ValueError("Vesicle: give either volume or reduced_volume, not both")
-        self._volume = _number("volume", volume, nm**3, zero=False)
+        self._volume = checked_number("volume", volume, nm**3, zero=False)
         self._placement = None
         # The forces refuse a scheme or form that does not exist: now, not when they are used.
         self._forces(0)
@@ -364,7 +367,7 @@ class Vesicle:
             )
         if self._triangle_area_modulus > 0:
             forces["triangle_areas"] = TriangleAreaForce(
-                mesh, self._triangle_area_modulus, _triangle_areas(mesh), **at
+                mesh, self._triangle_area_modulus, triangle_areas(mesh, mesh), **at
             )
         if self._plaquette_stiffness > 0:
             forces["plaquettes"] = PlaquetteAreaForce(
@@ -411,59 +414,3 @@ class Placement:
             .value_in_unit(_ENERGY)
             for name, force in self.forces.items()
         }
-
-
-def _triangle_areas(mesh):
-    """Area of each triangle, shape (num_triangles,), nm²."""
-    a, b, c = (mesh.vertices[mesh.triangles[:, corner]] for corner in range(3))
-    return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
-
-
-def _field(name, value, dimension, mesh, negative=False):
-    """One number, or an array of one for each vertex of the mesh."""
-    bare = value.value_in_unit(value.unit) if unit.is_quantity(value) else value
-    try:
-        single = np.ndim(bare) == 0
-    except ValueError:
-        raise TypeError(f"Vesicle: {name} needs numbers, got lists of unequal length") from None
-    if single:
-        return _number(name, value, dimension, negative=negative)
-    if unit.is_quantity(value):
-        # The message of a wrong dimension is that of a single number.
-        _number(name, 1.0 * value.unit, dimension, negative=True)
-        value = value.value_in_unit(dimension)
-    values = np.array(value)
-    if values.dtype.kind not in "iuf":
-        raise TypeError(f"Vesicle: {name} needs numbers, got dtype {values.dtype}")
-    if values.shape != (mesh.num_vertices,):
-        raise ValueError(
-            f"Vesicle: {name} must be one number or one for each of the {mesh.num_vertices} "
-            f"vertices, got the shape {values.shape}"
-        )
-    for number in values.tolist():
-        _number(name, number, dimension, negative=negative)
-    values = values.astype(np.float64)
-    values.setflags(write=False)
-    return values
-
-
-def _plain(value, dimension):
-    return value.value_in_unit(dimension) if unit.is_quantity(value) else float(value)
-
-
-def _number(name, value, dimension, zero=True, negative=False):
-    """A checked number in OpenMM's units, for the parameter `name`."""
-    if unit.is_quantity(value) and not value.unit.is_compatible(dimension):
-        raise TypeError(f"Vesicle: {name} needs the unit {dimension}, got {value}")
-    if isinstance(value, (bool, np.bool_, str)):
-        raise TypeError(f"Vesicle: {name} needs a number, got {value!r}")
-    try:
-        number = _plain(value, dimension)
-    except (TypeError, ValueError):
-        raise TypeError(f"Vesicle: {name} needs a number, got {value!r}") from None
-    if not math.isfinite(number):
-        raise ValueError(f"Vesicle: {name} needs a finite number, got {number}")
-    if not negative and (number < 0 or (number == 0 and not zero)):
-        need = "0 or more" if zero else "more than 0"
-        raise ValueError(f"Vesicle: {name} needs {need}, got {number}")
-    return number

@@ -12,7 +12,7 @@ from pathlib import Path
 import openmm
 import openmmhelfrich as helfrich
 import pytest
-from openmmhelfrich import _arguments
+from openmmhelfrich import _values
 
 PROJECT = Path(__file__).resolve().parents[2]
 OPENMM = Path(openmm.__file__).resolve().parent.parent / "OpenMM.libs"
@@ -148,7 +148,7 @@ def test_every_force_class_has_its_c_functions():
     library = ctypes.CDLL(helfrich.library_path())
     for force in helfrich.MembraneForce.__subclasses__():
         names = [f"Helfrich_{force.__name__}_create"]
-        for scalar in _arguments.scalars_of(force.__name__):
+        for scalar in _values.scalars_of(force.__name__):
             capitalised = scalar.name[0].upper() + scalar.name[1:]
             names += [f"Helfrich_{force.__name__}_{verb}{capitalised}" for verb in ("get", "set")]
         for name in names:
