@@ -83,6 +83,11 @@ def oblate_run(reduced_volume, softness, duration, time_step, subdivision, seed)
     }
 
 
+def upright(vesicle):
+    """The last shape of a vesicle, its axis along z."""
+    return along_axes(helfrich.Mesh(vesicle["shape"], vesicle["triangles"]))
+
+
 def dimple(mesh):
     """Thickness in the middle over the largest one, of a disc whose axis is z; 1 without dimple."""
     rho = np.hypot(mesh.vertices[:, 0], mesh.vertices[:, 1])
@@ -138,7 +143,7 @@ def check(figure, vesicles, count):
         all(key in stable for key in soft),
     )
     disc = vesicles[0.6, SOFTEST]
-    thickness = dimple(along_axes(helfrich.Mesh(disc["shape"], disc["triangles"])))
+    thickness = dimple(upright(disc))
     # A coarse mesh that has run for a short time is a shallow one.
     limit = figure.choose(0.75, 0.95)
     figure.claim(
@@ -177,14 +182,21 @@ def note(figure, vesicles, volumes, softnesses):
                 for volume in volumes
             ],
         )
-    if not figure.quick:
-        figure.note(
-            "The pictures beside the paper's description, a discocyte near ν = 0.6: soft meshes "
-            "have a dimple on both sides from ν = 0.9 on, which deepens; at 0.6 the disc is that "
-            "of a red cell. At 0.5 the dimples meet, and below they go through each other and "
-            "leave a ring around a bulge. Hard meshes are thicker at the same ν, and that of ν = "
-            "0.9 is dented from one side. ⟨U_h⟩ of the hardest is largest at ν = 0.7. None failed."
-        )
+    figure.table(
+        "The paper describes a discocyte near ν = 0.6. Thickness in the middle over that at the "
+        "rim of the last shapes; below ν = 0.5 the middle has gone through itself and bulges out:",
+        ["ν", *(f"Ξ = {softness:g}" for softness in softnesses)],
+        [
+            [f"{volume:g}"]
+            + [
+                "failed"
+                if vesicles[volume, softness]["failed"]
+                else f"{dimple(upright(vesicles[volume, softness])):.2f}"
+                for softness in softnesses
+            ]
+            for volume in volumes
+        ],
+    )
     figure.note(
         "Nothing keeps distant parts of a membrane apart, so that at small ν opposite sides touch "
         "and pass through each other."

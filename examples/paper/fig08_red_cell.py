@@ -32,7 +32,8 @@ SAMPLES = 200
 
 def digest(file):
     """Of the contents of a configuration and of the files beside it that it names."""
-    named = {file.parent / word for word in file.read_text(encoding="utf-8").split()}
+    words = file.read_text(encoding="utf-8-sig", errors="replace").split()
+    named = {file.parent / word for word in words}
     contents = [path.read_bytes() for path in (file, *sorted(named)) if path.is_file()]
     return hashlib.sha256(b"\0".join(contents)).hexdigest()
 

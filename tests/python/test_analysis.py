@@ -296,6 +296,7 @@ class TestSpectrum:
             found = analysis.spectrum(runs)
             pulls.append((found.mean[3] - truth) / found.error[3])
             still = analysis.mean_shape(runs)
+            assert abs(still.amplitudes - shape).max() < 0.2 * shape.max()
             share_pulls.append((still.share[2:] - [0, 2 / 3]) / still.error[2:])
             assert found.correlation_time[3] == pytest.approx(5, rel=0.4)
         for some in (pulls, *np.transpose(share_pulls)):

@@ -134,6 +134,26 @@ def test_samples_of_all_vesicles_but_those_of_other_softness_have_seeds_of_their
     assert len(set(seeds)) == len(seeds)
 
 
+def test_a_digest_is_that_of_a_configuration_and_its_meshes(tmp_path):
+    from fig08_red_cell import digest
+
+    folders = [tmp_path / name for name in ("one", "two")]
+    for folder in folders:
+        folder.mkdir()
+        (folder / "cell.txt").write_text("-Membrane\nMeshFile mesh.ply\n")
+        (folder / "mesh.ply").write_text("ply")
+        (folder / "other.ply").write_text("ply")
+    one, two = (folder / "cell.txt" for folder in folders)
+    assert digest(one) == digest(two)
+    (folders[1] / "other.ply").write_text("not named")
+    assert digest(one) == digest(two)
+    (folders[1] / "mesh.ply").write_text("changed")
+    assert digest(one) != digest(two)
+    # Its comments are in whatever encoding.
+    one.write_bytes(one.read_bytes() + "# µm\n".encode("latin-1"))
+    assert len({digest(one), digest(two)}) == 2
+
+
 def test_integrators_have_seeds_of_their_own():
     from fig09_10_autocorrelation import FULL, points_of
 

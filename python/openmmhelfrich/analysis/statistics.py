@@ -60,14 +60,16 @@ class Spectrum(NamedTuple):
 
 
 class MeanShape(NamedTuple):
-    """How much of a spectrum does not fluctuate, as `mean_shape` returns it; equal lengths."""
+    """The part of the modes that does not fluctuate, as `mean_shape` returns it."""
 
+    amplitudes: np.ndarray
+    """⟨u_lm⟩, without unit, shape ((lmax+1)²,)."""
     l: np.ndarray
     """Mode number, 0 … lmax."""
     share: np.ndarray
     """Σ_m ⟨u_lm⟩² / Σ_m ⟨u_lm²⟩, without unit, free of bias and so below 0 now and then."""
     error: np.ndarray
-    """Standard error of the share, without unit, from the differences between runs."""
+    """Standard error of the share, without unit."""
 
 
 def spectrum(amplitudes) -> Spectrum:
@@ -114,11 +116,13 @@ def spectrum(amplitudes) -> Spectrum:
 
 
 def mean_shape(runs) -> MeanShape:
-    """How much of ⟨|u_lm|²⟩ is a mean shape, which does not fluctuate, for each l.
+    """The mean shape ⟨u_lm⟩ of several runs, and its share of ⟨|u_lm|²⟩ for each l.
 
     ⟨u_lm⟩² is estimated without bias from the means ū_i of independent runs, as a mean over
     products of different runs, whose noise has nothing in common: (Σ w_i ū_i)² less the variance
-    of that sum, which the differences between the runs tell.
+    of that sum, which the differences between the runs tell. The error of the share s = S / (S + F)
+    is √((1−s)² ε_S² + s² ε_F²) / (S + F), with S the sum over m of these squares and F of what
+    fluctuates.
 
     Parameters
     ----------
@@ -130,7 +134,7 @@ def mean_shape(runs) -> MeanShape:
     Returns
     -------
     MeanShape
-        l, share and its error. In a spectrum, mean · (1 − share) is what fluctuates.
+        Amplitudes, l, share and its error. In a spectrum, mean · (1 − share) is what fluctuates.
 
     Raises
     ------
@@ -151,7 +155,7 @@ def mean_shape(runs) -> MeanShape:
     with np.errstate(divide="ignore", invalid="ignore"):
         share = squares / powers
         error = np.sqrt((1 - share) ** 2 * noise + share**2 * rest**2) / powers
-    return MeanShape(modes, share, error)
+    return MeanShape(shape, modes, share, error)
 
 
 def mean_with_error(series) -> Estimate:
