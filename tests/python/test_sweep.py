@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from openmmhelfrich.sweep import Cache, SweepError, grid, sweep
+from openmmhelfrich.sweep.backends import on_dask
 
 distributed = pytest.importorskip("distributed")
 
@@ -366,3 +367,20 @@ def test_scheduler_that_loses_a_worker(tmp_path):
         count = len(computed(log))
         quiet(fatal, points, cache=cache, scheduler=address)
         assert len(computed(log)) == count
+
+
+def test_results_that_die_with_their_worker_are_computed_again(tmp_path):
+    """The worker has finished points that nobody has fetched yet."""
+    log = tmp_path / "log"
+    log.mkdir()
+    with dask_cluster(tmp_path, 2) as (address, workers):
+        points = grid(x=range(12), folder=[str(log)], victim=[workers[0].pid])
+        outcomes = on_dask(fatal, dict(enumerate(points)), address, None)
+        found = dict([next(outcomes)])
+        assert workers[0].wait(timeout=120) == -signal.SIGKILL
+        found |= dict(outcomes)
+    assert {key: result["number"] for key, (result, _) in found.items()} == {
+        x: x**2 for x in range(12)
+    }
+    # The point that it was computing, and at least one of the two before.
+    assert 14 <= len(computed(log)) <= 15

@@ -10,6 +10,7 @@ import pickle
 import queue
 import signal
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -96,8 +97,14 @@ def on_dask(function, points, scheduler, workers):
                 except queue.Empty:
                     _check_health(client, where)
                     continue
+                if future.status == "lost":
+                    # Its worker died before the result was fetched; Dask computes it again.
+                    threading.Thread(
+                        target=_put_when_done, args=(finished, future), daemon=True
+                    ).start()
+                    continue
                 key = waiting.pop(future)
-                if future.status == "cancelled" or future.status == "lost":
+                if future.status == "cancelled":
                     raise SweepError(f"sweep: lost the scheduler of {where}; run again to go on")
                 error = future.exception()
                 yield key, future.result() if error is None else error
@@ -106,6 +113,16 @@ def on_dask(function, points, scheduler, workers):
         finally:
             with contextlib.suppress(Exception):
                 client.cancel(list(waiting), force=True)
+
+
+def _put_when_done(finished, future):
+    """Put a lost future into the queue when it is there again; a callback would come at once."""
+    import distributed
+
+    # What a cancelled future raises is seen by who takes it out.
+    with contextlib.suppress(BaseException), future.client.as_current():
+        distributed.wait(future)
+    finished.put(future)
 
 
 @contextlib.contextmanager
