@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from .._writing import write_whole
 from ..errors import MeshError
 from . import obj, off, other, ply, stl
 from .source import Source
@@ -62,12 +63,12 @@ def write(path, vertices: np.ndarray, triangles: np.ndarray) -> None:
     MeshError
         If the format is unknown.
     OSError
-        If the file cannot be written.
+        If the file cannot be written; one that was there is still as it was.
     """
     path = Path(path)
     extension = path.suffix.lower()
     if extension in _OWN:
-        path.write_text(_OWN[extension].write(vertices, triangles), encoding="ascii")
+        write_whole(path, _OWN[extension].write(vertices, triangles).encode("ascii"))
     elif extension in _MESHIO_WRITES:
         other.write_meshio(path, vertices, triangles)
     else:

@@ -13,6 +13,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from .._writing import in_memory, naming, write_whole
 from ..errors import MeshError
 from .source import arrays, merge_repeated
 
@@ -74,7 +75,11 @@ def write_meshio(path: Path, vertices: np.ndarray, triangles: np.ndarray) -> Non
     import meshio
 
     file_format = {".vtk": "vtk", ".vtu": "vtu", ".msh": "gmsh"}[path.suffix.lower()]
-    meshio.Mesh(vertices, [("triangle", triangles)]).write(path, file_format=file_format)
+    made = meshio.Mesh(vertices, [("triangle", triangles)])
+    # meshio says nothing of the file where it cannot be written.
+    with naming(path):
+        data = in_memory(lambda name: made.write(name, file_format=file_format))
+    write_whole(path, data)
 
 
 def read_trimesh(path: Path) -> tuple[np.ndarray, np.ndarray]:

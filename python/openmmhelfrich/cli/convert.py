@@ -6,6 +6,8 @@ from pathlib import Path
 
 import click
 
+from .._writing import write_whole
+
 __all__ = ["convert"]
 
 _FILE = click.Path(path_type=Path, exists=True, dir_okay=False)
@@ -53,10 +55,7 @@ def convert(system, output, positions, tolerance):
     click.echo(str(report))
     if not report.replaced:
         raise click.ClickException("nothing to replace, so no file was written")
-    try:
-        output.write_text(openmm.XmlSerializer.serialize(faster), encoding="utf-8")
-    except OSError as reason:
-        raise click.ClickException(f"{output}: {reason.strerror}") from None
+    write_whole(output, openmm.XmlSerializer.serialize(faster).encode())
     click.echo(f"wrote {output}")
 
 

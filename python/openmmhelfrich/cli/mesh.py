@@ -26,15 +26,13 @@ _radius_option = click.option(
 
 @contextlib.contextmanager
 def _tidy_errors() -> Iterator[None]:
-    """Errors of meshes and files as one line, without a traceback."""
+    """Errors of meshes as one line, without a traceback; those of files are `main`'s."""
     from ..errors import MeshError
 
     try:
         yield
-    except (MeshError, FileNotFoundError) as reason:
+    except MeshError as reason:
         raise click.ClickException(str(reason)) from None
-    except OSError as reason:
-        raise click.ClickException(f"{reason.filename}: {reason.strerror}") from None
 
 
 @click.group()

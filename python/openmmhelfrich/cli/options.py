@@ -68,5 +68,5 @@ def tidy_errors() -> Iterator[None]:
         warnings.showwarning = show
         try:
             yield
-        except (ConfigError, RunError, FileNotFoundError) as reason:
+        except (ConfigError, RunError) as reason:
             raise click.ClickException(str(reason)) from None

@@ -19,7 +19,7 @@ from openmm import unit
 from openmm.app.internal.xtc_utils import xtc_write_frame
 
 from .._mesh import geometry, ply
-from .._writing import naming
+from .._writing import in_memory, naming
 from ..analysis import mean_curvature
 from ..wireframe import write_psf
 
@@ -207,7 +207,7 @@ class Outputs:
         """The number of frames and the length of every file, once all of it is on the disk."""
         sizes = {}
         for path in self.paths:
-            with path.open("rb") as file:
+            with naming(path), path.open("rb") as file:
                 os.fsync(file.fileno())
                 sizes[path.name] = os.fstat(file.fileno()).st_size
         return {"frames": self._num_frames, "sizes": sizes}
@@ -270,20 +270,15 @@ class Outputs:
     def _xtc(self, frame: Frame) -> bytes:
         """A frame of an XTC file.
 
-        OpenMM writes to names only, and says nothing if the disk is full: it writes into memory.
+        OpenMM says nothing if a file cannot be written.
         """
-        handle = os.memfd_create("frame")
-        try:
-            xtc_write_frame(
-                f"/proc/self/fd/{handle}".encode(),
-                frame.positions.astype(np.float32),
-                frame.box.astype(np.float32),
-                np.float32(frame.time),
-                np.int32(frame.step),
-            )
-            return os.pread(handle, os.fstat(handle).st_size, 0)
-        finally:
-            os.close(handle)
+        values = (
+            frame.positions.astype(np.float32),
+            frame.box.astype(np.float32),
+            np.float32(frame.time),
+            np.int32(frame.step),
+        )
+        return in_memory(lambda name: xtc_write_frame(name.encode(), *values))
 
     def _binary(self, values) -> bytes:
         return np.ascontiguousarray(values, dtype=self._type).tobytes()
