@@ -34,7 +34,14 @@ _FILE = click.Path(path_type=Path, exists=True, dir_okay=False)
     show_default=True,
     help="Of that comparison, relative.",
 )
-def convert(system, output, positions, tolerance):
+@click.option(
+    "--freeze",
+    multiple=True,
+    metavar="NAME",
+    help="A global parameter that may become a number, its default in SYSTEM, or follow another "
+    "one; can be given several times. What is printed names those that would help.",
+)
+def convert(system, output, positions, tolerance, freeze):
     """Replace the Custom forces of a membrane in the serialized System SYSTEM (XML).
 
     Finds the bending energies, area and volume constraints, repulsions and dihedrals that are the
@@ -49,7 +56,7 @@ def convert(system, output, positions, tolerance):
     given = _deserialize(system, openmm.System, "a System")
     where = None if positions is None else _positions(positions)
     try:
-        faster, report = vcm.accelerate(given, where, tolerance)
+        faster, report = vcm.accelerate(given, where, tolerance, freeze)
     except ValueError as reason:
         raise click.ClickException(str(reason)) from None
     click.echo(str(report))
