@@ -11,11 +11,13 @@ mod membrane;
 mod mesh;
 mod plugin;
 mod potentials;
+mod records;
 
 pub use membrane::*;
 pub use mesh::*;
 pub use plugin::*;
 pub use potentials::*;
+pub use records::*;
 
 use crate::error::Result;
 use std::cell::RefCell;
