@@ -135,6 +135,12 @@ pub trait Potential: Sync {
     /// Where energy is added, and from what.
     fn needs(&self, term: &Term) -> Needs;
 
+    /// Whether the energy makes no sense on a surface that is turned inside out. Such a surface is refused when it is
+    /// first evaluated; what a shape becomes later is not.
+    fn needs_outside(&self) -> bool {
+        false
+    }
+
     /// Energy of the total area and volume.
     fn totals(&self, _: &Term, _: &Totals, _: &mut TotalPartials) -> Contribution {
         Contribution::default()
