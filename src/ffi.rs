@@ -11,11 +11,13 @@ mod membrane;
 mod mesh;
 mod plugin;
 mod potentials;
+mod records;
 
 pub use membrane::*;
 pub use mesh::*;
 pub use plugin::*;
 pub use potentials::*;
+pub use records::*;
 
 use crate::error::Result;
 use std::cell::RefCell;
@@ -36,7 +38,7 @@ pub(crate) fn set_last_error(message: String) {
 pub(crate) fn guarded(subject: &str, body: impl FnOnce() -> Result<()>) -> c_int {
     let message = match catch_unwind(AssertUnwindSafe(body)) {
         Ok(Ok(())) => return 0,
-        Ok(Err(error)) => format!("{subject}: {error}"),
+        Ok(Err(error)) => format!("{}: {error}", error.class().unwrap_or(subject)),
         Err(panic) => {
             let text = panic
                 .downcast_ref::<String>()

@@ -4,6 +4,7 @@ use crate::backend::Choice;
 use crate::error::{Error, Result};
 use crate::evaluator::ChosenEvaluator;
 use crate::mesh::Topology;
+use crate::mesh::orientation::is_inside_out;
 use crate::potentials::{Contribution, Element, Term};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, Ordering};
@@ -21,6 +22,8 @@ pub struct Membrane {
     topology: Arc<Topology>,
     evaluator: ChosenEvaluator,
     num_particles: usize,
+    /// Whether the surface has been looked at and is not inside out.
+    has_outside: bool,
 }
 
 impl Membrane {
@@ -32,7 +35,7 @@ impl Membrane {
         let topology = Arc::new(Topology::new(triangles, num_particles)?);
         let evaluator = ChosenEvaluator::new(topology.clone());
         ALIVE.fetch_add(1, Ordering::Relaxed);
-        Ok(Self { topology, evaluator, num_particles })
+        Ok(Self { topology, evaluator, num_particles, has_outside: false })
     }
 
     /// Let so many threads share evaluations, where that turns out faster; 0 for as many as there are.
@@ -57,7 +60,8 @@ impl Membrane {
     /// System, x y z of one after the other; forces are added. Without contributions no energies are summed.
     ///
     /// # Errors
-    /// Those of [`ChosenEvaluator::evaluate`], and a parameter outside its domain, as a Context parameter
+    /// Those of [`ChosenEvaluator::evaluate`], triangles that are turned inside out where a term needs an outside, and
+    /// a parameter outside its domain, as a Context parameter
     /// can come to be.
     pub fn evaluate(
         &mut self,
@@ -78,7 +82,30 @@ impl Membrane {
         for term in terms {
             self.check(term)?;
         }
+        if !self.has_outside {
+            self.look_for_outside(terms, positions)?;
+        }
         self.evaluator.evaluate(terms, positions, contributions, forces)
+    }
+
+    /// Refuse triangles that all run clockwise, as a slip in a mesh has them, before a volume below zero becomes a
+    /// pressure that blows the membrane up. That is settled by the first positions that a term asks about, for good:
+    /// a shape that turns inside out later, or crosses itself, follows the formula, whose volume has a sign.
+    fn look_for_outside(&mut self, terms: &[Term], positions: &[f64]) -> Result<()> {
+        let Some(term) = terms.iter().find(|term| term.potential.needs_outside()) else {
+            return Ok(());
+        };
+        match is_inside_out(&self.topology, positions) {
+            Some((true, totals)) => {
+                let (force, volume) = (term.potential.name(), totals.volume);
+                Err(Error::InsideOut { force, volume })
+            }
+            found => {
+                // Of positions that are not finite the evaluator names the culprit.
+                self.has_outside = found.is_some();
+                Ok(())
+            }
+        }
     }
 
     /// Refuse a term with values outside their domains, or with more or fewer values for single
