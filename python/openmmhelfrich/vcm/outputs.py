@@ -300,7 +300,7 @@ class Outputs:
         self._frames().mkdir(exist_ok=True)
         for membrane, vertices in self._parts(frame):
             name = f"{self._cfg.name}_{membrane.label}_{self._num_frames:06d}.ply"
-            (self._frames() / name).write_text(ply.write(vertices, membrane.mesh.triangles))
+            (self._frames() / name).write_bytes(ply.write(vertices, membrane.mesh.triangles))
 
     def _remove_frames_from(self, number: int) -> None:
         if not self._ply:
