@@ -220,6 +220,8 @@ MISTAKES = [
      "vesicle[1].mesh.merge: must be 0 or more, got -1"),
     ('file = "ball.ply"', 'file = "ball.ply"\nmerge = 30',
      "vesicle[1].mesh.file: Mesh.read: "),
+    ("ply = true", "ply = true\nframes = \"vtk\"", "output.ply: give either frames or ply"),
+    ("ply = true", 'frames = "vtp"', "output.frames: there is no 'vtp'; did you mean vtk?"),
     ('file = "ball.ply"', 'file = "ball.ply"\nradius = 3',
      "vesicle[1].mesh.radius: a mesh from a file has its own size; use scale"),
     ('file = "ball.ply"', 'file = "ball.ply"\nseed = 3', "vesicle[1].mesh.seed: only a random"),

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..forces import BendingForce, DihedralForce
+from ..vcm.frames import FRAMES
 from .values import (
     Reader,
     boolean,
@@ -86,7 +87,10 @@ KEYS: tuple[Key, ...] = (
     Key("integrator", "friction", number(least=0), 0.01, "γ, 1/ps; Verlet has none."),
     Key("output", "interval", number(above=0), 100.0, "Time between frames, ps, in whole steps."),
     Key("output", "xtc", boolean, True, "Write a trajectory `<name>.xtc`."),
-    Key("output", "ply", boolean, False, "Write a mesh per vesicle and frame."),
+    Key("output", "frames", choice(FRAMES), "none",
+        "Write a mesh per vesicle and frame: `\"ply\"`, `\"obj\"` or `\"vtk\"`. PLY and VTK have "
+        "the vertices' mean curvatures and areas; OVITO reads OBJ and VTK."),
+    Key("output", "ply", boolean, False, "Short for `frames = \"ply\"`."),
     Key("output", "text", choices(_TEXTS), (),
         "Text files: an array of " + ", ".join(f"`\"{name}\"`" for name in _TEXTS) + "."),
     Key("vesicle", "name", text, None, "Label in file names and tables. Default: its number."),

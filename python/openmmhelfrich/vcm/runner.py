@@ -61,8 +61,10 @@ class Run:
         Go on with the run that the folder holds. Without a checkpoint it starts at the beginning.
     vcm_compatible, ignore_unknown : bool
         As for `read`; a resumed run keeps its own.
-    xtc, ply : bool, optional
+    xtc, frames : bool and str, optional
         As for `Outputs`; a resumed run keeps its own. Default: what the file says, or XTC only.
+    ply : bool, optional
+        Short for ``frames="ply"`` or, if False, ``frames="none"``.
     checkpoint_seconds : float
         Wall time between checkpoints, s: what a kill can cost.
 
@@ -86,6 +88,7 @@ class Run:
         ignore_unknown: bool = False,
         xtc: bool | None = None,
         ply: bool | None = None,
+        frames: str | None = None,
         checkpoint_seconds: float = 10.0,
     ):
         # Imported here, because configurations of ours build on those of VCM.
@@ -94,14 +97,14 @@ class Run:
         options = {"vcm_compatible": vcm_compatible, "ignore_unknown": ignore_unknown}
         self._checkpoint_seconds = checkpoint_seconds
         cfg = read(config, seed=seed, **options)
-        asked = {"xtc": xtc, "ply": ply}
+        asked = {"xtc": xtc, "frames": frames or {True: "ply", False: "none"}.get(ply)}
         wanted = {name: given for name, given in asked.items() if given is not None}
         self._options = {**options, **cfg.writes, **wanted}
         self.folder = Path(folder if folder is not None else cfg.name)
         saved = self._find(resume)
         if saved is not None:
             # A run goes on as it began, whatever options were given again or left out.
-            self._options = saved.header["options"]
+            self._options |= saved.header["options"]
             platform, seed = self._agree(saved, platform, seed)
             options = {name: self._options[name] for name in options}
             cfg = read(config, seed=seed, **options)
@@ -118,7 +121,7 @@ class Run:
             self.simulation = build.unprepared_simulation(cfg, platform)
         except openmm.OpenMMException as reason:
             raise RunError(f"OpenMM cannot start: {reason}") from None
-        self.outputs = Outputs(cfg, self.folder, self._options["xtc"], self._options["ply"])
+        self.outputs = Outputs(cfg, self.folder, self._options["xtc"], self._options["frames"])
         self.resumed = saved is not None
         if saved is None:
             build.prepare(cfg, self.context)
