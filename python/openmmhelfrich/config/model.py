@@ -62,7 +62,10 @@ class Configuration(vcm.Config):
         self.general = _general(simulation, integrator, output, self.path.stem)
         self.seed = seed or simulation["seed"] or secrets.randbelow(_MAX_SEED) + 1
         self.platform = _platform(simulation)
-        self.writes = {"xtc": output["xtc"], "ply": output["ply"]}
+        if output.given("ply") and output.given("frames"):
+            raise output.error("ply", "give either frames or ply, not both")
+        frames = "ply" if output["ply"] else output["frames"]
+        self.writes = {"xtc": output["xtc"], "frames": frames}
         self.membranes = _vesicles(document, self.kT)
         self._repulsion = None
         if "repulsion" in document.data:

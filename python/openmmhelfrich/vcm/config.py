@@ -71,12 +71,12 @@ class Config:
         Of all random numbers, above 0: the file's, or one drawn if that is 0.
     platform : str or None
         OpenMM platform for a run that is told no other; VCM's files name none.
-    writes : dict of bool
-        Whether a run that is not told writes "xtc" and "ply" files.
+    writes : dict
+        What a run that is not told writes: "xtc", a bool, and "frames", one of `frames.FRAMES`.
     """
 
     platform: str | None = None
-    writes: Mapping[str, bool] = MappingProxyType({"xtc": True, "ply": False})
+    writes: Mapping[str, bool | str] = MappingProxyType({"xtc": True, "frames": "none"})
 
     def __init__(self, path, sections: list[Section], compatible: bool, ignore: bool, seed: int):
         self.path = Path(path)
