@@ -9,11 +9,13 @@
 mod dynamics;
 mod membrane;
 mod mesh;
+mod moves;
 mod plugin;
 mod potentials;
 
 pub use membrane::*;
 pub use mesh::*;
+pub use moves::*;
 pub use plugin::*;
 pub use potentials::*;
 
