@@ -120,10 +120,22 @@ impl EdgeGeometry {
 /// tan(φ/2) = l D / (n₁·n₂ + |n₁||n₂|).
 #[inline(always)]
 pub fn bend(length_squared: f64, determinant: f64, cosine: f64, product: f64) -> f64 {
-    if cosine < std::f64::consts::FRAC_1_SQRT_2 * product {
-        let length = length_squared.sqrt();
-        return (length * determinant).atan2(cosine) / length;
+    if is_small(cosine, product) {
+        return small_bend(length_squared, determinant, cosine, product);
     }
+    let length = length_squared.sqrt();
+    (length * determinant).atan2(cosine) / length
+}
+
+/// Whether the angle is 45° at most.
+#[inline(always)]
+pub fn is_small(cosine: f64, product: f64) -> bool {
+    cosine >= std::f64::consts::FRAC_1_SQRT_2 * product
+}
+
+/// [`bend`] up to 45°.
+#[inline(always)]
+pub fn small_bend(length_squared: f64, determinant: f64, cosine: f64, product: f64) -> f64 {
     let slope = determinant / (cosine + product);
     (slope + slope) * arctan_over_argument(length_squared * (slope * slope))
 }

@@ -142,7 +142,18 @@ pub fn attempt(
     while left > 0 {
         let count = left.min(BLOCK as u64) as usize;
         state.draw(half_edges, &mut draws[..count]);
-        for draw in &draws[..count] {
+        for (n, draw) in draws[..count].iter().enumerate() {
+            // What later attempts will read is on its way meanwhile; wherever other flips have changed what they
+            // will read, this is for nothing, but no more.
+            if let Some(later) = draws[..count].get(n + 12) {
+                local.fetch_triangle(mesh, later.half);
+            }
+            if let Some(later) = draws[..count].get(n + 8) {
+                local.fetch_quad(mesh, later.half);
+            }
+            if let Some(later) = draws[..count].get(n + 4) {
+                local.fetch_rest(mesh, later.half);
+            }
             one(mesh, local, terms, rules, draw, state);
         }
         left -= count as u64;

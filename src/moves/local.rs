@@ -5,8 +5,9 @@
 //! and [`LocalEnergy::apply`] notes that it was made. Positions stay as they were at the beginning.
 //! Energies come from the potentials' own formulas, through the form `Energies` of their runs.
 
+use crate::dynamics::instructions::{Arithmetic, Kernel, run};
 use crate::mesh::geometry::{EdgeGeometry, TotalPartials, Totals, TriangleGeometry, Vec3};
-use crate::mesh::geometry::{VertexGeometry, bend};
+use crate::mesh::geometry::{VertexGeometry, bend, is_small, small_bend};
 use crate::mesh::triangulation::{Quad, Triangulation, Turn, next, previous};
 use crate::mesh::vertex_vectors::{VertexVectors, add_corner};
 use crate::potentials::{Edges, Needs, Term, Triangles, Vertices};
@@ -20,23 +21,39 @@ const SMALLEST_AREA: f64 = 1e-140;
 pub struct LocalEnergy {
     needs: Needs,
     acting: Acting,
-    positions: Vec<Vec3>,
-    triangles: Vec<TriangleGeometry>,
-    triangle_energies: Vec<f64>,
+    triangles: Vec<TriangleRecord>,
     /// φ / l of each side of each triangle; empty unless a term needs it.
     bends: Vec<[f64; 3]>,
     /// The energy of the edge that each side is; empty unless a term needs it.
     edge_energies: Vec<[f64; 3]>,
-    vertices: Vec<VertexGeometry>,
+    vertices: Vec<VertexRecord>,
     /// Empty unless a term needs them.
     vectors: Vec<VertexVectors>,
-    vertex_energies: Vec<f64>,
     totals: Totals,
     /// Of the total area and volume, kJ/mol.
     totals_energy: f64,
-    /// 0, 1, 2 …
-    ids: Vec<u32>,
 }
+
+/// What is known of a triangle, in one cache line.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+struct TriangleRecord {
+    geometry: TriangleGeometry,
+    energy: f64,
+}
+
+/// What is known of a vertex, in one cache line.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+struct VertexRecord {
+    /// Relative to the first vertex, so that a mesh far from the origin loses no digits.
+    position: Vec3,
+    scalars: VertexGeometry,
+    energy: f64,
+}
+
+/// Elements that are handled together where the whole mesh is gone over.
+const CHUNK: usize = 64;
 
 /// What a flip makes of the elements that it touches. With i, j, k, l as in [`Quad`], I is the new triangle (i, l, k)
 /// and J the new triangle (j, k, l).
@@ -115,24 +132,12 @@ impl LocalEnergy {
         self.needs =
             terms.iter().fold(Needs::empty(), |all, term| all | term.potential.needs(term));
         self.acting = Acting::new(terms);
-        self.gather_positions(mesh, positions);
-        for unneeded in [&mut self.bends, &mut self.edge_energies] {
-            unneeded.clear();
-        }
+        self.bends.clear();
+        self.edge_energies.clear();
         self.vectors.clear();
-        let (v, t) = (mesh.num_vertices(), mesh.triangles().len());
-        let first = self.ids.len() as u32;
-        self.ids.extend(first..v.max(t).max(first as usize) as u32);
+        self.gather_positions(mesh, positions);
         if !self.fill_triangles(mesh) {
             return false;
-        }
-        self.vertices.clear();
-        self.vertices.resize(v, VertexGeometry::default());
-        for (corners, geometry) in mesh.triangles().iter().zip(&self.triangles) {
-            let third = geometry.area() / 3.0;
-            for vertex in corners {
-                self.vertices[*vertex as usize].area += third;
-            }
         }
         if self.needs.intersects(Needs::EDGES | Needs::CURVATURES) {
             self.fill_bends(mesh, terms);
@@ -140,22 +145,7 @@ impl LocalEnergy {
         if self.needs.contains(Needs::VECTORS) {
             self.fill_vectors(mesh);
         }
-        self.triangle_energies.clear();
-        self.triangle_energies.resize(t, 0.0);
-        let (ids, energies) = (&self.ids[..t], &mut self.triangle_energies);
-        for term in at(terms, &self.acting.triangles) {
-            let geometry = &self.triangles;
-            term.potential.triangles(term, Triangles::Energies { ids, geometry, energies });
-        }
-        self.vertex_energies.clear();
-        self.vertex_energies.resize(v, 0.0);
-        let (ids, energies) = (&self.ids[..v], &mut self.vertex_energies);
-        for term in at(terms, &self.acting.vertices) {
-            let (scalars, vectors) = (&self.vertices, &self.vectors);
-            let run = Vertices::Energies { total: v, ids, scalars, vectors, energies };
-            term.potential.vertices(term, run);
-        }
-        self.totals_energy = self.energy_of_totals(terms, &self.totals);
+        self.fill_energies(terms);
         true
     }
 
@@ -166,75 +156,185 @@ impl LocalEnergy {
         } else {
             mesh.edges().map(|half| self.edge_energies.as_flattened()[half as usize]).sum()
         };
-        self.triangle_energies.iter().sum::<f64>()
-            + self.vertex_energies.iter().sum::<f64>()
+        self.triangles.iter().map(|triangle| triangle.energy).sum::<f64>()
+            + self.vertices.iter().map(|vertex| vertex.energy).sum::<f64>()
             + edges
             + self.totals_energy
     }
 
-    /// Positions relative to the first vertex, so that a mesh far from the origin loses no digits.
     fn gather_positions(&mut self, mesh: &Triangulation, all: &[f64]) {
         let position = |particle: u32| Vec3::from_column_slice(&all[3 * particle as usize..][..3]);
         let origin = position(mesh.particles()[0]);
-        self.positions.clear();
-        self.positions.extend(mesh.particles().iter().map(|&p| position(p) - origin));
+        self.vertices.clear();
+        self.vertices.extend(mesh.particles().iter().map(|&particle| VertexRecord {
+            position: position(particle) - origin,
+            scalars: VertexGeometry::default(),
+            energy: 0.0,
+        }));
     }
 
+    /// Triangles, totals, and the barycentric areas of the vertices.
     fn fill_triangles(&mut self, mesh: &Triangulation) -> bool {
         self.triangles.clear();
         let (mut twice_area, mut six_volumes, mut smallest) = (0.0, 0.0, f64::INFINITY);
         for corners in mesh.triangles() {
-            let [a, b, c] = corners.map(|vertex| &self.positions[vertex as usize]);
+            let corners = corners.map(|vertex| vertex as usize);
+            let [a, b, c] = corners.map(|vertex| &self.vertices[vertex].position);
             let geometry = TriangleGeometry::new(a, b, c);
             twice_area += geometry.twice_area;
             six_volumes += a.dot(&geometry.normal);
             smallest = geometry.twice_area.min(smallest);
-            self.triangles.push(geometry);
+            let third = geometry.area() / 3.0;
+            for vertex in corners {
+                self.vertices[vertex].scalars.area += third;
+            }
+            self.triangles.push(TriangleRecord { geometry, energy: 0.0 });
         }
         self.totals = Totals { area: 0.5 * twice_area, volume: six_volumes / 6.0 };
         smallest > SMALLEST_AREA && twice_area.is_finite()
     }
 
+    /// Angles of all edges, and Jülicher's curvatures.
     fn fill_bends(&mut self, mesh: &Triangulation, terms: &[Term]) {
         self.bends.resize(self.triangles.len(), [0.0; 3]);
-        let edges_act = self.needs.contains(Needs::EDGES);
-        self.edge_energies.resize(if edges_act { self.triangles.len() } else { 0 }, [0.0; 3]);
+        let mut hinges = Hinges::default();
         for half in mesh.edges() {
             let twin = mesh.twin(half);
-            let (left, right) =
-                (&self.triangles[half as usize / 3], &self.triangles[twin as usize / 3]);
-            let [start, end] = [mesh.origin(half), mesh.origin(twin)].map(|v| v as usize);
-            let tip = &self.positions[mesh.origin(previous(twin)) as usize];
-            let edge = edge_between(left, right, left.length_squared(half as usize % 3), || {
-                self.positions[start] - tip
-            });
-            self.bends.as_flattened_mut()[half as usize] = edge.bend;
-            self.bends.as_flattened_mut()[twin as usize] = edge.bend;
-            let share = 0.5 * edge.bend * edge.length_squared;
-            self.vertices[start].curvature += share;
-            self.vertices[end].curvature += share;
-            if edges_act {
-                let mut energies = [0.0];
-                for term in at(terms, &self.acting.edges) {
-                    let (geometry, energies) = (&[edge], &mut energies);
-                    term.potential.edges(term, Edges::Energies { geometry, energies });
-                }
-                self.edge_energies.as_flattened_mut()[half as usize] = energies[0];
-                self.edge_energies.as_flattened_mut()[twin as usize] = energies[0];
+            let (left, right) = (self.geometry_of(half), self.geometry_of(twin));
+            let start = &self.vertices[mesh.origin(half) as usize].position;
+            let tip = &self.vertices[mesh.origin(previous(twin)) as usize].position;
+            let n = hinges.count;
+            hinges.halves[n] = half;
+            hinges.lengths_squared[n] = left.length_squared(half as usize % 3);
+            hinges.determinants[n] = left.normal.dot(&(start - tip));
+            hinges.cosines[n] = left.normal.dot(&right.normal);
+            hinges.products[n] = left.twice_area * right.twice_area;
+            hinges.count += 1;
+            if hinges.count == CHUNK {
+                self.take_hinges(mesh, terms, &mut hinges);
             }
         }
+        self.take_hinges(mesh, terms, &mut hinges);
+    }
+
+    fn take_hinges(&mut self, mesh: &Triangulation, terms: &[Term], hinges: &mut Hinges) {
+        let edges = hinges.bend();
+        let mut energies = [0.0; CHUNK];
+        for term in at(terms, &self.acting.edges) {
+            self.edge_energies.resize(self.triangles.len(), [0.0; 3]);
+            let (geometry, energies) = (&edges[..hinges.count], &mut energies[..hinges.count]);
+            term.potential.edges(term, Edges::Energies { geometry, energies });
+        }
+        for (n, (&half, edge)) in hinges.halves[..hinges.count].iter().zip(&edges).enumerate() {
+            let share = 0.5 * edge.bend * edge.length_squared;
+            let twin = mesh.twin(half);
+            for half in [half, twin] {
+                self.bends.as_flattened_mut()[half as usize] = edge.bend;
+                self.vertices[mesh.origin(half) as usize].scalars.curvature += share;
+                if let Some(energy) = self.edge_energies.as_flattened_mut().get_mut(half as usize) {
+                    *energy = energies[n];
+                }
+            }
+        }
+        hinges.count = 0;
+    }
+
+    fn fill_energies(&mut self, terms: &[Term]) {
+        let mut ids = [0; CHUNK];
+        let mut first = 0;
+        for chunk in self.triangles.chunks_mut(CHUNK) {
+            let count = chunk.len();
+            let (mut geometry, mut energies) = ([chunk[0].geometry; CHUNK], [0.0; CHUNK]);
+            for n in 0..count {
+                (ids[n], geometry[n]) = (first + n as u32, chunk[n].geometry);
+            }
+            let (ids, geometry) = (&ids[..count], &geometry[..count]);
+            for term in at(terms, &self.acting.triangles) {
+                let energies = &mut energies[..count];
+                term.potential.triangles(term, Triangles::Energies { ids, geometry, energies });
+            }
+            for (record, energy) in chunk.iter_mut().zip(energies) {
+                record.energy = energy;
+            }
+            first += count as u32;
+        }
+        let total = self.vertices.len();
+        let mut first = 0;
+        for chunk in self.vertices.chunks_mut(CHUNK) {
+            let count = chunk.len();
+            let (mut scalars, mut energies) = ([chunk[0].scalars; CHUNK], [0.0; CHUNK]);
+            for n in 0..count {
+                (ids[n], scalars[n]) = (first + n as u32, chunk[n].scalars);
+            }
+            let (ids, scalars) = (&ids[..count], &scalars[..count]);
+            let vectors = self.vectors.get(first as usize..first as usize + count);
+            let vectors = vectors.unwrap_or_default();
+            for term in at(terms, &self.acting.vertices) {
+                let energies = &mut energies[..count];
+                let run = Vertices::Energies { total, ids, scalars, vectors, energies };
+                term.potential.vertices(term, run);
+            }
+            for (record, energy) in chunk.iter_mut().zip(energies) {
+                record.energy = energy;
+            }
+            first += count as u32;
+        }
+        self.totals_energy = self.energy_of_totals(terms, &self.totals);
+    }
+
+    /// The triangle that a half-edge is a side of.
+    #[inline(always)]
+    fn geometry_of(&self, half: u32) -> &TriangleGeometry {
+        &self.triangles[half as usize / 3].geometry
+    }
+
+    /// Bring what an attempt will need near: first, of the triangle that it begins with.
+    #[inline(always)]
+    pub fn fetch_triangle(&self, mesh: &Triangulation, half: u32) {
+        let triangle = half as usize / 3;
+        fetch(&mesh.triangles()[triangle]);
+        fetch(&mesh.twins()[triangle]);
+        fetch(&self.triangles[triangle]);
+        if let Some(bends) = self.bends.get(triangle) {
+            fetch(bends);
+        }
+    }
+
+    /// Then, of the other triangle and the vertices.
+    #[inline(always)]
+    pub fn fetch_quad(&self, mesh: &Triangulation, half: u32) {
+        self.fetch_triangle(mesh, mesh.twin(half));
+        fetch(&self.triangles[mesh.twin(next(half)) as usize / 3]);
+        fetch(&self.triangles[mesh.twin(previous(half)) as usize / 3]);
+        for half in [half, next(half), previous(half)] {
+            let vertex = mesh.origin(half) as usize;
+            fetch(&self.vertices[vertex]);
+            fetch(&mesh.degrees()[vertex]);
+        }
+    }
+
+    /// At last, of what lies around the other triangle.
+    #[inline(always)]
+    pub fn fetch_rest(&self, mesh: &Triangulation, half: u32) {
+        let twin = mesh.twin(half);
+        fetch(&self.triangles[mesh.twin(next(twin)) as usize / 3]);
+        fetch(&self.triangles[mesh.twin(previous(twin)) as usize / 3]);
+        let vertex = mesh.origin(previous(twin)) as usize;
+        fetch(&self.vertices[vertex]);
+        fetch(&mesh.degrees()[vertex]);
     }
 
     fn fill_vectors(&mut self, mesh: &Triangulation) {
         self.vectors.resize(self.vertices.len(), VertexVectors::default());
         let normals = self.needs.contains(Needs::NORMALS);
-        for (corners, geometry) in mesh.triangles().iter().zip(&self.triangles) {
-            let points = corners.map(|vertex| &self.positions[vertex as usize]);
+        for (corners, triangle) in mesh.triangles().iter().zip(&self.triangles) {
+            let points = corners.map(|vertex| self.vertices[vertex as usize].position);
             for k in 0..3 {
                 let vertex = corners[k] as usize;
-                let around = [points[k], points[(k + 1) % 3], points[(k + 2) % 3]];
-                let (scalars, vectors) = (&mut self.vertices[vertex], &mut self.vectors[vertex]);
-                add_corner(scalars, vectors, around, geometry, k, normals);
+                let around = [&points[k], &points[(k + 1) % 3], &points[(k + 2) % 3]];
+                let scalars = &mut self.vertices[vertex].scalars;
+                let vectors = &mut self.vectors[vertex];
+                add_corner(scalars, vectors, around, &triangle.geometry, k, normals);
             }
         }
     }
@@ -243,7 +343,7 @@ impl LocalEnergy {
     #[inline]
     pub fn new_length_squared(&self, quad: &Quad) -> f64 {
         let [_, _, k, l] = quad.vertices;
-        (self.positions[k as usize] - self.positions[l as usize]).norm_squared()
+        (self.vertices[k as usize].position - self.vertices[l as usize].position).norm_squared()
     }
 
     /// What a flip would change.
@@ -256,13 +356,13 @@ impl LocalEnergy {
     ) -> Flipped {
         let [a, b] = quad.halves;
         let [slot_a, slot_b] = quad.triangles();
-        let [i, j, k, l] = quad.vertices.map(|vertex| &self.positions[vertex as usize]);
+        let [i, j, k, l] = quad.vertices.map(|vertex| &self.vertices[vertex as usize].position);
         let triangles = [TriangleGeometry::new(i, l, k), TriangleGeometry::new(j, k, l)];
         let slots = match turn {
             Turn::Left => [(slot_a, a as usize % 3), (slot_b, b as usize % 3)],
             Turn::Right => [(slot_b, next(b) as usize % 3), (slot_a, next(a) as usize % 3)],
         };
-        let old = [&self.triangles[slot_a], &self.triangles[slot_b]];
+        let old = [slot_a, slot_b].map(|slot| &self.triangles[slot].geometry);
         // Half the area of the new triangles less that of the old ones; what the tetrahedron ijkl has is lost.
         let mut flipped = Flipped {
             difference: f64::NAN,
@@ -271,7 +371,7 @@ impl LocalEnergy {
             triangle_energies: [0.0; 2],
             edges: [EdgeGeometry::default(); 5],
             edge_energies: [0.0; 5],
-            vertices: quad.vertices.map(|vertex| self.vertices[vertex as usize]),
+            vertices: quad.vertices.map(|vertex| self.vertices[vertex as usize].scalars),
             vectors: [VertexVectors::default(); 4],
             vertex_energies: [0.0; 4],
             totals: Totals {
@@ -312,7 +412,7 @@ impl LocalEnergy {
             let energies = &mut energies[..];
             term.potential.triangles(term, Triangles::Energies { ids, geometry, energies });
         }
-        let before = flipped.slots.map(|(slot, _)| self.triangle_energies[slot]);
+        let before = flipped.slots.map(|(slot, _)| self.triangles[slot].energy);
         energies[0] + energies[1] - before[0] - before[1]
     }
 
@@ -325,13 +425,13 @@ impl LocalEnergy {
         flipped: &mut Flipped,
     ) -> f64 {
         let [a, b] = quad.halves;
-        let [j, k, l] = [1, 2, 3].map(|n| &self.positions[quad.vertices[n] as usize]);
+        let [j, k, l] = [1, 2, 3].map(|n| &self.vertices[quad.vertices[n] as usize].position);
         let [new_i, new_j] = &flipped.triangles;
         let across = k - l;
         let rim = [previous(a), next(b), next(a), previous(b)];
         // Seen from outside the quadrilateral, the tip beyond ki and jk is l, the tip beyond il and lj is k; the
         // determinant is that of the edge's start less the tip.
-        let outside = rim.map(|half| &self.triangles[mesh.twin(half) as usize / 3]);
+        let outside = rim.map(|half| self.geometry_of(mesh.twin(half)));
         flipped.edges = [
             edge_between(new_i, new_j, across.norm_squared(), || k - j),
             edge_between(outside[0], new_i, new_i.length_squared(2), || across),
@@ -343,9 +443,7 @@ impl LocalEnergy {
         let old = [a, rim[0], rim[1], rim[2], rim[3]].map(|half| half as usize);
         if self.needs.contains(Needs::CURVATURES) {
             let curvature = |edge: &EdgeGeometry| 0.5 * edge.bend * edge.length_squared;
-            let gone = 0.5
-                * bends[a as usize]
-                * self.triangles[a as usize / 3].length_squared(a as usize % 3);
+            let gone = 0.5 * bends[a as usize] * self.geometry_of(a).length_squared(a as usize % 3);
             let come = curvature(&flipped.edges[0]);
             let [ki, il, jk, lj] = std::array::from_fn(|n| {
                 let edge = &flipped.edges[n + 1];
@@ -371,7 +469,7 @@ impl LocalEnergy {
     /// Areas and vectors of the four vertices; the change of their energies.
     fn vertices_of(&self, terms: &[Term], quad: &Quad, flipped: &mut Flipped) -> f64 {
         let [a, b] = quad.halves;
-        let old = quad.triangles().map(|slot| self.triangles[slot]);
+        let old = quad.triangles().map(|slot| self.triangles[slot].geometry);
         let [old_a, old_b, new_i, new_j] =
             [old[0], old[1], flipped.triangles[0], flipped.triangles[1]].map(|t| t.area() / 3.0);
         flipped.vertices[0].area += new_i - old_a - old_b;
@@ -401,7 +499,7 @@ impl LocalEnergy {
             let run = Vertices::Energies { total, ids, scalars, vectors, energies };
             term.potential.vertices(term, run);
         }
-        let known = quad.vertices.map(|vertex| self.vertex_energies[vertex as usize]);
+        let known = quad.vertices.map(|vertex| self.vertices[vertex as usize].energy);
         flipped.vertex_energies.iter().zip(known).map(|(energy, known)| energy - known).sum()
     }
 
@@ -415,7 +513,7 @@ impl LocalEnergy {
         flipped: &mut Flipped,
     ) {
         let normals = self.needs.contains(Needs::NORMALS);
-        let points = corners.map(|n| &self.positions[quad.vertices[n] as usize]);
+        let points = corners.map(|n| &self.vertices[quad.vertices[n] as usize].position);
         for k in 0..3 {
             let (mut scalars, mut vectors) = (VertexGeometry::default(), VertexVectors::default());
             let around = [points[k], points[(k + 1) % 3], points[(k + 2) % 3]];
@@ -432,8 +530,9 @@ impl LocalEnergy {
     pub fn apply(&mut self, mesh: &Triangulation, quad: &Quad, flipped: &Flipped) {
         let edges_act = !self.edge_energies.is_empty();
         for (n, (slot, place)) in flipped.slots.into_iter().enumerate() {
-            self.triangles[slot] = turned(&flipped.triangles[n], place);
-            self.triangle_energies[slot] = flipped.triangle_energies[n];
+            let geometry = turned(&flipped.triangles[n], place);
+            self.triangles[slot] =
+                TriangleRecord { geometry, energy: flipped.triangle_energies[n] };
             if self.bends.is_empty() {
                 continue;
             }
@@ -450,8 +549,8 @@ impl LocalEnergy {
             }
         }
         for (n, vertex) in quad.vertices.map(|vertex| vertex as usize).into_iter().enumerate() {
-            self.vertices[vertex] = flipped.vertices[n];
-            self.vertex_energies[vertex] = flipped.vertex_energies[n];
+            self.vertices[vertex].scalars = flipped.vertices[n];
+            self.vertices[vertex].energy = flipped.vertex_energies[n];
             if let Some(vectors) = self.vectors.get_mut(vertex) {
                 *vectors = flipped.vectors[n];
             }
@@ -479,4 +578,70 @@ fn edge_between(
     let product = left.twice_area * right.twice_area;
     let bend = bend(length_squared, left.normal.dot(&arm()), cosine, product);
     EdgeGeometry { length_squared, bend }
+}
+
+/// Edges whose angles are computed together, as many at once as the processor has lanes.
+struct Hinges {
+    count: usize,
+    halves: [u32; CHUNK],
+    lengths_squared: [f64; CHUNK],
+    determinants: [f64; CHUNK],
+    cosines: [f64; CHUNK],
+    products: [f64; CHUNK],
+}
+
+impl Default for Hinges {
+    fn default() -> Self {
+        // Those that are not filled in are flat.
+        let (lengths_squared, determinants) = ([1.0; CHUNK], [0.0; CHUNK]);
+        let (cosines, products) = ([1.0; CHUNK], [1.0; CHUNK]);
+        Self { count: 0, halves: [0; CHUNK], lengths_squared, determinants, cosines, products }
+    }
+}
+
+impl Hinges {
+    fn bend(&self) -> [EdgeGeometry; CHUNK] {
+        struct Small<'a>(&'a Hinges, &'a mut [f64; CHUNK]);
+        impl Kernel for Small<'_> {
+            #[inline(always)]
+            fn execute<A: Arithmetic>(self) {
+                let Self(hinges, bends) = self;
+                for n in 0..CHUNK {
+                    bends[n] = small_bend(
+                        hinges.lengths_squared[n],
+                        hinges.determinants[n],
+                        hinges.cosines[n],
+                        hinges.products[n],
+                    );
+                }
+            }
+        }
+        let mut bends = [0.0; CHUNK];
+        run(Small(self, &mut bends));
+        std::array::from_fn(|n| {
+            let (length_squared, cosine) = (self.lengths_squared[n], self.cosines[n]);
+            let (determinant, product) = (self.determinants[n], self.products[n]);
+            let bend = if is_small(cosine, product) {
+                bends[n]
+            } else {
+                bend(length_squared, determinant, cosine, product)
+            };
+            EdgeGeometry { length_squared, bend }
+        })
+    }
+}
+
+/// Ask for the cache lines of something that will be needed soon.
+#[inline(always)]
+fn fetch<T>(what: &T) {
+    #[cfg(target_arch = "x86_64")]
+    // SAFETY: a prefetch has no effect but on caches.
+    unsafe {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        let first = std::ptr::from_ref(what).cast::<i8>();
+        _mm_prefetch::<_MM_HINT_T0>(first);
+        _mm_prefetch::<_MM_HINT_T0>(first.wrapping_add(size_of::<T>() - 1));
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = what;
 }
