@@ -176,11 +176,12 @@ impl Triangulation {
         ring.clear();
         let start = self.leaving[vertex as usize];
         let (mut half, mut lowest, mut place) = (start, start, 0);
-        for step in 0..self.degrees[vertex as usize] as usize {
-            if half < lowest {
-                (lowest, place) = (half, step);
-            }
-            ring.push(half);
+        let degree = self.degrees[vertex as usize] as usize;
+        ring.resize(degree, 0);
+        for (step, slot) in ring.iter_mut().enumerate() {
+            place = if half < lowest { step } else { place };
+            lowest = lowest.min(half);
+            *slot = half;
             half = self.after(half);
         }
         ring.rotate_left(place);

@@ -197,46 +197,61 @@ impl LocalEnergy {
     /// Angles of all edges, and Jülicher's curvatures.
     fn fill_bends(&mut self, mesh: &Triangulation, terms: &[Term]) {
         self.bends.resize(self.triangles.len(), [0.0; 3]);
+        if !self.acting.edges.is_empty() {
+            self.edge_energies.resize(self.triangles.len(), [0.0; 3]);
+        }
         let mut hinges = Hinges::default();
-        for half in mesh.edges() {
+        let mut count = 0;
+        let halves = 3 * self.triangles.len() as u32;
+        for (half, &twin) in (0..halves).zip(mesh.twins().as_flattened()) {
+            // Each edge once. Which of its half-edges comes first is up to chance, so there is no branch.
+            hinges.halves[count] = half;
+            count += usize::from(half < twin);
+            if count == CHUNK {
+                self.take_hinges(mesh, terms, &mut hinges, count);
+                count = 0;
+            }
+        }
+        self.take_hinges(mesh, terms, &mut hinges, count);
+    }
+
+    fn take_hinges(
+        &mut self,
+        mesh: &Triangulation,
+        terms: &[Term],
+        hinges: &mut Hinges,
+        count: usize,
+    ) {
+        for n in 0..count {
+            let half = hinges.halves[n];
             let twin = mesh.twin(half);
             let (left, right) = (self.geometry_of(half), self.geometry_of(twin));
             let start = &self.vertices[mesh.origin(half) as usize].position;
             let tip = &self.vertices[mesh.origin(previous(twin)) as usize].position;
-            let n = hinges.count;
-            hinges.halves[n] = half;
+            hinges.twins[n] = twin;
             hinges.lengths_squared[n] = left.length_squared(half as usize % 3);
             hinges.determinants[n] = left.normal.dot(&(start - tip));
             hinges.cosines[n] = left.normal.dot(&right.normal);
             hinges.products[n] = left.twice_area * right.twice_area;
-            hinges.count += 1;
-            if hinges.count == CHUNK {
-                self.take_hinges(mesh, terms, &mut hinges);
-            }
         }
-        self.take_hinges(mesh, terms, &mut hinges);
-    }
-
-    fn take_hinges(&mut self, mesh: &Triangulation, terms: &[Term], hinges: &mut Hinges) {
-        let edges = hinges.bend();
+        let edges = hinges.bend(count);
+        let edges_act = !self.acting.edges.is_empty();
         let mut energies = [0.0; CHUNK];
         for term in at(terms, &self.acting.edges) {
-            self.edge_energies.resize(self.triangles.len(), [0.0; 3]);
-            let (geometry, energies) = (&edges[..hinges.count], &mut energies[..hinges.count]);
+            let (geometry, energies) = (&edges[..count], &mut energies[..count]);
             term.potential.edges(term, Edges::Energies { geometry, energies });
         }
-        for (n, (&half, edge)) in hinges.halves[..hinges.count].iter().zip(&edges).enumerate() {
+        for n in 0..count {
+            let edge = &edges[n];
             let share = 0.5 * edge.bend * edge.length_squared;
-            let twin = mesh.twin(half);
-            for half in [half, twin] {
+            for half in [hinges.halves[n], hinges.twins[n]] {
                 self.bends.as_flattened_mut()[half as usize] = edge.bend;
                 self.vertices[mesh.origin(half) as usize].scalars.curvature += share;
-                if let Some(energy) = self.edge_energies.as_flattened_mut().get_mut(half as usize) {
-                    *energy = energies[n];
+                if edges_act {
+                    self.edge_energies.as_flattened_mut()[half as usize] = energies[n];
                 }
             }
         }
-        hinges.count = 0;
     }
 
     fn fill_energies(&mut self, terms: &[Term]) {
@@ -582,8 +597,8 @@ fn edge_between(
 
 /// Edges whose angles are computed together, as many at once as the processor has lanes.
 struct Hinges {
-    count: usize,
     halves: [u32; CHUNK],
+    twins: [u32; CHUNK],
     lengths_squared: [f64; CHUNK],
     determinants: [f64; CHUNK],
     cosines: [f64; CHUNK],
@@ -595,12 +610,13 @@ impl Default for Hinges {
         // Those that are not filled in are flat.
         let (lengths_squared, determinants) = ([1.0; CHUNK], [0.0; CHUNK]);
         let (cosines, products) = ([1.0; CHUNK], [1.0; CHUNK]);
-        Self { count: 0, halves: [0; CHUNK], lengths_squared, determinants, cosines, products }
+        let (halves, twins) = ([0; CHUNK], [0; CHUNK]);
+        Self { halves, twins, lengths_squared, determinants, cosines, products }
     }
 }
 
 impl Hinges {
-    fn bend(&self) -> [EdgeGeometry; CHUNK] {
+    fn bend(&self, count: usize) -> [EdgeGeometry; CHUNK] {
         struct Small<'a>(&'a Hinges, &'a mut [f64; CHUNK]);
         impl Kernel for Small<'_> {
             #[inline(always)]
@@ -618,16 +634,16 @@ impl Hinges {
         }
         let mut bends = [0.0; CHUNK];
         run(Small(self, &mut bends));
-        std::array::from_fn(|n| {
+        let mut edges = [EdgeGeometry::default(); CHUNK];
+        for n in 0..count {
             let (length_squared, cosine) = (self.lengths_squared[n], self.cosines[n]);
-            let (determinant, product) = (self.determinants[n], self.products[n]);
-            let bend = if is_small(cosine, product) {
-                bends[n]
-            } else {
-                bend(length_squared, determinant, cosine, product)
-            };
-            EdgeGeometry { length_squared, bend }
-        })
+            edges[n] = EdgeGeometry { length_squared, bend: bends[n] };
+            if !is_small(cosine, self.products[n]) {
+                edges[n].bend =
+                    bend(length_squared, self.determinants[n], cosine, self.products[n]);
+            }
+        }
+        edges
     }
 }
 

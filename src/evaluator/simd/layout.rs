@@ -116,15 +116,23 @@ impl Layout {
 
     /// Sort the vertices of each tile by degree, and number them.
     fn number_vertices(&mut self, mesh: &Triangulation, order: &[u32]) {
-        self.vertex_ids.clear();
-        for tile in order.chunks(TILE) {
-            let mut keys = [(0u32, 0u32); TILE];
-            for (place, (key, &vertex)) in keys.iter_mut().zip(tile).enumerate() {
-                *key = (mesh.degrees()[vertex as usize], place as u32);
+        self.vertex_ids.resize(self.num_vertices, 0);
+        for (tile, sorted) in order.chunks(TILE).zip(self.vertex_ids.chunks_mut(TILE)) {
+            // By counting; the few vertices of more neighbours than that are not told apart.
+            const MOST: usize = 31;
+            let degree = |vertex: u32| (mesh.degrees()[vertex as usize] as usize).min(MOST);
+            let mut starts = [0; MOST + 2];
+            for &vertex in tile {
+                starts[degree(vertex) + 1] += 1;
             }
-            let keys = &mut keys[..tile.len()];
-            keys.sort_unstable();
-            self.vertex_ids.extend(keys.iter().map(|&(_, place)| tile[place as usize]));
+            for degree in 0..MOST {
+                starts[degree + 1] += starts[degree];
+            }
+            for &vertex in tile {
+                let place = &mut starts[degree(vertex)];
+                sorted[*place] = vertex;
+                *place += 1;
+            }
         }
         self.number.resize(self.num_vertices, 0);
         for (new, &old) in self.vertex_ids.iter().enumerate() {
@@ -144,7 +152,10 @@ impl Layout {
         let nothing = 4 * filled as u32;
         self.triangle_number.clear();
         self.triangle_number.resize(self.num_triangles, UNKNOWN);
-        for list in [&mut self.triangle_ids, &mut self.steps, &mut self.frontier] {
+        // One more, for what is written there and not kept.
+        self.triangle_ids.resize(self.num_triangles + 1, 0);
+        let mut met = 0;
+        for list in [&mut self.steps, &mut self.frontier] {
             list.clear();
         }
         for list in [&mut self.neighbours, &mut self.places] {
@@ -161,11 +172,12 @@ impl Layout {
             for (ring, &vertex) in self.rings.iter_mut().zip(vertices) {
                 mesh.ring(vertex, ring);
                 for &half in &*ring {
+                    // Whether a triangle is new is up to chance, so there is no branch.
                     let number = &mut self.triangle_number[half as usize / 3];
-                    if *number == UNKNOWN {
-                        *number = self.triangle_ids.len() as u32;
-                        self.triangle_ids.push(half / 3);
-                    }
+                    self.triangle_ids[met] = half / 3;
+                    let is_new = *number == UNKNOWN;
+                    *number = if is_new { met as u32 } else { *number };
+                    met += usize::from(is_new);
                 }
             }
             let longest = self.rings.iter().map(Vec::len).max().unwrap_or(0);
@@ -196,10 +208,11 @@ impl Layout {
             self.longest = self.longest.max(longest + 1);
             if (block + 1) % (TILE / BLOCK) == 0 || (block + 1) * BLOCK >= self.num_vertices {
                 // All triangles at this tile have a number now, and those of earlier tiles.
-                self.frontier.push(self.triangle_ids.len() as u32);
+                self.frontier.push(met as u32);
             }
         }
         let first = self.triangle_ids[0];
+        self.triangle_ids.truncate(self.num_triangles);
         self.triangle_ids.resize(filled, first);
     }
 
