@@ -9,12 +9,14 @@
 mod dynamics;
 mod membrane;
 mod mesh;
+mod moves;
 mod plugin;
 mod potentials;
 mod records;
 
 pub use membrane::*;
 pub use mesh::*;
+pub use moves::*;
 pub use plugin::*;
 pub use potentials::*;
 pub use records::*;

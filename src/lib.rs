@@ -39,6 +39,7 @@ pub mod ffi_backend;
 pub mod force;
 pub mod membrane;
 pub mod mesh;
+pub mod moves;
 pub mod openmm;
 pub mod potentials;
 pub mod real;

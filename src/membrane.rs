@@ -2,11 +2,13 @@
 
 use crate::backend::Choice;
 use crate::error::{Error, Result};
-use crate::evaluator::ChosenEvaluator;
-use crate::mesh::Topology;
+use crate::evaluator::{ChosenEvaluator, Present, culprit};
+use crate::mesh::numbering::breadth_first;
 use crate::mesh::orientation::is_inside_out;
+use crate::mesh::{Topology, Triangulation};
+use crate::moves::local::LocalEnergy;
+use crate::moves::{FlipRules, FlipState, flips};
 use crate::potentials::{Contribution, Element, Term};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, Ordering};
 
 /// How many membranes there are, which tells whether forces share them and whether any are left over.
@@ -17,13 +19,29 @@ pub fn count() -> i64 {
     ALIVE.load(Ordering::Relaxed)
 }
 
-/// A mesh with the buffers to evaluate any terms on it.
+/// A mesh with the buffers to evaluate any terms on it, and to change its connectivity.
 pub struct Membrane {
-    topology: Arc<Topology>,
+    mesh: Triangulation,
+    /// The vertices, so that neighbours on the surface are near each other.
+    order: Vec<u32>,
+    /// How many flips there have been since the order was made.
+    flips_of_order: u64,
     evaluator: ChosenEvaluator,
+    local: LocalEnergy,
     num_particles: usize,
     /// Whether the surface has been looked at and is not inside out.
     has_outside: bool,
+}
+
+/// What decides the bits of evaluations beside positions: the connectivity, and in which order sums are formed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Connectivity {
+    /// The particles at the corners of each triangle.
+    pub triangles: Vec<[u32; 3]>,
+    /// The vertices, by their index in ascending order of particle.
+    pub order: Vec<u32>,
+    /// How many flips there have been since the order was made.
+    pub flips: u64,
 }
 
 impl Membrane {
@@ -32,10 +50,19 @@ impl Membrane {
     /// # Errors
     /// Those of [`Topology::new`].
     pub fn new(triangles: &[[i64; 3]], num_particles: usize) -> Result<Self> {
-        let topology = Arc::new(Topology::new(triangles, num_particles)?);
-        let evaluator = ChosenEvaluator::new(topology.clone());
+        let mesh = Triangulation::new(&Topology::new(triangles, num_particles)?);
+        let order = breadth_first(&mesh);
+        let (evaluator, local) = (ChosenEvaluator::new(), LocalEnergy::default());
         ALIVE.fetch_add(1, Ordering::Relaxed);
-        Ok(Self { topology, evaluator, num_particles, has_outside: false })
+        Ok(Self {
+            mesh,
+            order,
+            flips_of_order: 0,
+            evaluator,
+            local,
+            num_particles,
+            has_outside: false,
+        })
     }
 
     /// Let so many threads share evaluations, where that turns out faster; 0 for as many as there are.
@@ -43,9 +70,94 @@ impl Membrane {
         self.evaluator.set_threads(threads);
     }
 
-    /// The mesh.
-    pub fn topology(&self) -> &Topology {
-        &self.topology
+    /// The mesh as it is now.
+    pub fn mesh(&self) -> &Triangulation {
+        &self.mesh
+    }
+
+    /// What there is to remember of the present connectivity.
+    pub fn connectivity(&self) -> Connectivity {
+        Connectivity {
+            triangles: (0..self.mesh.triangles().len())
+                .map(|t| self.mesh.particles_of(t))
+                .collect(),
+            order: self.order.clone(),
+            flips: self.flips_of_order,
+        }
+    }
+
+    /// Go on with other triangles of the same particles, as many as there are.
+    ///
+    /// # Errors
+    /// Those of [`Triangulation::with_triangles`]; nothing has changed then.
+    pub fn set_triangles(&mut self, triangles: &[[i64; 3]]) -> Result<()> {
+        let mesh = self.mesh.with_triangles(triangles)?;
+        let order = breadth_first(&mesh);
+        self.take(mesh, order, 0)
+    }
+
+    /// Go on with what [`Self::connectivity`] had been: the same bits follow.
+    ///
+    /// # Errors
+    /// Those of [`Triangulation::with_triangles`], and an order that is none; nothing has changed then.
+    pub fn restore(&mut self, saved: &Connectivity) -> Result<()> {
+        let triangles: Vec<_> = saved.triangles.iter().map(|t| t.map(i64::from)).collect();
+        let mesh = self.mesh.with_triangles(&triangles)?;
+        let mut met = vec![false; mesh.num_vertices()];
+        let all_new = saved.order.iter().all(|vertex| {
+            met.get_mut(*vertex as usize).is_some_and(|met| !std::mem::replace(met, true))
+        });
+        if !all_new || saved.order.len() != met.len() {
+            return Err(Error::Contract(
+                "the saved order of the vertices is none; what was saved is damaged".to_owned(),
+            ));
+        }
+        self.take(mesh, saved.order.clone(), saved.flips)
+    }
+
+    fn take(&mut self, mesh: Triangulation, order: Vec<u32>, flips: u64) -> Result<()> {
+        (self.mesh, self.order, self.flips_of_order) = (mesh, order, flips);
+        self.evaluator.connectivity_changed(Present { mesh: &self.mesh, order: &self.order })
+    }
+
+    /// Try to flip so many edges at the present positions (nm), with the energy of some terms. Returns how many flips
+    /// were made.
+    ///
+    /// # Errors
+    /// Rules that make no sense, a term as [`Self::evaluate`] refuses it, a mesh without geometry. Nothing has
+    /// changed then.
+    pub fn flip(
+        &mut self,
+        terms: &[Term],
+        positions: &[f64],
+        rules: &FlipRules,
+        attempts: u64,
+        state: &mut FlipState,
+    ) -> Result<u64> {
+        if positions.len() != 3 * self.num_particles {
+            return Err(Error::Contract(format!(
+                "needs positions of {} particles",
+                self.num_particles
+            )));
+        }
+        for term in terms {
+            self.check(term)?;
+        }
+        if !self.local.fill(&self.mesh, terms, positions) {
+            let triangles = (0..self.mesh.triangles().len()).map(|t| self.mesh.particles_of(t));
+            return Err(culprit(self.mesh.particles(), triangles, positions));
+        }
+        let made = flips::attempt(&mut self.mesh, &mut self.local, terms, rules, attempts, state);
+        if made > 0 {
+            self.flips_of_order += made;
+            // By then every vertex has moved on by a few neighbours.
+            if self.flips_of_order > 2 * self.mesh.num_edges() as u64 {
+                (self.order, self.flips_of_order) = (breadth_first(&self.mesh), 0);
+            }
+            self.evaluator
+                .connectivity_changed(Present { mesh: &self.mesh, order: &self.order })?;
+        }
+        Ok(made)
     }
 
     /// Let a force join that wants to be computed in some way, or in any.
@@ -53,7 +165,7 @@ impl Membrane {
     /// # Errors
     /// Those of [`ChosenEvaluator::choose`].
     pub fn choose(&mut self, wish: Option<Choice>) -> Result<()> {
-        self.evaluator.choose(wish)
+        self.evaluator.choose(&self.mesh, wish)
     }
 
     /// Evaluate terms together. Positions (nm) and forces (kJ/mol/nm) are those of all particles of the
@@ -85,7 +197,8 @@ impl Membrane {
         if !self.has_outside {
             self.look_for_outside(terms, positions)?;
         }
-        self.evaluator.evaluate(terms, positions, contributions, forces)
+        let present = Present { mesh: &self.mesh, order: &self.order };
+        self.evaluator.evaluate(present, terms, positions, contributions, forces)
     }
 
     /// Refuse triangles that all run clockwise, as a slip in a mesh has them, before a volume below zero becomes a
@@ -95,7 +208,7 @@ impl Membrane {
         let Some(term) = terms.iter().find(|term| term.potential.needs_outside()) else {
             return Ok(());
         };
-        match is_inside_out(&self.topology, positions) {
+        match is_inside_out(&self.mesh, positions) {
             Some((true, totals)) => {
                 let (force, volume) = (term.potential.name(), totals.volume);
                 Err(Error::InsideOut { force, volume })
@@ -118,8 +231,8 @@ impl Membrane {
         for (parameter, field) in term.potential.parameters().iter().zip(term.fields) {
             let (count, elements) = match parameter.per {
                 _ if field.is_empty() => continue,
-                Some(Element::Vertex) => (self.topology.num_vertices(), "vertices"),
-                Some(Element::Triangle) => (self.topology.triangles.len(), "triangles"),
+                Some(Element::Vertex) => (self.mesh.num_vertices(), "vertices"),
+                Some(Element::Triangle) => (self.mesh.triangles().len(), "triangles"),
                 None => (0, "elements that can have their own"),
             };
             if field.len() != count {
@@ -132,6 +245,22 @@ impl Membrane {
         }
         Ok(())
     }
+}
+
+/// A whole number below 2⁵³, as a double, that tells triangles from any others: 0 if they are `initial`.
+pub fn fingerprint(mesh: &Triangulation, initial: &[[u32; 3]]) -> f64 {
+    let now = (0..mesh.triangles().len()).map(|triangle| mesh.particles_of(triangle));
+    if now.clone().eq(initial.iter().copied()) {
+        return 0.0;
+    }
+    // FNV-1a over whole words, then a mixing step, so that all bits depend on all triangles.
+    let mut hash = 0xcbf2_9ce4_8422_2325u64;
+    for particle in now.flatten() {
+        hash = (hash ^ u64::from(particle)).wrapping_mul(0x0000_0100_0000_01b3);
+        hash ^= hash >> 29;
+    }
+    hash = (hash ^ hash >> 32).wrapping_mul(0xd6e8_feb8_6659_fd93);
+    ((hash >> 11) | 1) as f64
 }
 
 impl Drop for Membrane {

@@ -51,6 +51,13 @@ fn philox(counter: [u64; 4], key: [u32; 2]) -> [u64; 4] {
     words.map(|word| word & LOW)
 }
 
+/// The 128 random bits that belong to a number and a key.
+#[inline]
+pub fn bits(key: [u32; 2], number: u64) -> [u64; 2] {
+    let words = philox([number, number >> 32, 0, 0], key);
+    [words[0] | words[1] << 32, words[2] | words[3] << 32]
+}
+
 /// A double in [1, 2) of the upper 52 bits.
 #[inline(always)]
 fn between_one_and_two(bits: u64) -> f64 {

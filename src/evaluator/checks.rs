@@ -1,7 +1,6 @@
 //! What every evaluator refuses.
 
 use crate::error::{Error, Result};
-use crate::mesh::Topology;
 use crate::mesh::geometry::{TriangleGeometry, Vec3};
 use crate::potentials::{Contribution, Term};
 
@@ -19,22 +18,26 @@ pub fn check_energies<'a>(
     Ok(())
 }
 
-/// Why a mesh has no usable geometry: a position that is not finite, or a triangle without area.
-pub fn culprit(topology: &Topology, positions: &[f64]) -> Error {
+/// Why a mesh has no usable geometry: a position that is not finite, or a triangle without area. The mesh is given
+/// by its particles and by those of each triangle.
+pub fn culprit(
+    particles: &[u32],
+    triangles: impl Iterator<Item = [u32; 3]>,
+    positions: &[f64],
+) -> Error {
     let position =
         |particle: u32| std::array::from_fn(|axis| positions[3 * particle as usize + axis]);
-    for &particle in &topology.particles {
+    for &particle in particles {
         let position = position(particle);
         if !position.iter().all(|x: &f64| x.is_finite()) {
             return Error::NonFinitePosition { particle, position };
         }
     }
     // Relative to a vertex, as evaluators have it.
-    let origin = Vec3::from(position(topology.particles[0]));
-    let (mut smallest, mut thinnest) = (f64::INFINITY, 0);
+    let origin = Vec3::from(position(particles[0]));
+    let (mut smallest, mut thinnest) = (f64::INFINITY, (0, [0; 3]));
     let mut sum = 0.0;
-    for triangle in 0..topology.triangles.len() {
-        let corners = topology.particles_of(triangle);
+    for (triangle, corners) in triangles.enumerate() {
         let [a, b, c] = corners.map(|particle| Vec3::from(position(particle)) - origin);
         let twice_area = TriangleGeometry::new(&a, &b, &c).twice_area;
         if !twice_area.is_finite() {
@@ -42,13 +45,13 @@ pub fn culprit(topology: &Topology, positions: &[f64]) -> Error {
         }
         sum += twice_area;
         if twice_area < smallest {
-            (smallest, thinnest) = (twice_area, triangle);
+            (smallest, thinnest) = (twice_area, (triangle, corners));
         }
     }
-    let corners = topology.particles_of(thinnest);
+    let (triangle, corners) = thinnest;
     if sum.is_finite() {
-        return Error::DegenerateTriangle { triangle: thinnest, corners };
+        return Error::DegenerateTriangle { triangle, corners };
     }
     // Each triangle is fine, so it is their sum that overflows.
-    Error::OverflownTriangle { triangle: thinnest, corners }
+    Error::OverflownTriangle { triangle, corners }
 }

@@ -5,11 +5,14 @@ use super::gpu::{GpuEvaluator, Precision, calibration};
 use super::{CpuEvaluator, InstructionSet};
 use crate::backend::{self, Choice, Kind};
 use crate::error::{Error, Result};
+#[cfg(feature = "gpu")]
 use crate::mesh::Topology;
+use crate::mesh::Triangulation;
 use crate::potentials::{Contribution, Term};
 #[cfg(feature = "gpu")]
 use crate::team::default_threads;
 use smallvec::SmallVec;
+#[cfg(feature = "gpu")]
 use std::sync::Arc;
 
 /// Below so many vertices no GPU is looked for: starting one takes longer than many evaluations of such a mesh,
@@ -18,7 +21,6 @@ pub const LEAST_VERTICES_FOR_GPU: usize = 20_000;
 
 /// Either evaluator, made when it is first needed.
 pub struct ChosenEvaluator {
-    topology: Arc<Topology>,
     /// Threads of the processor that may share the work; 0 for as many as there are.
     threads: usize,
     /// What a force has asked for; otherwise the choice for the process holds.
@@ -32,11 +34,25 @@ pub struct ChosenEvaluator {
     settled_on_cpu: bool,
 }
 
+/// The mesh as it is now, and an order of its vertices in which neighbours are near each other.
+#[derive(Clone, Copy)]
+pub struct Present<'a> {
+    /// Which triangles and vertices touch.
+    pub mesh: &'a Triangulation,
+    /// All vertices.
+    pub order: &'a [u32],
+}
+
+impl Default for ChosenEvaluator {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl ChosenEvaluator {
-    /// For a mesh; nothing is chosen yet.
-    pub fn new(topology: Arc<Topology>) -> Self {
+    /// Nothing is chosen yet.
+    pub fn new() -> Self {
         Self {
-            topology,
             threads: 0,
             own: None,
             choice: None,
@@ -61,7 +77,7 @@ impl ChosenEvaluator {
     ///
     /// # Errors
     /// Another force has asked for something else; there is no such GPU, or it cannot do what is asked.
-    pub fn choose(&mut self, wish: Option<Choice>) -> Result<()> {
+    pub fn choose(&mut self, mesh: &Triangulation, wish: Option<Choice>) -> Result<()> {
         if let (Some(this), Some(other)) = (wish, self.own)
             && this != other
         {
@@ -76,13 +92,29 @@ impl ChosenEvaluator {
         backend::check(choice)?;
         self.choice = Some(choice);
         self.settled_on_cpu =
-            choice.kind == Kind::Cpu || choice.kind == Kind::Auto && !self.is_worth_a_look();
+            choice.kind == Kind::Cpu || choice.kind == Kind::Auto && !Self::is_worth_a_look(mesh);
         #[cfg(feature = "gpu")]
         {
             self.gpu = None;
             if choice.kind == Kind::Gpu {
-                self.gpu = Some(self.start_gpu(choice)?);
+                self.gpu = Some(Self::start_gpu(mesh, choice)?);
             }
+        }
+        Ok(())
+    }
+
+    /// Go on with other connectivity, or with another order of the vertices. What has not been made yet will be
+    /// made of what there is then.
+    ///
+    /// # Errors
+    /// Those of a GPU that was asked for.
+    pub fn connectivity_changed(&mut self, present: Present) -> Result<()> {
+        if let Some(cpu) = &mut self.cpu {
+            cpu.lay_out(present.mesh, present.order);
+        }
+        #[cfg(feature = "gpu")]
+        if let Some(gpu) = &mut self.gpu {
+            gpu.set_topology(Arc::new(Topology::of(present.mesh)));
         }
         Ok(())
     }
@@ -93,31 +125,33 @@ impl ChosenEvaluator {
     /// Its errors, and those of a GPU that was asked for. Nothing has been added to the forces then.
     pub fn evaluate(
         &mut self,
+        present: Present,
         terms: &[Term],
         positions: &[f64],
         contributions: &mut [Contribution],
         forces: Option<&mut [f64]>,
     ) -> Result<()> {
         if self.choice.is_none() {
-            self.choose(None)?;
+            self.choose(present.mesh, None)?;
         }
         if self.settled_on_cpu {
-            return self.on_cpu(terms, positions, contributions, forces);
+            return self.on_cpu(present, terms, positions, contributions, forces);
         }
-        self.on_gpu(terms, positions, contributions, forces)
+        self.on_gpu(present, terms, positions, contributions, forces)
     }
 
     fn on_cpu(
         &mut self,
+        present: Present,
         terms: &[Term],
         positions: &[f64],
         contributions: &mut [Contribution],
         forces: Option<&mut [f64]>,
     ) -> Result<()> {
         backend::count_evaluation(false);
-        let (topology, threads) = (&self.topology, self.threads);
+        let threads = self.threads;
         let cpu = self.cpu.get_or_insert_with(|| {
-            CpuEvaluator::with(topology.clone(), InstructionSet::Best, threads)
+            CpuEvaluator::of(present.mesh, present.order, InstructionSet::Best, threads)
         });
         let terms: SmallVec<[&Term; 8]> = terms.iter().collect();
         cpu.evaluate(&terms, positions, contributions, forces)
@@ -126,35 +160,37 @@ impl ChosenEvaluator {
 
 #[cfg(not(feature = "gpu"))]
 impl ChosenEvaluator {
-    fn is_worth_a_look(&self) -> bool {
+    fn is_worth_a_look(_: &Triangulation) -> bool {
         false
     }
 
     fn on_gpu(
         &mut self,
+        present: Present,
         terms: &[Term],
         positions: &[f64],
         contributions: &mut [Contribution],
         forces: Option<&mut [f64]>,
     ) -> Result<()> {
-        self.on_cpu(terms, positions, contributions, forces)
+        self.on_cpu(present, terms, positions, contributions, forces)
     }
 }
 
 #[cfg(feature = "gpu")]
 impl ChosenEvaluator {
-    fn is_worth_a_look(&self) -> bool {
-        self.topology.num_vertices() >= LEAST_VERTICES_FOR_GPU || calibration::prefers_gpu()
+    fn is_worth_a_look(mesh: &Triangulation) -> bool {
+        mesh.num_vertices() >= LEAST_VERTICES_FOR_GPU || calibration::prefers_gpu()
     }
 
-    fn start_gpu(&self, choice: Choice) -> Result<GpuEvaluator> {
+    fn start_gpu(mesh: &Triangulation, choice: Choice) -> Result<GpuEvaluator> {
         let precision =
             if choice.double == Some(true) { Precision::Double } else { Precision::Single };
-        GpuEvaluator::new(self.topology.clone(), choice.adapter, precision)
+        GpuEvaluator::new(Arc::new(Topology::of(mesh)), choice.adapter, precision)
     }
 
     fn on_gpu(
         &mut self,
+        present: Present,
         terms: &[Term],
         positions: &[f64],
         contributions: &mut [Contribution],
@@ -165,19 +201,19 @@ impl ChosenEvaluator {
         let mut unwanted: SmallVec<[Contribution; 8]> = SmallVec::new();
         unwanted.resize(terms.len(), Contribution::default());
         let known = if contributions.is_empty() { &mut unwanted } else { &mut *contributions };
-        let tried = self.try_gpu(terms, positions, known, forces.as_deref_mut());
+        let tried = self.try_gpu(present, terms, positions, known, forces.as_deref_mut());
         match tried {
             Ok(true) => {
                 backend::count_evaluation(true);
                 Ok(())
             }
             // Here the processor names the culprit, or computes what single precision cannot.
-            Ok(false) => self.on_cpu(terms, positions, contributions, forces),
+            Ok(false) => self.on_cpu(present, terms, positions, contributions, forces),
             Err(error) if auto && error.is_of_device() => {
                 self.gpu = None;
                 self.settled_on_cpu = true;
                 warn_once(&error);
-                self.on_cpu(terms, positions, contributions, forces)
+                self.on_cpu(present, terms, positions, contributions, forces)
             }
             Err(error) => Err(error),
         }
@@ -186,6 +222,7 @@ impl ChosenEvaluator {
     /// Whether the GPU has computed; false if it is not to, or cannot.
     fn try_gpu(
         &mut self,
+        present: Present,
         terms: &[Term],
         positions: &[f64],
         contributions: &mut [Contribution],
@@ -197,8 +234,10 @@ impl ChosenEvaluator {
                 self.settled_on_cpu = true;
                 return Ok(false);
             }
-            let mut gpu = self.start_gpu(choice)?;
-            if choice.kind == Kind::Auto && !self.gpu_is_faster(&mut gpu, terms, positions)? {
+            let mut gpu = Self::start_gpu(present.mesh, choice)?;
+            if choice.kind == Kind::Auto
+                && !self.gpu_is_faster(present, &mut gpu, terms, positions)?
+            {
                 self.settled_on_cpu = true;
                 return Ok(false);
             }
@@ -214,6 +253,7 @@ impl ChosenEvaluator {
     /// What an earlier measurement says, or else one on this mesh.
     fn gpu_is_faster(
         &mut self,
+        present: Present,
         gpu: &mut GpuEvaluator,
         terms: &[Term],
         positions: &[f64],
@@ -222,7 +262,7 @@ impl ChosenEvaluator {
             return Ok(true);
         }
         let threads = if self.threads == 0 { default_threads() } else { self.threads };
-        let key = calibration::Key::new(gpu, &self.topology, terms, threads);
+        let key = calibration::Key::new(gpu, present.mesh.num_vertices(), terms, threads);
         if let Some(known) = calibration::recall(&key) {
             return Ok(known.gpu < known.cpu);
         }
@@ -231,7 +271,7 @@ impl ChosenEvaluator {
         let mut cpu_fails = None;
         let cpu = calibration::fastest(|| {
             let forces = Some(forces.as_mut_slice());
-            cpu_fails = self.on_cpu(terms, positions, &mut contributions, forces).err();
+            cpu_fails = self.on_cpu(present, terms, positions, &mut contributions, forces).err();
         });
         if cpu_fails.is_some() {
             // The real evaluation will say so.

@@ -2,7 +2,8 @@
 
 use super::simd::{Level, SimdEvaluator};
 use crate::error::Result;
-use crate::mesh::Topology;
+use crate::mesh::numbering::breadth_first;
+use crate::mesh::{Topology, Triangulation};
 use crate::potentials::{Contribution, Term};
 use crate::team::default_threads;
 use std::sync::Arc;
@@ -48,9 +49,21 @@ impl CpuEvaluator {
 
     /// The same with a certain instruction set and number of threads at most, 0 for as many as there are.
     pub fn with(topology: Arc<Topology>, set: InstructionSet, threads: usize) -> Self {
-        let mut evaluator = Self { simd: SimdEvaluator::new(topology, set.level()) };
+        let mesh = Triangulation::new(&topology);
+        Self::of(&mesh, &breadth_first(&mesh), set, threads)
+    }
+
+    /// The same for a mesh whose connectivity may change; `order` has its vertices so that neighbours are near each
+    /// other.
+    pub fn of(mesh: &Triangulation, order: &[u32], set: InstructionSet, threads: usize) -> Self {
+        let mut evaluator = Self { simd: SimdEvaluator::new(mesh, order, set.level()) };
         evaluator.set_threads(threads);
         evaluator
+    }
+
+    /// Go on with a mesh whose connectivity has changed, or with another order of its vertices.
+    pub fn lay_out(&mut self, mesh: &Triangulation, order: &[u32]) {
+        self.simd.lay_out(mesh, order);
     }
 
     /// Let so many threads share the work, 0 for as many as there are; fewer if the system has no more.

@@ -9,6 +9,7 @@ mod passes;
 mod reference;
 pub(crate) mod simd;
 
-pub use chosen::{ChosenEvaluator, LEAST_VERTICES_FOR_GPU};
+pub(crate) use checks::culprit;
+pub use chosen::{ChosenEvaluator, LEAST_VERTICES_FOR_GPU, Present};
 pub use cpu::{CpuEvaluator, InstructionSet};
 pub use reference::ReferenceEvaluator;

@@ -93,7 +93,11 @@ impl ReferenceEvaluator {
     ) -> Result<()> {
         let needs = terms.iter().fold(Needs::empty(), |all, term| all | term.potential.needs(term));
         self.gather_positions(positions);
-        let totals = self.forward_triangles().ok_or_else(|| culprit(&self.topology, positions))?;
+        let totals = self.forward_triangles().ok_or_else(|| {
+            let topology = &self.topology;
+            let triangles = 0..topology.triangles.len();
+            culprit(&topology.particles, triangles.map(|t| topology.particles_of(t)), positions)
+        })?;
         if needs.intersects(Needs::EDGES | Needs::CURVATURES) {
             self.forward_edges();
         }

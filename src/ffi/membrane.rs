@@ -51,7 +51,7 @@ pub extern "C" fn Helfrich_Membrane_count() -> i64 {
 /// `membrane` must be alive.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn Helfrich_Membrane_numEdges(membrane: *const Membrane) -> i64 {
-    unsafe { &*membrane }.topology().edges.len() as i64
+    unsafe { &*membrane }.mesh().num_edges() as i64
 }
 
 /// Write the two particles of each edge.
@@ -60,18 +60,18 @@ pub unsafe extern "C" fn Helfrich_Membrane_numEdges(membrane: *const Membrane) -
 /// `membrane` must be alive; `particles` must have room for two values an edge.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn Helfrich_Membrane_edges(membrane: *const Membrane, particles: *mut c_int) {
-    let topology = unsafe { &*membrane }.topology();
-    let out = unsafe { slices::from_raw_parts_mut(particles, 2 * topology.edges.len()) };
-    let ends = topology.edges.iter().flat_map(|edge| edge.vertices);
+    let mesh = unsafe { &*membrane }.mesh();
+    let out = unsafe { slices::from_raw_parts_mut(particles, 2 * mesh.num_edges()) };
+    let ends = mesh.edges().flat_map(|half| [mesh.origin(half), mesh.origin(mesh.twin(half))]);
     for (slot, vertex) in out.iter_mut().zip(ends) {
-        *slot = topology.particles[vertex as usize] as c_int;
+        *slot = mesh.particles()[vertex as usize] as c_int;
     }
 }
 
 impl TermInput {
     /// # Safety
     /// The fields must hold as many values as they say.
-    unsafe fn term(&self) -> Term<'_> {
+    pub(super) unsafe fn term(&self) -> Term<'_> {
         let field = |k: usize| unsafe { slice(self.fields[k], self.field_lengths[k] as usize) };
         Term {
             potential: REGISTRY[self.potential as usize],

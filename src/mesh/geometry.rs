@@ -115,6 +115,31 @@ impl EdgeGeometry {
     }
 }
 
+/// φ / l of an edge, 1/nm: from its squared length l²; the determinant D of [`EdgeGeometry::new`]; the scalar product
+/// of the two normals and the product of their lengths. As in lanes: up to 45° the angle is a polynomial in
+/// tan(φ/2) = l D / (n₁·n₂ + |n₁||n₂|).
+#[inline(always)]
+pub fn bend(length_squared: f64, determinant: f64, cosine: f64, product: f64) -> f64 {
+    if is_small(cosine, product) {
+        return small_bend(length_squared, determinant, cosine, product);
+    }
+    let length = length_squared.sqrt();
+    (length * determinant).atan2(cosine) / length
+}
+
+/// Whether the angle is 45° at most.
+#[inline(always)]
+pub fn is_small(cosine: f64, product: f64) -> bool {
+    cosine >= std::f64::consts::FRAC_1_SQRT_2 * product
+}
+
+/// [`bend`] up to 45°.
+#[inline(always)]
+pub fn small_bend(length_squared: f64, determinant: f64, cosine: f64, product: f64) -> f64 {
+    let slope = determinant / (cosine + product);
+    (slope + slope) * arctan_over_argument(length_squared * (slope * slope))
+}
+
 /// Forward geometry of one vertex.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct VertexGeometry {
@@ -278,6 +303,9 @@ mod tests {
                 let (edge, length) = hinge(angle);
                 let error = (edge.bend * length / angle - 1.0).abs();
                 assert!(error < 1e-12 + 1e-16 / angle.abs(), "{angle}: {error}");
+                let (sine, cosine) = angle.sin_cos();
+                let quick = bend(length * length, 0.7 * sine / length, 0.7 * cosine, 0.7);
+                assert!((quick * length / angle - 1.0).abs() < 1e-14, "{angle}");
             }
         }
         assert_eq!(hinge(0.0).0.bend, 0.0);

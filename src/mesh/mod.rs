@@ -1,8 +1,11 @@
 //! Triangulated closed surfaces: their topology, their orientation and their geometry.
 
 pub mod geometry;
+pub mod numbering;
 pub mod orientation;
 pub mod topology;
+pub mod triangulation;
 pub mod vertex_vectors;
 
 pub use topology::Topology;
+pub use triangulation::Triangulation;

@@ -1,6 +1,7 @@
 //! The orientation of a surface, every triangle counter-clockwise seen from outside: mending it, and telling where it
 //! is the opposite.
 
+use super::Triangulation;
 use super::geometry::Totals;
 use super::topology::{Topology, checked_indices, neighbours};
 use crate::error::{Error, Result};
@@ -69,13 +70,13 @@ const NOTHING: f64 = 1e-3;
 
 /// Whether a surface is turned inside out at the positions of all particles, and its area and volume: the volume is
 /// below zero, and not only as that of a flat sheet may be. `None` if positions are not finite.
-pub fn is_inside_out(topology: &Topology, positions: &[f64]) -> Option<(bool, Totals)> {
+pub fn is_inside_out(mesh: &Triangulation, positions: &[f64]) -> Option<(bool, Totals)> {
     let position =
         |particle: u32| Vector3::from_column_slice(&positions[3 * particle as usize..][..3]);
-    let origin = position(topology.particles[0]);
+    let origin = position(mesh.particles()[0]);
     let (mut twice_area, mut six_volumes) = (0.0, 0.0);
-    for triangle in 0..topology.triangles.len() {
-        let [a, b, c] = topology.particles_of(triangle).map(|p| position(p) - origin);
+    for triangle in 0..mesh.triangles().len() {
+        let [a, b, c] = mesh.particles_of(triangle).map(|p| position(p) - origin);
         let normal = (b - a).cross(&(c - a));
         twice_area += normal.norm();
         six_volumes += a.dot(&normal);
@@ -188,7 +189,8 @@ mod tests {
     fn a_surface_is_inside_out_where_its_volume_says_so() {
         let (vertices, good) = octahedron();
         let swapped: Vec<_> = good.iter().map(|t| [t[0], t[2], t[1]]).collect();
-        let [outward, inward] = [good, swapped].map(|t| Topology::new(&t, 6).unwrap());
+        let [outward, inward] =
+            [good, swapped].map(|t| Triangulation::new(&Topology::new(&t, 6).unwrap()));
         for (shift, stretch) in [(0.0, 1.0), (1e3, 0.01), (-50.0, 100.0)] {
             let place = |z: f64, [x, y, w]: [f64; 3]| [x, y, z * w].map(|x| x * stretch + shift);
             let placed = |z: f64| vertices.iter().flat_map(|v| place(z, *v)).collect::<Vec<_>>();

@@ -1,5 +1,6 @@
 //! Which triangles, edges and vertices of a closed surface touch which.
 
+use super::Triangulation;
 use crate::error::{Error, Result};
 
 /// A validated closed, oriented 2-manifold triangulation.
@@ -89,9 +90,18 @@ impl Topology {
             }
         }
         let (particles, triangles) = renumbered(&triangles);
+        let pairs: Vec<_> = pairs.into_iter().map(|pair| pair.map(|half| half.corner)).collect();
         let topology = Self::from_pairs(particles, triangles, &pairs);
         topology.check_fans()?;
         Ok(topology)
+    }
+
+    /// The present lists of a surface whose connectivity may change.
+    pub fn of(triangulation: &Triangulation) -> Self {
+        let pairs: Vec<_> =
+            triangulation.edges().map(|half| [half, triangulation.twin(half)]).collect();
+        let particles = triangulation.particles().to_vec();
+        Self::from_pairs(particles, triangulation.triangles().to_vec(), &pairs)
     }
 
     /// Number of vertices.
@@ -110,12 +120,13 @@ impl Topology {
         self.offsets[vertex] as usize..self.offsets[vertex + 1] as usize
     }
 
-    fn from_pairs(particles: Vec<u32>, triangles: Vec<[u32; 3]>, pairs: &[[HalfEdge; 2]]) -> Self {
+    /// Each pair are the two half-edges of an edge, by triangle and side as a corner index, the lower one first.
+    fn from_pairs(particles: Vec<u32>, triangles: Vec<[u32; 3]>, pairs: &[[u32; 2]]) -> Self {
         let num_vertices = particles.len();
         let mut triangle_edges = vec![[0; 3]; triangles.len()];
         let mut edges = Vec::with_capacity(pairs.len());
         for (index, pair) in pairs.iter().enumerate() {
-            let corners = pair.map(|half| half.corner as usize);
+            let corners = pair.map(|corner| corner as usize);
             for corner in corners {
                 triangle_edges[corner / 3][corner % 3] = index as u32;
             }

@@ -12,7 +12,7 @@ pub const MAX_PARAMETERS: usize = 4;
 bitflags! {
     /// On which elements of the mesh a potential adds energy, and what it wants to know of them
     /// beyond areas, lengths and volume.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
     pub struct Needs: u32 {
         /// Adds energy of the total area and volume.
         const TOTALS = 1;

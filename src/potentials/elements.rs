@@ -135,7 +135,19 @@ pub trait VertexFormula {
 }
 
 /// A run of triangles to apply a formula to.
+///
+/// Each kind of run has three forms: the reference's, the lanes', and energies alone, of any elements, for moves
+/// that change a few of them.
 pub enum Triangles<'a> {
+    /// Only energies, which are added.
+    Energies {
+        /// Indices in the mesh.
+        ids: &'a [u32],
+        /// The triangles.
+        geometry: &'a [TriangleGeometry],
+        /// One for each, kJ/mol.
+        energies: &'a mut [f64],
+    },
     /// One by one.
     Plain {
         /// Index of the first in the mesh.
@@ -158,6 +170,13 @@ pub enum Triangles<'a> {
 
 /// A run of edges to apply a formula to.
 pub enum Edges<'a> {
+    /// Only energies, which are added.
+    Energies {
+        /// The edges.
+        geometry: &'a [EdgeGeometry],
+        /// One for each, kJ/mol.
+        energies: &'a mut [f64],
+    },
     /// Each edge once.
     Plain {
         /// The edges.
@@ -171,6 +190,19 @@ pub enum Edges<'a> {
 
 /// A run of vertices to apply a formula to.
 pub enum Vertices<'a> {
+    /// Only energies, which are added.
+    Energies {
+        /// How many vertices the mesh has.
+        total: usize,
+        /// Indices in the mesh.
+        ids: &'a [u32],
+        /// Areas and curvatures.
+        scalars: &'a [VertexGeometry],
+        /// Curvature vectors and normals; empty unless the potential wants them.
+        vectors: &'a [VertexVectors],
+        /// One for each, kJ/mol.
+        energies: &'a mut [f64],
+    },
     /// One by one.
     Plain {
         /// Index of the first in the mesh.
@@ -231,6 +263,17 @@ impl Triangles<'_> {
     /// Apply a formula to all; returns the sum.
     pub fn apply(self, term: &Term, formula: &impl TriangleFormula) -> Contribution {
         let sum = match self {
+            Self::Energies { ids, geometry, energies } => {
+                for ((id, known), energy) in ids.iter().zip(geometry).zip(energies) {
+                    let triangle = Triangle { twice_area: known.twice_area, dots: known.dots };
+                    if !formula.vanishes(&triangle) {
+                        let mut unused = TriangleSlopes { area: 0.0, length_squared: [0.0; 3] };
+                        let place = Place { term, ids: std::slice::from_ref(id) };
+                        *energy += formula.apply(place, &triangle, &mut unused).energy;
+                    }
+                }
+                Contribution::default()
+            }
             Self::Plain { first, geometry, partials } => {
                 let mut sum = Contribution::default();
                 for (index, (known, partial)) in geometry.iter().zip(partials).enumerate() {
@@ -258,6 +301,11 @@ impl Edges<'_> {
     pub fn apply(self, formula: &impl EdgeFormula) -> Contribution {
         let mut sum = Contribution::default();
         match self {
+            Self::Energies { geometry, energies } => {
+                for (edge, energy) in geometry.iter().zip(energies) {
+                    *energy += formula.apply(edge.bend * edge.length_squared.sqrt()).0.energy;
+                }
+            }
             Self::Plain { geometry, partials } => {
                 for (edge, partial) in geometry.iter().zip(partials) {
                     let (sums, slope) = formula.apply(edge.bend * edge.length_squared.sqrt());
@@ -291,13 +339,24 @@ impl Vertices<'_> {
     /// How many vertices the mesh has.
     pub fn total(&self) -> usize {
         match self {
-            Self::Plain { total, .. } | Self::Lanes { total, .. } => *total,
+            Self::Energies { total, .. }
+            | Self::Plain { total, .. }
+            | Self::Lanes { total, .. } => *total,
         }
     }
 
     /// Apply a formula to all; returns the sum.
     pub fn apply(self, term: &Term, formula: &impl VertexFormula) -> Contribution {
         let sum = match self {
+            Self::Energies { ids, scalars, vectors, energies, .. } => {
+                for (index, (known, energy)) in scalars.iter().zip(energies).enumerate() {
+                    let vertex = Vertex::plain(*known, vectors.get(index));
+                    let mut unused = Vertex::plain(VertexGeometry::default(), None);
+                    let place = Place { term, ids: &ids[index..=index] };
+                    *energy += formula.apply(place, &vertex, &mut unused).energy;
+                }
+                Contribution::default()
+            }
             Self::Plain { first, scalars, vectors, scalar_partials, vector_partials, .. } => {
                 let mut sum = Contribution::default();
                 for (index, (known, partial)) in scalars.iter().zip(scalar_partials).enumerate() {

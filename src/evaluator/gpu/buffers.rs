@@ -120,7 +120,8 @@ impl Buffers {
         Ok(())
     }
 
-    fn write_topology(&self, device: &Device, topology: &Topology) {
+    /// Bring triangles, edges and rings to the device.
+    pub fn write_topology(&self, device: &Device, topology: &Topology) {
         let write = |binding: Binding, words: &[u32]| {
             device.queue.write_buffer(self.get(binding), 0, bytemuck::cast_slice(words));
         };

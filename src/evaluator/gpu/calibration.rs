@@ -3,7 +3,6 @@
 
 use super::evaluator::GpuEvaluator;
 use super::{Precision, adapters};
-use crate::mesh::Topology;
 use crate::potentials::{Needs, Term};
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -26,8 +25,8 @@ pub struct Key {
 }
 
 impl Key {
-    /// For terms on a mesh.
-    pub fn new(gpu: &GpuEvaluator, topology: &Topology, terms: &[Term], threads: usize) -> Self {
+    /// For terms on a mesh of so many vertices.
+    pub fn new(gpu: &GpuEvaluator, vertices: usize, terms: &[Term], threads: usize) -> Self {
         let (adapter, driver) = gpu.adapter();
         let precision = match gpu.precision() {
             Precision::Single => "single",
@@ -36,7 +35,7 @@ impl Key {
         let version = env!("CARGO_PKG_VERSION");
         let machine = format!("{version}|{adapter}|{driver}|{precision}|{threads} threads");
         let needs = terms.iter().fold(Needs::empty(), |all, term| all | term.potential.needs(term));
-        let size = (2.0 * (topology.num_vertices() as f64).log2()).round() as u32;
+        let size = (2.0 * (vertices as f64).log2()).round() as u32;
         Self { machine: machine.replace(['\t', '\n'], " "), needs: needs.bits(), size }
     }
 }

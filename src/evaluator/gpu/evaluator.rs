@@ -71,6 +71,12 @@ impl GpuEvaluator {
         Ok(Self { topology, device, precision, lattice, frame, buffers, stopwatch: None })
     }
 
+    /// Go on with a mesh whose connectivity has changed: of the same vertices, with as many triangles.
+    pub fn set_topology(&mut self, topology: Arc<Topology>) {
+        self.buffers.write_topology(&self.device, &topology);
+        self.topology = topology;
+    }
+
     /// The name of the adapter and its driver.
     pub fn adapter(&self) -> (&str, &str) {
         (&self.device.adapter.name, &self.device.adapter.driver)

@@ -1,12 +1,12 @@
 //! The mesh as the fast evaluator wants it: renumbered for locality, in blocks of lanes.
 //!
-//! Vertices that are neighbours on the surface get numbers that are near each other (breadth first from
-//! a vertex at the rim), so that what a pass needs is in the cache. Within a tile they are
-//! sorted by degree, so that the lanes of a block go round rings of the same length. Triangles follow
+//! Vertices that are neighbours on the surface get numbers that are near each other, so that what a pass
+//! needs is in the cache. Within a tile they are sorted by degree, so that the lanes of a block go round rings of the same length. Triangles follow
 //! the vertices. The user's order is kept outside: `particles`, `vertex_ids` and `triangle_ids` translate.
 
 use super::records::BLOCK;
-use crate::mesh::Topology;
+use crate::mesh::Triangulation;
+use crate::mesh::triangulation::next;
 use std::ops::Range;
 use std::sync::OnceLock;
 
@@ -50,89 +50,22 @@ pub struct Layout {
     /// How many triangles must be known before a tile of vertices can be handled.
     pub frontier: Vec<u32>,
     opposite: OnceLock<Vec<[u32; BLOCK]>>,
-}
-
-/// A ring walk: corners around a vertex counter-clockwise.
-fn next_corner(topology: &Topology, corner: usize) -> usize {
-    let (triangle, k) = (corner / 3, corner % 3);
-    let vertex = topology.triangles[triangle][k];
-    let edge = &topology.edges[topology.triangle_edges[triangle][(k + 2) % 3] as usize];
-    let other = if edge.triangles[0] as usize == triangle { 1 } else { 0 };
-    let next = edge.triangles[other] as usize;
-    let place = |&v: &u32| v == vertex;
-    3 * next + topology.triangles[next].iter().position(place).unwrap_or(0)
-}
-
-/// The corners at a vertex, counter-clockwise, from the first on.
-fn ring(topology: &Topology, vertex: usize) -> impl Iterator<Item = usize> {
-    let range = topology.ring(vertex);
-    let mut corner = topology.corners[range.start] as usize;
-    range.map(move |_| {
-        let here = corner;
-        corner = next_corner(topology, here);
-        here
-    })
-}
-
-/// The neighbour that a corner's triangle starts with, counter-clockwise.
-fn neighbour(topology: &Topology, corner: usize) -> u32 {
-    topology.triangles[corner / 3][(corner % 3 + 1) % 3]
-}
-
-/// All vertices, breadth first, component by component, each from a vertex that is far from another.
-fn breadth_first(topology: &Topology) -> Vec<u32> {
-    let count = topology.num_vertices();
-    let mut order: Vec<u32> = Vec::with_capacity(count);
-    // 0: unseen; 1: seen by the walk that looks for the rim; 2: numbered.
-    let mut seen = vec![0u8; count];
-    let walk = |start: u32, mark: u8, seen: &mut [u8], order: &mut Vec<u32>| {
-        let mut head = order.len();
-        order.push(start);
-        seen[start as usize] = mark;
-        while head < order.len() {
-            let vertex = order[head] as usize;
-            head += 1;
-            for corner in ring(topology, vertex) {
-                let other = neighbour(topology, corner);
-                if seen[other as usize] < mark {
-                    seen[other as usize] = mark;
-                    order.push(other);
-                }
-            }
-        }
-    };
-    for vertex in 0..count {
-        if seen[vertex] == 0 {
-            let start = order.len();
-            walk(vertex as u32, 1, &mut seen, &mut order);
-            let rim = order[order.len() - 1];
-            order.truncate(start);
-            walk(rim, 2, &mut seen, &mut order);
-        }
-    }
-    order
+    /// The number of each vertex and triangle by its index in the mesh, and the rings of a block; kept for their
+    /// memory.
+    number: Vec<u32>,
+    triangle_number: Vec<u32>,
+    rings: [Vec<u32>; BLOCK],
 }
 
 impl Layout {
-    /// Renumber a mesh, of fewer than 2³⁰ triangles, as [`Topology`] sees to.
-    pub fn new(topology: &Topology) -> Self {
-        let degree = |vertex: u32| topology.ring(vertex as usize).len();
-        let mut vertex_ids = breadth_first(topology);
-        for tile in vertex_ids.chunks_mut(TILE) {
-            tile.sort_by_key(|&vertex| degree(vertex));
-        }
-        let num_vertices = vertex_ids.len();
-        let first = vertex_ids[0];
-        vertex_ids.resize(num_vertices.next_multiple_of(BLOCK), first);
-        let mut number = vec![0u32; num_vertices];
-        for (new, &old) in vertex_ids[..num_vertices].iter().enumerate() {
-            number[old as usize] = new as u32;
-        }
+    /// Lay out a mesh, of fewer than 2³⁰ triangles, as [`Topology`](crate::mesh::Topology) sees to. `order` has
+    /// its vertices so that neighbours are near each other, see [`crate::mesh::numbering`].
+    pub fn new(mesh: &Triangulation, order: &[u32]) -> Self {
         let mut layout = Self {
-            num_vertices,
-            num_triangles: topology.triangles.len(),
-            particles: vertex_ids.iter().map(|&v| topology.particles[v as usize]).collect(),
-            vertex_ids,
+            num_vertices: mesh.num_vertices(),
+            num_triangles: mesh.triangles().len(),
+            particles: Vec::new(),
+            vertex_ids: Vec::new(),
             triangle_ids: Vec::new(),
             corners: Vec::new(),
             steps: Vec::new(),
@@ -143,10 +76,22 @@ impl Layout {
             neighbours_before: Vec::new(),
             frontier: Vec::new(),
             opposite: OnceLock::new(),
+            number: Vec::new(),
+            triangle_number: Vec::new(),
+            rings: std::array::from_fn(|_| Vec::new()),
         };
-        let triangle_number = layout.number_triangles(topology, &number);
-        layout.lay_rings(topology, &number, &triangle_number);
+        layout.update(mesh, order);
         layout
+    }
+
+    /// Lay out the mesh anew after its connectivity has changed. The result depends on the mesh and the order only,
+    /// not on what was there before.
+    pub fn update(&mut self, mesh: &Triangulation, order: &[u32]) {
+        debug_assert_eq!(order.len(), self.num_vertices);
+        self.number_vertices(mesh, order);
+        self.lay_rings(mesh);
+        self.lay_corners(mesh);
+        self.opposite = OnceLock::new();
     }
 
     /// The vertices of a tile.
@@ -169,70 +114,131 @@ impl Layout {
         self.num_triangles.div_ceil(TILE)
     }
 
-    /// Number the triangles in the order in which the vertices meet them; returns the new numbers.
-    fn number_triangles(&mut self, topology: &Topology, number: &[u32]) -> Vec<u32> {
-        let unknown = u32::MAX;
-        let mut triangle_number = vec![unknown; self.num_triangles];
-        self.triangle_ids.reserve(self.num_triangles.next_multiple_of(BLOCK));
-        for tile in self.vertex_ids[..self.num_vertices].chunks(TILE) {
+    /// Sort the vertices of each tile by degree, and number them.
+    fn number_vertices(&mut self, mesh: &Triangulation, order: &[u32]) {
+        self.vertex_ids.resize(self.num_vertices, 0);
+        for (tile, sorted) in order.chunks(TILE).zip(self.vertex_ids.chunks_mut(TILE)) {
+            // By counting; the few vertices of more neighbours than that are not told apart.
+            const MOST: usize = 31;
+            let degree = |vertex: u32| (mesh.degrees()[vertex as usize] as usize).min(MOST);
+            let mut starts = [0; MOST + 2];
             for &vertex in tile {
-                for corner in ring(topology, vertex as usize) {
-                    let slot = &mut triangle_number[corner / 3];
-                    if *slot == unknown {
-                        *slot = self.triangle_ids.len() as u32;
-                        self.triangle_ids.push((corner / 3) as u32);
-                    }
-                }
+                starts[degree(vertex) + 1] += 1;
             }
-            // All triangles at this tile have a number now, and those of earlier tiles.
-            self.frontier.push(self.triangle_ids.len() as u32);
+            for degree in 0..MOST {
+                starts[degree + 1] += starts[degree];
+            }
+            for &vertex in tile {
+                let place = &mut starts[degree(vertex)];
+                sorted[*place] = vertex;
+                *place += 1;
+            }
         }
-        let filled = self.num_triangles.next_multiple_of(BLOCK);
-        self.triangle_ids.resize(filled, self.triangle_ids[0]);
-        self.corners = self
-            .triangle_ids
-            .chunks(BLOCK)
-            .map(|block| {
-                std::array::from_fn(|k| {
-                    std::array::from_fn(|lane| {
-                        let vertex = topology.triangles[block[lane] as usize][k];
-                        4 * number[vertex as usize]
-                    })
-                })
-            })
-            .collect();
-        triangle_number
+        self.number.resize(self.num_vertices, 0);
+        for (new, &old) in self.vertex_ids.iter().enumerate() {
+            self.number[old as usize] = new as u32;
+        }
+        let first = self.vertex_ids[0];
+        self.vertex_ids.resize(self.num_vertices.next_multiple_of(BLOCK), first);
+        let particles = mesh.particles();
+        self.particles.clear();
+        self.particles.extend(self.vertex_ids.iter().map(|&v| particles[v as usize]));
     }
 
-    fn lay_rings(&mut self, topology: &Topology, number: &[u32], triangle_number: &[u32]) {
-        let nothing = 4 * self.triangle_ids.len() as u32;
-        let mut rings: Vec<Vec<usize>> = vec![Vec::new(); BLOCK];
-        let blocks = self.vertex_ids.len() / BLOCK;
+    /// Store the rings of all vertices, and number the triangles in the order in which the vertices meet them.
+    fn lay_rings(&mut self, mesh: &Triangulation) {
+        const UNKNOWN: u32 = u32::MAX;
+        let filled = self.num_triangles.next_multiple_of(BLOCK);
+        let nothing = 4 * filled as u32;
+        self.triangle_number.clear();
+        self.triangle_number.resize(self.num_triangles, UNKNOWN);
+        // One more, for what is written there and not kept.
+        self.triangle_ids.resize(self.num_triangles + 1, 0);
+        let mut met = 0;
+        for list in [&mut self.steps, &mut self.frontier] {
+            list.clear();
+        }
+        for list in [&mut self.neighbours, &mut self.places] {
+            list.clear();
+        }
+        for list in [&mut self.before, &mut self.neighbours_before] {
+            list.clear();
+        }
+        self.longest = 0;
         self.steps.push(0);
-        for block in 0..blocks {
+        let triangles = mesh.triangles().as_flattened();
+        for block in 0..self.vertex_ids.len() / BLOCK {
             let vertices = &self.vertex_ids[block * BLOCK..][..BLOCK];
-            for (corners, &vertex) in rings.iter_mut().zip(vertices) {
-                corners.clear();
-                corners.extend(ring(topology, vertex as usize));
+            for (ring, &vertex) in self.rings.iter_mut().zip(vertices) {
+                mesh.ring(vertex, ring);
+                for &half in &*ring {
+                    // Whether a triangle is new is up to chance, so there is no branch.
+                    let number = &mut self.triangle_number[half as usize / 3];
+                    self.triangle_ids[met] = half / 3;
+                    let is_new = *number == UNKNOWN;
+                    *number = if is_new { met as u32 } else { *number };
+                    met += usize::from(is_new);
+                }
             }
-            let longest = rings.iter().map(Vec::len).max().unwrap_or(0);
-            for step in 0..=longest {
-                let corner = |lane: usize| rings[lane].get(step).copied();
-                self.neighbours.push(std::array::from_fn(|lane| {
-                    let corner = corner(lane).unwrap_or(rings[lane][0]);
-                    4 * number[neighbour(topology, corner) as usize]
-                }));
-                let place = |corner: usize| 4 * triangle_number[corner / 3] + (corner % 3) as u32;
-                self.places.push(std::array::from_fn(|lane| corner(lane).map_or(nothing, place)));
+            let longest = self.rings.iter().map(Vec::len).max().unwrap_or(0);
+            let start = self.neighbours.len();
+            self.neighbours.resize(start + longest + 1, [0; BLOCK]);
+            self.places.resize(start + longest + 1, [nothing; BLOCK]);
+            let mut before = [0; BLOCK];
+            let mut neighbours_before = [0; BLOCK];
+            for (lane, ring) in self.rings.iter().enumerate() {
+                let neighbour =
+                    |half: u32| 4 * self.number[triangles[next(half) as usize] as usize];
+                let triangle = |half: u32| 4 * self.triangle_number[half as usize / 3];
+                for (step, &half) in ring.iter().enumerate() {
+                    self.neighbours[start + step][lane] = neighbour(half);
+                    self.places[start + step][lane] = triangle(half) + half % 3;
+                }
+                let first = self.neighbours[start][lane];
+                for lanes in &mut self.neighbours[start + ring.len()..] {
+                    lanes[lane] = first;
+                }
+                let last = ring[ring.len() - 1];
+                before[lane] = triangle(last);
+                neighbours_before[lane] = neighbour(last);
             }
+            self.before.push(before);
+            self.neighbours_before.push(neighbours_before);
             self.steps.push(self.neighbours.len() as u32);
             self.longest = self.longest.max(longest + 1);
-            let last = |lane: usize| rings[lane][rings[lane].len() - 1];
-            self.before.push(std::array::from_fn(|lane| 4 * triangle_number[last(lane) / 3]));
-            self.neighbours_before.push(std::array::from_fn(|lane| {
-                4 * number[neighbour(topology, last(lane)) as usize]
-            }));
+            if (block + 1) % (TILE / BLOCK) == 0 || (block + 1) * BLOCK >= self.num_vertices {
+                // All triangles at this tile have a number now, and those of earlier tiles.
+                self.frontier.push(met as u32);
+            }
         }
+        let first = self.triangle_ids[0];
+        self.triangle_ids.truncate(self.num_triangles);
+        self.triangle_ids.resize(filled, first);
+    }
+
+    fn lay_corners(&mut self, mesh: &Triangulation) {
+        self.corners.clear();
+        let (number, triangles) = (&self.number, mesh.triangles());
+        self.corners.extend(self.triangle_ids.chunks(BLOCK).map(|block| {
+            let mut corners = [[0; BLOCK]; 3];
+            for (lane, &triangle) in block.iter().enumerate() {
+                for (k, &vertex) in triangles[triangle as usize].iter().enumerate() {
+                    corners[k][lane] = 4 * number[vertex as usize];
+                }
+            }
+            corners
+        }));
+    }
+
+    /// The particles at the corners of each triangle, in the user's order.
+    pub fn triangles(&self) -> Vec<[u32; 3]> {
+        let mut triangles = vec![[0; 3]; self.num_triangles];
+        for (index, &id) in self.triangle_ids[..self.num_triangles].iter().enumerate() {
+            let corners = &self.corners[index / BLOCK];
+            let particle = |k: usize| self.particles[corners[k][index % BLOCK] as usize / 4];
+            triangles[id as usize] = [particle(0), particle(1), particle(2)];
+        }
+        triangles
     }
 
     /// For each step and lane, where the edge opposite the vertex in the triangle is a step of its own: the
@@ -263,12 +269,37 @@ impl Layout {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::Topology;
+    use crate::mesh::numbering::breadth_first;
+    use crate::mesh::triangulation::Turn;
     use crate::test_meshes::icosahedron;
+
+    fn icosahedral() -> Layout {
+        let mesh = Triangulation::new(&Topology::new(&icosahedron().1, 12).unwrap());
+        Layout::new(&mesh, &breadth_first(&mesh))
+    }
+
+    #[test]
+    fn an_update_is_as_good_as_a_new_layout() {
+        let mut mesh = Triangulation::new(&Topology::new(&icosahedron().1, 12).unwrap());
+        let order = breadth_first(&mesh);
+        let mut layout = Layout::new(&mesh, &order);
+        for half in [0, 7, 33, 12] {
+            mesh.flip(&mesh.quad(half), Turn::Left);
+            layout.update(&mesh, &order);
+            let anew = Layout::new(&mesh, &order);
+            assert_eq!(layout.vertex_ids, anew.vertex_ids);
+            assert_eq!(layout.triangle_ids, anew.triangle_ids);
+            assert_eq!((&layout.neighbours, &layout.places), (&anew.neighbours, &anew.places));
+            assert_eq!((&layout.steps, &layout.corners), (&anew.steps, &anew.corners));
+            assert_eq!(layout.opposite(), anew.opposite());
+            assert_eq!(layout.triangles(), mesh.triangles());
+        }
+    }
 
     #[test]
     fn every_element_has_one_place() {
-        let topology = Topology::new(&icosahedron().1, 12).unwrap();
-        let layout = Layout::new(&topology);
+        let layout = icosahedral();
         let mut vertices = layout.vertex_ids[..12].to_vec();
         vertices.sort_unstable();
         assert_eq!(vertices, (0..12).collect::<Vec<_>>());
@@ -281,8 +312,7 @@ mod tests {
 
     #[test]
     fn rings_close_and_steps_know_their_triangles() {
-        let topology = Topology::new(&icosahedron().1, 12).unwrap();
-        let layout = Layout::new(&topology);
+        let layout = icosahedral();
         let opposite = layout.opposite();
         for index in 0..12 {
             let (block, lane) = (index / BLOCK, index % BLOCK);

@@ -31,14 +31,13 @@ pub use tiles::{EdgeBlock, TriangleTile, VertexTile};
 
 use super::checks::{check_energies, culprit};
 use crate::error::{Error, Result};
-use crate::mesh::Topology;
+use crate::mesh::Triangulation;
 use crate::mesh::geometry::{TotalPartials, Totals};
 use crate::potentials::{Contribution, Needs, Term};
 use crate::team::{Parts, Team};
 use arrays::Arrays;
 use backward::Forces;
 use choice::Choice;
-use std::sync::Arc;
 use sweep::{Scratch, Sweep, backward};
 use triangles::TriangleSums;
 
@@ -48,7 +47,6 @@ const SMALLEST_AREA: f64 = 1e-140;
 /// Evaluates terms on one mesh in lanes, on one thread or several.
 pub struct SimdEvaluator {
     level: Level,
-    topology: Arc<Topology>,
     layout: Layout,
     arrays: Arrays,
     /// The calling thread, and the team that it belongs to where that is worth a try.
@@ -61,18 +59,21 @@ pub struct SimdEvaluator {
     contributions: Vec<Contribution>,
     /// Whether there are slopes of vertices from an earlier evaluation.
     has_slopes: bool,
+    /// How many particles there must be at least.
+    particles: usize,
 }
 
 impl SimdEvaluator {
     /// Buffers for a mesh. `level` is the instruction set to use, which the processor must have.
-    pub fn new(topology: Arc<Topology>, level: Level) -> Self {
-        let layout = Layout::new(&topology);
+    /// `order` has the vertices so that neighbours are near each other.
+    pub fn new(mesh: &Triangulation, order: &[u32], level: Level) -> Self {
+        let layout = Layout::new(mesh, order);
         let mut evaluator = Self {
             level,
             arrays: Arrays::new(&layout),
             triangle_sums: vec![TriangleSums::default(); layout.triangle_tiles()],
             contributions: Vec::new(),
-            topology,
+            particles: mesh.particles().last().map_or(0, |last| *last as usize + 1),
             layout,
             alone: Team::new(1).expect("no thread is made for a team of one"),
             team: None,
@@ -89,10 +90,25 @@ impl SimdEvaluator {
         self.layout.num_vertices
     }
 
+    /// Go on with a mesh whose connectivity has changed, or with another order of its vertices.
+    pub fn lay_out(&mut self, mesh: &Triangulation, order: &[u32]) {
+        let longest = self.layout.longest;
+        self.layout.update(mesh, order);
+        if self.layout.longest > longest {
+            self.scratch.clear();
+            self.make_scratch();
+        }
+    }
+
     /// Let so many threads share the work where that is faster, or as many as the system has left.
     pub fn set_threads(&mut self, threads: usize) {
         self.team = if threads > 1 { Team::new(threads).ok() } else { None };
         self.choice = Choice::new();
+        self.make_scratch();
+    }
+
+    /// One for each thread, with room for the longest ring.
+    fn make_scratch(&mut self) {
         let steps = self.layout.longest;
         let scratch =
             || Scratch { triangles: TriangleTile::EMPTY, vertices: VertexTile::new(steps) };
@@ -107,7 +123,7 @@ impl SimdEvaluator {
         contributions: &mut [Contribution],
         forces: Option<&mut [f64]>,
     ) -> Result<()> {
-        let particles = self.topology.particles.last().map_or(0, |last| *last as usize + 1);
+        let particles = self.particles;
         let (length, fits) =
             (positions.len(), |forces: &&mut [f64]| forces.len() == positions.len());
         let counts = contributions.is_empty() || contributions.len() == terms.len();
@@ -153,7 +169,9 @@ impl SimdEvaluator {
         let Some((totals, silent)) = totals(&self.triangle_sums) else {
             // What this evaluation has left of tensions is not to be relied on.
             self.triangle_sums.iter_mut().for_each(|sum| sum.silent = false);
-            return Err(culprit(&self.topology, positions));
+            let mut particles = self.layout.particles[..self.layout.num_vertices].to_vec();
+            particles.sort_unstable();
+            return Err(culprit(&particles, self.layout.triangles().into_iter(), positions));
         };
         let mut total_partials = TotalPartials::default();
         let mut ignored = Contribution::default();

@@ -198,7 +198,14 @@ impl Sweep<'_, '_> {
             let rows = |numbers: &arrays::Numbers| -> *mut [f64; BLOCK] {
                 numbers.at(steps.start * BLOCK).cast()
             };
+            // Nothing else writes the closing step; what an earlier layout has left there is no angle.
+            let closing = steps.len() - 1;
             // SAFETY: bends, lengths and moments have a row for each step, and the steps of a tile are its own.
+            unsafe {
+                *rows(&arrays.bends).add(closing) = [0.0; BLOCK];
+                *rows(&arrays.lengths_squared).add(closing) = [1.0; BLOCK];
+            }
+            // SAFETY: as above.
             let (bends, lengths_squared, moments) = unsafe {
                 use std::slice::{from_raw_parts, from_raw_parts_mut};
                 (

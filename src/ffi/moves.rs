@@ -1,0 +1,158 @@
+//! The C interface to moves of a membrane's connectivity, and to the connectivity itself.
+
+use super::{TermInput, guarded, slice, text};
+use crate::membrane::{Connectivity, Membrane};
+use crate::moves::{FlipRules, FlipState};
+use crate::potentials::Term;
+use std::ffi::{c_char, c_int};
+use std::slice as slices;
+
+/// Refuse rules that make no sense, or that the present mesh violates.
+///
+/// # Safety
+/// `subject` must end with a NUL; `membrane` must be alive; `rules` must be readable.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Membrane_checkFlips(
+    subject: *const c_char,
+    membrane: *const Membrane,
+    rules: *const FlipRules,
+) -> c_int {
+    guarded(unsafe { text(subject) }, || unsafe { &*rules }.check(unsafe { &*membrane }.mesh()))
+}
+
+/// Try to flip so many edges at the present positions, with the energy of some terms. `made` gets how many
+/// flips were made.
+///
+/// # Safety
+/// `subject` must end with a NUL; `membrane` must be alive and used by no other thread; `terms` must hold
+/// `num_terms` values, `positions` three values for each particle; `rules` must be readable, `state` and `made`
+/// writable.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Membrane_flip(
+    subject: *const c_char,
+    membrane: *mut Membrane,
+    terms: *const TermInput,
+    num_terms: i64,
+    num_particles: i64,
+    positions: *const f64,
+    rules: *const FlipRules,
+    attempts: i64,
+    state: *mut FlipState,
+    made: *mut i64,
+) -> c_int {
+    guarded(unsafe { text(subject) }, || {
+        let inputs = unsafe { slice(terms, num_terms as usize) };
+        let terms: smallvec::SmallVec<[Term; 8]> =
+            inputs.iter().map(|input| unsafe { input.term() }).collect();
+        let positions = unsafe { slice(positions, 3 * num_particles as usize) };
+        let (membrane, rules, state) = unsafe { (&mut *membrane, &*rules, &mut *state) };
+        let count = membrane.flip(&terms, positions, rules, attempts as u64, state)?;
+        unsafe { made.write(count as i64) };
+        Ok(())
+    })
+}
+
+/// Number of triangles, which never changes.
+///
+/// # Safety
+/// `membrane` must be alive.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Membrane_numTriangles(membrane: *const Membrane) -> i64 {
+    unsafe { &*membrane }.mesh().triangles().len() as i64
+}
+
+/// Number of vertices, which never changes.
+///
+/// # Safety
+/// `membrane` must be alive.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Membrane_numVertices(membrane: *const Membrane) -> i64 {
+    unsafe { &*membrane }.mesh().num_vertices() as i64
+}
+
+/// Write the particles at the corners of each triangle, as they are now.
+///
+/// # Safety
+/// `membrane` must be alive; `corners` must have room for three values a triangle.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Membrane_triangles(
+    membrane: *const Membrane,
+    corners: *mut c_int,
+) {
+    let mesh = unsafe { &*membrane }.mesh();
+    let count = mesh.triangles().len();
+    let out = unsafe { slices::from_raw_parts_mut(corners.cast::<[c_int; 3]>(), count) };
+    for (triangle, slot) in out.iter_mut().enumerate() {
+        *slot = mesh.particles_of(triangle).map(|particle| particle as c_int);
+    }
+}
+
+/// Go on with other triangles of the same particles, as many as there are.
+///
+/// # Safety
+/// `subject` must end with a NUL; `membrane` must be alive and used by no other thread; `corners` must hold three
+/// values a triangle.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Membrane_setTriangles(
+    subject: *const c_char,
+    membrane: *mut Membrane,
+    corners: *const c_int,
+    num_triangles: i64,
+) -> c_int {
+    guarded(unsafe { text(subject) }, || {
+        let corners = unsafe { slice(corners.cast::<[c_int; 3]>(), num_triangles as usize) };
+        let triangles: Vec<_> = corners.iter().map(|corners| corners.map(i64::from)).collect();
+        unsafe { &mut *membrane }.set_triangles(&triangles)
+    })
+}
+
+/// Write the order of the vertices that sums are formed in; returns how many flips there have been since it was made.
+///
+/// # Safety
+/// `membrane` must be alive; `order` must have room for a value a vertex.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Membrane_order(
+    membrane: *const Membrane,
+    order: *mut u32,
+) -> i64 {
+    let Connectivity { order: from, flips, .. } = unsafe { &*membrane }.connectivity();
+    unsafe { slices::from_raw_parts_mut(order, from.len()) }.copy_from_slice(&from);
+    flips as i64
+}
+
+/// Go on with saved triangles, order of vertices and count of flips: the same bits follow.
+///
+/// # Safety
+/// `subject` must end with a NUL; `membrane` must be alive and used by no other thread; `corners` must hold three
+/// values for each of its triangles, `order` a value for each of its vertices.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Membrane_restore(
+    subject: *const c_char,
+    membrane: *mut Membrane,
+    corners: *const c_int,
+    order: *const u32,
+    flips: i64,
+) -> c_int {
+    guarded(unsafe { text(subject) }, || {
+        let membrane = unsafe { &mut *membrane };
+        let (count, vertices) = (membrane.mesh().triangles().len(), membrane.mesh().num_vertices());
+        let corners = unsafe { slice(corners.cast::<[u32; 3]>(), count) };
+        let order = unsafe { slice(order, vertices) };
+        let triangles = corners.to_vec();
+        membrane.restore(&Connectivity { triangles, order: order.to_vec(), flips: flips as u64 })
+    })
+}
+
+/// A number below 2⁵³ that tells the present triangles from any others: 0 if they are `corners`.
+///
+/// # Safety
+/// `membrane` must be alive; `corners` must hold three values for each of its triangles.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Membrane_fingerprint(
+    membrane: *const Membrane,
+    corners: *const c_int,
+) -> f64 {
+    let mesh = unsafe { &*membrane }.mesh();
+    let initial = unsafe { slice(corners.cast::<[u32; 3]>(), mesh.triangles().len()) };
+    crate::membrane::fingerprint(mesh, initial)
+}

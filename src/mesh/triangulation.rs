@@ -1,0 +1,390 @@
+//! Connectivity as state: a closed triangulated surface whose edges can be flipped in place.
+//!
+//! Half-edge h = 3 t + k is the passage of triangle t along its side k, from its corner k to its corner k + 1. Its
+//! **twin** is the passage of the neighbour along the same edge, the other way. Rings, edges and degrees are
+//! walked or counted from triangles and twins; nothing else is stored, so a flip rewrites two triangles and
+//! six twins and costs the same however large the mesh is.
+
+use super::topology::Topology;
+use crate::error::{Error, Result};
+
+/// A closed, oriented 2-manifold triangulation whose connectivity may change.
+///
+/// Vertices are numbered locally as in [`Topology`], from which one is made.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Triangulation {
+    /// The user's index of each local vertex, ascending.
+    particles: Vec<u32>,
+    /// The corners of each triangle, counter-clockwise seen from outside.
+    triangles: Vec<[u32; 3]>,
+    /// The twins of the half-edges of each triangle.
+    twins: Vec<[u32; 3]>,
+    /// How many edges end at each vertex.
+    degrees: Vec<u32>,
+    /// A half-edge that begins at each vertex.
+    leaving: Vec<u32>,
+}
+
+/// Which way the edge of a quadrilateral turns in a flip. Each undoes the other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Turn {
+    /// Counter-clockwise seen from outside.
+    Left,
+    /// Clockwise.
+    Right,
+}
+
+/// The two triangles at an edge:
+///
+/// ```text
+///            k
+///          /   \
+///        /   A   \          A, of half-edge h, runs from i to j;
+///      i ────────▶ j        B, of its twin, from j to i
+///        \   B   /
+///          \   /
+///            l
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Quad {
+    /// The half-edge h and its twin.
+    pub halves: [u32; 2],
+    /// i, j, k, l.
+    pub vertices: [u32; 4],
+}
+
+impl Quad {
+    /// A and B.
+    #[inline]
+    pub fn triangles(&self) -> [usize; 2] {
+        self.halves.map(|half| half as usize / 3)
+    }
+}
+
+/// The half-edge after one in its triangle.
+#[inline(always)]
+pub fn next(half: u32) -> u32 {
+    if half % 3 == 2 { half - 2 } else { half + 1 }
+}
+
+/// The half-edge before one in its triangle.
+#[inline(always)]
+pub fn previous(half: u32) -> u32 {
+    if half % 3 == 0 { half + 2 } else { half - 1 }
+}
+
+impl Triangulation {
+    /// The connectivity that a validated mesh starts with.
+    pub fn new(topology: &Topology) -> Self {
+        let mut twins = vec![[0; 3]; topology.triangles.len()];
+        for (index, edge) in topology.edges.iter().enumerate() {
+            let [a, b] = edge.triangles.map(|triangle| {
+                let sides = &topology.triangle_edges[triangle as usize];
+                let side = sides.iter().position(|side| *side as usize == index);
+                3 * triangle + side.expect("an edge is a side of its triangles") as u32
+            });
+            twins.as_flattened_mut()[a as usize] = b;
+            twins.as_flattened_mut()[b as usize] = a;
+        }
+        let vertices = 0..topology.num_vertices();
+        Self {
+            particles: topology.particles.clone(),
+            triangles: topology.triangles.clone(),
+            twins,
+            degrees: vertices.clone().map(|vertex| topology.ring(vertex).len() as u32).collect(),
+            leaving: vertices.map(|vertex| topology.corners[topology.ring(vertex).start]).collect(),
+        }
+    }
+
+    /// The same surface with other connectivity: triangles of particles, as [`Topology::new`] takes them.
+    ///
+    /// # Errors
+    /// Those of [`Topology::new`]; another number of triangles, other particles, or other parts.
+    pub fn with_triangles(&self, triangles: &[[i64; 3]]) -> Result<Self> {
+        if triangles.len() != self.triangles.len() {
+            return Err(Error::Contract(format!(
+                "has {} triangles, got {}; connectivity changes, but not how many triangles there are",
+                self.triangles.len(),
+                triangles.len()
+            )));
+        }
+        let last = self.particles.last().map_or(0, |last| *last as usize + 1);
+        let topology = Topology::new(triangles, last)?;
+        if topology.particles != self.particles {
+            let missing = self.particles.iter().find(|p| !topology.particles.contains(p));
+            return Err(Error::Contract(match missing {
+                Some(particle) => format!(
+                    "the new triangles leave out particle {particle}; they must have the same particles as before"
+                ),
+                None => "the new triangles have other particles than before".to_owned(),
+            }));
+        }
+        Ok(Self::new(&topology))
+    }
+
+    /// The user's index of each vertex, ascending.
+    pub fn particles(&self) -> &[u32] {
+        &self.particles
+    }
+
+    /// The corners of all triangles, in local numbers.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// The twins of the half-edges of all triangles.
+    pub fn twins(&self) -> &[[u32; 3]] {
+        &self.twins
+    }
+
+    /// How many edges end at each vertex.
+    pub fn degrees(&self) -> &[u32] {
+        &self.degrees
+    }
+
+    /// The user's indices of the corners of a triangle.
+    pub fn particles_of(&self, triangle: usize) -> [u32; 3] {
+        self.triangles[triangle].map(|vertex| self.particles[vertex as usize])
+    }
+
+    /// Number of vertices.
+    pub fn num_vertices(&self) -> usize {
+        self.particles.len()
+    }
+
+    /// Number of edges; flips keep it.
+    pub fn num_edges(&self) -> usize {
+        3 * self.triangles.len() / 2
+    }
+
+    /// The vertex that a half-edge begins at.
+    #[inline(always)]
+    pub fn origin(&self, half: u32) -> u32 {
+        self.triangles.as_flattened()[half as usize]
+    }
+
+    /// The same edge in the neighbour.
+    #[inline(always)]
+    pub fn twin(&self, half: u32) -> u32 {
+        self.twins.as_flattened()[half as usize]
+    }
+
+    /// The half-edges that leave a vertex, counter-clockwise from the one of the lowest number, so that the
+    /// order depends on the triangles only and not on how they came about. They replace what is in `ring`.
+    #[inline]
+    pub fn ring(&self, vertex: u32, ring: &mut Vec<u32>) {
+        ring.clear();
+        let start = self.leaving[vertex as usize];
+        let (mut half, mut lowest, mut place) = (start, start, 0);
+        let degree = self.degrees[vertex as usize] as usize;
+        ring.resize(degree, 0);
+        for (step, slot) in ring.iter_mut().enumerate() {
+            place = if half < lowest { step } else { place };
+            lowest = lowest.min(half);
+            *slot = half;
+            half = self.after(half);
+        }
+        ring.rotate_left(place);
+    }
+
+    /// The next half-edge counter-clockwise that leaves the same vertex.
+    #[inline(always)]
+    pub fn after(&self, half: u32) -> u32 {
+        self.twin(previous(half))
+    }
+
+    /// Each edge once, by the lower of its two half-edges, in ascending order.
+    pub fn edges(&self) -> impl Iterator<Item = u32> {
+        let twins = self.twins.as_flattened().iter().enumerate();
+        twins.filter(|(half, twin)| *half < **twin as usize).map(|(half, _)| half as u32)
+    }
+
+    /// Whether two vertices are the ends of an edge.
+    #[inline]
+    pub fn are_joined(&self, a: u32, b: u32) -> bool {
+        let (here, there) =
+            if self.degrees[a as usize] <= self.degrees[b as usize] { (a, b) } else { (b, a) };
+        let start = self.leaving[here as usize];
+        let mut half = start;
+        loop {
+            if self.origin(next(half)) == there {
+                return true;
+            }
+            half = self.after(half);
+            if half == start {
+                return false;
+            }
+        }
+    }
+
+    /// The two triangles at the edge of a half-edge.
+    #[inline(always)]
+    pub fn quad(&self, half: u32) -> Quad {
+        let twin = self.twin(half);
+        let vertices = [
+            self.origin(half),
+            self.origin(twin),
+            self.origin(previous(half)),
+            self.origin(previous(twin)),
+        ];
+        Quad { halves: [half, twin], vertices }
+    }
+
+    /// Replace the edge ij of a quadrilateral by kl. The caller has made sure that k and l are not joined, and that
+    /// i and j have four neighbours or more.
+    ///
+    /// Turned left, A keeps i and k and takes l for j; B keeps j and l and takes k for i. Turned right, A keeps j
+    /// and k and takes l for i; B keeps i and l and takes k for j. The other corners stay at their places in the
+    /// triangle, and kl is the side after or before the one that ij was, the half-edge that [`Self::flipped`]
+    /// names. So triangles keep their indices, and a flip there with the other turn restores every number.
+    pub fn flip(&mut self, quad: &Quad, turn: Turn) {
+        let [a, b] = quad.halves;
+        let [i, j, k, l] = quad.vertices;
+        // The sides that A and B give to each other, and the corners at which they take another vertex.
+        let (lost, taking) = match turn {
+            Turn::Left => ([next(a), next(b)], [next(a), next(b)]),
+            Turn::Right => ([previous(a), previous(b)], [a, b]),
+        };
+        let outside = lost.map(|half| self.twin(half));
+        let corners = self.triangles.as_flattened_mut();
+        let left_behind = taking.map(|half| corners[half as usize]);
+        corners[taking[0] as usize] = l;
+        corners[taking[1] as usize] = k;
+        // Where ij was is now the side that the other triangle has given, and kl is where that side has been.
+        let twins = self.twins.as_flattened_mut();
+        for (one, other) in [(lost[0], lost[1]), (b, outside[0]), (a, outside[1])] {
+            twins[one as usize] = other;
+            twins[other as usize] = one;
+        }
+        for (vertex, gone, instead) in [
+            (left_behind[0], taking[0], if turn == Turn::Left { b } else { next(b) }),
+            (left_behind[1], taking[1], if turn == Turn::Left { a } else { next(a) }),
+        ] {
+            let leaving = &mut self.leaving[vertex as usize];
+            if *leaving == gone {
+                *leaving = instead;
+            }
+        }
+        self.degrees[i as usize] -= 1;
+        self.degrees[j as usize] -= 1;
+        self.degrees[k as usize] += 1;
+        self.degrees[l as usize] += 1;
+    }
+
+    /// The half-edge of the new edge in triangle A after a flip of a half-edge.
+    pub fn flipped(half: u32, turn: Turn) -> u32 {
+        match turn {
+            Turn::Left => next(half),
+            Turn::Right => previous(half),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_meshes::{icosahedron, noise};
+
+    fn start() -> Triangulation {
+        Triangulation::new(&Topology::new(&icosahedron().1, 12).unwrap())
+    }
+
+    /// What a validation from nothing says of the same triangles.
+    fn rebuilt(mesh: &Triangulation) -> Triangulation {
+        let triangles: Vec<_> = mesh.triangles().iter().map(|t| t.map(i64::from)).collect();
+        Triangulation::new(&Topology::new(&triangles, mesh.num_vertices()).unwrap())
+    }
+
+    fn may_flip(mesh: &Triangulation, quad: &Quad) -> bool {
+        let [i, j, k, l] = quad.vertices;
+        let degree = |vertex: u32| mesh.degrees()[vertex as usize];
+        degree(i) > 3 && degree(j) > 3 && !mesh.are_joined(k, l)
+    }
+
+    #[test]
+    fn twins_are_the_same_edge_the_other_way() {
+        let mesh = start();
+        for half in 0..60 {
+            let twin = mesh.twin(half);
+            assert_eq!(mesh.twin(twin), half);
+            assert_eq!(mesh.origin(twin), mesh.origin(next(half)));
+        }
+        assert_eq!(mesh.edges().count(), mesh.num_edges());
+    }
+
+    #[test]
+    fn many_flips_leave_a_valid_surface() {
+        let (mut mesh, mut random) = (start(), noise(3));
+        let (mut flips, mut ring) = (0, Vec::new());
+        for _ in 0..5000 {
+            let half = ((random() + 1.0) * 30.0) as u32;
+            let turn = if random() > 0.0 { Turn::Left } else { Turn::Right };
+            let quad = mesh.quad(half);
+            if !may_flip(&mesh, &quad) {
+                continue;
+            }
+            mesh.flip(&quad, turn);
+            flips += 1;
+            let [_, _, k, l] = quad.vertices;
+            assert!(mesh.are_joined(k, l));
+            let expected = rebuilt(&mesh);
+            assert_eq!(mesh.twins(), expected.twins());
+            assert_eq!(mesh.degrees(), expected.degrees());
+            for vertex in 0..12 {
+                mesh.ring(vertex, &mut ring);
+                assert!(ring.iter().all(|&half| mesh.origin(half) == vertex));
+                assert!(ring.iter().all(|half| *half >= ring[0]));
+                for (here, there) in ring.iter().zip(ring.iter().cycle().skip(1)) {
+                    assert_eq!(mesh.origin(previous(*here)), mesh.origin(next(*there)));
+                }
+            }
+        }
+        assert!(flips > 1000, "{flips}");
+    }
+
+    #[test]
+    fn a_flip_and_its_reverse_restore_every_number() {
+        let (mut mesh, mut random) = (start(), noise(4));
+        for _ in 0..2000 {
+            let half = ((random() + 1.0) * 30.0) as u32;
+            let quad = mesh.quad(half);
+            if !may_flip(&mesh, &quad) {
+                continue;
+            }
+            for (turn, back) in [(Turn::Left, Turn::Right), (Turn::Right, Turn::Left)] {
+                let mut moved = mesh.clone();
+                moved.flip(&quad, turn);
+                let reverse = moved.quad(Triangulation::flipped(half, turn));
+                let mut ends = [reverse.vertices[0], reverse.vertices[1]];
+                ends.sort_unstable();
+                let mut tips = [quad.vertices[2], quad.vertices[3]];
+                tips.sort_unstable();
+                assert_eq!(ends, tips);
+                moved.flip(&reverse, back);
+                assert_eq!(moved.triangles(), mesh.triangles());
+                assert_eq!(moved.twins(), mesh.twins());
+                assert_eq!(moved.degrees(), mesh.degrees());
+                // From the other side the move is the same.
+                let (mut one, mut other) = (mesh.clone(), mesh.clone());
+                one.flip(&quad, turn);
+                other.flip(&mesh.quad(quad.halves[1]), turn);
+                assert_eq!(one.triangles(), other.triangles());
+                assert_eq!(one.twins(), other.twins());
+            }
+            mesh.flip(&quad, if random() > 0.0 { Turn::Left } else { Turn::Right });
+        }
+    }
+
+    #[test]
+    fn other_triangles_must_be_of_the_same_surface() {
+        let mesh = start();
+        let good = icosahedron().1;
+        assert_eq!(mesh.with_triangles(&good).unwrap().triangles(), mesh.triangles());
+        assert!(mesh.with_triangles(&good[1..]).is_err());
+        let mut moved = mesh.clone();
+        let quad = moved.quad(0);
+        moved.flip(&quad, Turn::Left);
+        let triangles: Vec<_> = moved.triangles().iter().map(|t| t.map(i64::from)).collect();
+        assert_eq!(mesh.with_triangles(&triangles).unwrap().twins(), moved.twins());
+    }
+}

@@ -1,0 +1,9 @@
+//! Monte Carlo moves of a membrane: what they propose, and what that costs in energy.
+//!
+//! [`local`] computes the energy of any terms around a change, from the formulas that the evaluators use;
+//! [`flips`] are moves of the connectivity.
+
+pub mod flips;
+pub mod local;
+
+pub use flips::{FlipRules, FlipState};
