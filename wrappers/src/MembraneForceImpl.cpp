@@ -12,7 +12,7 @@ using std::string;
 using std::vector;
 
 MembraneForceImpl::MembraneForceImpl(const MembraneForce& owner)
-    : CustomCPPForceImpl(owner), owner(owner), term(), inPlace(false), initialGroup(owner.getForceGroup()) {
+    : CustomCPPForceImpl(owner), owner(owner), term(), inPlace(false), group(owner.getForceGroup()) {
     // OpenMM asks for the default parameters before it initialises the force.
     for (int i = 0; i < owner.getNumParameters(); i++)
         contextParameters.push_back(owner.getContextParameter(owner.getParameterName(i)));
@@ -75,7 +75,6 @@ vector<string> MembraneForceImpl::getKernelNames() {
 }
 
 bool MembraneForceImpl::isInGroups(int groups) const {
-    int group = inPlace ? owner.getForceGroup() : initialGroup;
     return (groups & (1 << group)) != 0;
 }
 
