@@ -14,6 +14,7 @@ mod potentials;
 
 pub use membrane::*;
 pub use mesh::*;
+pub use plugin::Helfrich_register;
 pub use plugin::*;
 pub use potentials::*;
 

@@ -1,4 +1,5 @@
 #include "MembraneForceImpl.h"
+#include "PlatformChoice.h"
 
 #include <openmm/System.h>
 #include <openmm/reference/ReferencePlatform.h>
@@ -26,6 +27,7 @@ MembraneForceImpl::~MembraneForceImpl() {
 }
 
 void MembraneForceImpl::initialize(ContextImpl& context) {
+    PlatformChoice::end();
     inPlace = dynamic_cast<const ReferencePlatform*>(&context.getPlatform()) != nullptr;
     if (!inPlace && !derivatives.empty())
         throw OpenMMException(owner.getTypeName() +
@@ -70,6 +72,8 @@ void MembraneForceImpl::copyValues() {
 }
 
 vector<string> MembraneForceImpl::getKernelNames() {
+    // OpenMM asks for this before it chooses a platform.
+    PlatformChoice::begin(*this);
     // On Reference and CPU the kernel is not used, but both have it.
     return CustomCPPForceImpl::getKernelNames();
 }

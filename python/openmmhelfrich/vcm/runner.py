@@ -54,7 +54,8 @@ class Run:
     folder : str or Path, optional
         Where outputs go. Default: a folder with the project's name in the present one.
     platform : str, optional
-        OpenMM platform. Default: that of the run to resume, that of the file, or Reference.
+        OpenMM platform. Default: that of the run to resume, that of the file, or the fastest
+        one for the System, see `platforms.choose`.
     seed : int
         In place of the file's, if not 0.
     resume : bool
@@ -114,8 +115,7 @@ class Run:
                 "a mesh has changed since; give another folder with --out"
             )
         try:
-            platform = platform or cfg.platform or build.DEFAULT_PLATFORM
-            self.simulation = build.unprepared_simulation(cfg, platform)
+            self.simulation = build.unprepared_simulation(cfg, platform or cfg.platform)
         except openmm.OpenMMException as reason:
             raise RunError(f"OpenMM cannot start: {reason}") from None
         self.outputs = Outputs(cfg, self.folder, self._options["xtc"], self._options["ply"])
