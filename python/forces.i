@@ -74,6 +74,13 @@ using namespace HelfrichPlugin;
 %include "OpenMMHelfrich.h"
 HELFRICH_FORCES(MEMBRANE_FORCE)
 
+/* For platforms.py: why a System is not one for the platform Helfrich, or an empty text. */
+%inline %{
+std::string _why_not_helfrich(const OpenMM::System& system, const OpenMM::Integrator& integrator) {
+    return Helfrich_Platform_check(&system, &integrator) == 0 ? "" : HelfrichPlugin::lastError();
+}
+%}
+
 %pythoncode %{
 from openmmhelfrich import _arguments
 for _class in MembraneForce.__subclasses__():

@@ -17,6 +17,7 @@ mod records;
 pub use membrane::*;
 pub use mesh::*;
 pub use moves::*;
+pub use plugin::Helfrich_register;
 pub use plugin::*;
 pub use potentials::*;
 pub use records::*;

@@ -396,7 +396,7 @@ class TestRun:
 
     def test_name_and_seed_of_their_own(self, write, tmp_path):
         result = invoke("run", write(SMALL), "--out", tmp_path / "out", "--steps", 0, "--seed", 9)
-        assert "own: 1 membrane(s), 42 vertices, platform Reference, seed 9" in result.output
+        assert "own: 1 membrane(s), 42 vertices, platform Helfrich, seed 9" in result.output
 
 
 class TestDocuments:

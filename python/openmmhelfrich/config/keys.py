@@ -75,7 +75,7 @@ KEYS: tuple[Key, ...] = (
     Key("simulation", "seed", integer(0, _MAX_SEED), 0,
         "Of all random numbers; 0 draws one, which is printed and kept."),
     Key("simulation", "platform", text, None,
-        "OpenMM platform, unless --platform names another. Default: Reference."),
+        "OpenMM platform, unless --platform names another. Default: the fastest."),
     Key("simulation", "minimise", boolean, False, "Minimise the energy before the first step."),
     Key("simulation", "thermal_velocities", boolean, True,
         "Draw the first velocities at the temperature; otherwise they are zero."),

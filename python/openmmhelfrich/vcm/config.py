@@ -177,7 +177,8 @@ class Config:
         Parameters
         ----------
         platform : openmm.Platform or str, optional
-            Default: the one that OpenMM prefers. `Precision` is handed to platforms that have it.
+            Default: the fastest one for it, see `platforms.choose`. `Precision` is handed to
+            platforms that have it.
         """
         return build.simulation(self, platform)
 

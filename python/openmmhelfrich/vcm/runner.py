@@ -35,7 +35,8 @@ class Run:
     folder : str or Path, optional
         Where outputs go. Default: a folder with the project's name in the present one.
     platform : str, optional
-        OpenMM platform. Default: that of the run to resume, that of the file, or Reference.
+        OpenMM platform. Default: that of the run to resume, that of the file, or the fastest
+        one for the System, see `platforms.choose`.
     seed : int
         In place of the file's, if not 0.
     resume : bool
@@ -114,8 +115,7 @@ class Run:
                 "a mesh has changed since; give another folder with --out"
             )
         try:
-            platform = platform or cfg.platform or build.DEFAULT_PLATFORM
-            self.simulation = build.unprepared_simulation(cfg, platform)
+            self.simulation = build.unprepared_simulation(cfg, platform or cfg.platform)
             if saved is None:
                 build.prepare(cfg, self.context)
         except openmm.OpenMMException as reason:

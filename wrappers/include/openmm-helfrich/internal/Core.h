@@ -47,6 +47,7 @@ struct HelfrichContribution {
 int64_t Helfrich_lastError(char* buffer, int64_t size);
 void helfrich_setLastError(const char* message);
 const char* Helfrich_openmmVersion();
+void Helfrich_register();
 int Helfrich_Potential_find(const char* potential, int* index);
 int Helfrich_Potential_parameter(const char* potential, int index, HelfrichParameterInfo* info);
 int Helfrich_Potential_form(const char* potential, int index, const char** what, const char** name);
@@ -64,6 +65,11 @@ void Helfrich_Membrane_setThreads(HelfrichMembrane* membrane, int threads);
 int Helfrich_Membrane_evaluate(const char* subject, HelfrichMembrane* membrane, const HelfrichTerm* terms,
                                int64_t numTerms, int64_t numParticles, const double* positions,
                                HelfrichContribution* contributions, double* forces);
+/**
+ * Whether an OpenMM::System under an OpenMM::Integrator is one for the platform Helfrich (PlatformChoice.h): 0, or
+ * else 1, and the last error says why not.
+ */
+int Helfrich_Platform_check(const void* system, const void* integrator);
 void* Helfrich_createImpl(const void* force);
 }
 
