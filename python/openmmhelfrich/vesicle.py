@@ -20,6 +20,7 @@ from .forces import (
     DihedralForce,
     EnclosedVolumeForce,
     MembraneForce,
+    MonteCarloBondFlip,
     PlaquetteAreaForce,
     SurfaceAreaForce,
     TriangleAreaForce,
@@ -33,6 +34,20 @@ KBT = theory.BOLTZMANN * 300
 
 _ENERGY = unit.kilojoule_per_mole
 _NUM_GROUPS = 32
+# The paper's, K.
+_TEMPERATURE = 300.0
+# Steps from one round of flips to the next, where only a rate is given.
+_FLIP_STEPS = 10
+_FLIP_ARGUMENTS = (
+    "temperature",
+    "frequency",
+    "attemptsPerEdge",
+    "minDegree",
+    "maxDegree",
+    "maxEdgeLength",
+    "randomNumberSeed",
+    "ensemble",
+)
 
 
 class Vesicle:
@@ -87,6 +102,11 @@ class Vesicle:
     min_triangle_area : float or Quantity
         Area below which a `TriangleAreaRepulsionForce` of strength ε repels, nm². Default 0:
         without.
+    flips : float or mapping, optional
+        Make the membrane fluid: attempts to flip a bond for each edge and time step (0.01 is a good
+        start), or the arguments of a `MonteCarloBondFlip` after the triangles by their names, with
+        ``randomNumberSeed`` and ``ensemble`` too. The temperature is that of the integrator in
+        `simulation`, or else 300 K, unless it is given. Default: neighbours stay neighbours.
 
     Raises
     ------
@@ -129,6 +149,7 @@ class Vesicle:
         triangle_area_modulus=0.0,
         plaquette_stiffness=0.0,
         min_triangle_area=0.0,
+        flips=None,
     ):
         nm = unit.nanometer
         if not isinstance(mesh, Mesh):
@@ -164,9 +185,11 @@ class Vesicle:
         else:
             raise ValueError("Vesicle: give either volume or reduced_volume, not both")
         self._volume = checked_number("volume", volume, nm**3, zero=False)
+        self._flips = None if flips is None else _checked_flips(flips)
         self._placement = None
         # The forces refuse a scheme or form that does not exist: now, not when they are used.
         self._forces(0)
+        self._mover(0)
 
     def __repr__(self):
         return (
@@ -190,6 +213,10 @@ class Vesicle:
     scheme = property(lambda self: self._scheme, doc="Bending scheme of `BendingForce`.")
     spontaneous_curvature = property(
         lambda self: self._spontaneous_curvature, doc="C0, 1/nm, a number or one for each vertex."
+    )
+    flips = property(
+        lambda self: None if self._flips is None else dict(self._flips),
+        doc="Arguments of the `MonteCarloBondFlip` by name, or None.",
     )
     area = property(lambda self: self._area, doc="Target area A0, nm².")
     volume = property(lambda self: self._volume, doc="Target volume V0, nm³.")
@@ -282,7 +309,10 @@ class Vesicle:
             system.addParticle(self._mass)
         for force in forces.values():
             system.addForce(force)
-        placement = Placement(system, offset, self._mesh.num_vertices, forces)
+        mover = self._mover(offset)
+        if mover is not None:
+            system.addForce(mover)
+        placement = Placement(system, offset, self._mesh.num_vertices, forces, mover)
         self._placement = placement
         return placement
 
@@ -317,6 +347,10 @@ class Vesicle:
             platform = openmm.Platform.getPlatformByName(platform)
         simulation = app.Simulation(self._mesh.topology(), system, integrator, platform)
         simulation.context.setPositions(self._mesh.vertices)
+        if self._flips is not None and "temperature" not in self._flips:
+            # Integrators without a bath leave the flips' own.
+            temperature = getattr(integrator, "getTemperature", lambda: _TEMPERATURE)()
+            simulation.context.setParameter(MonteCarloBondFlip.Temperature(), temperature)
         return simulation
 
     @property
@@ -352,6 +386,19 @@ class Vesicle:
         """
         return self.placement.energies(context)
 
+    def _mover(self, offset):
+        """The mover of bonds for particles that start at `offset`, or None."""
+        if self._flips is None:
+            return None
+        arguments = {"temperature": _TEMPERATURE, **self._flips}
+        seed = arguments.pop("randomNumberSeed", 0)
+        ensemble = arguments.pop("ensemble", MonteCarloBondFlip.Canonical)
+        mover = MonteCarloBondFlip(self._mesh, **arguments, offset=offset)
+        mover.setName("flips")
+        mover.setRandomNumberSeed(seed)
+        mover.setEnsemble(ensemble)
+        return mover
+
     def _forces(self, offset):
         """The forces by name, for particles that start at `offset`."""
         mesh, at = self._mesh, {"offset": offset}
@@ -384,6 +431,19 @@ class Vesicle:
         return forces
 
 
+def _checked_flips(flips):
+    """The arguments of the mover by name."""
+    if not isinstance(flips, Mapping):
+        rate = checked_number("flips", flips, unit.dimensionless)
+        return {"frequency": _FLIP_STEPS, "attemptsPerEdge": _FLIP_STEPS * rate}
+    for name in flips:
+        if name not in _FLIP_ARGUMENTS:
+            raise ValueError(
+                f"Vesicle: flips has no argument {name!r}; known are {', '.join(_FLIP_ARGUMENTS)}"
+            )
+    return dict(flips)
+
+
 @dataclass(frozen=True)
 class Placement:
     """Where one vesicle is in a System, and the forces that act on it."""
@@ -396,6 +456,8 @@ class Placement:
     """Number of particles."""
     forces: Mapping[str, MembraneForce]
     """The forces by name: "area", "volume", "bending", "heights", and those switched on."""
+    flips: MonteCarloBondFlip | None = None
+    """What flips bonds, if anything does."""
 
     area = property(lambda self: self.forces["area"], doc="The `SurfaceAreaForce`.")
     volume = property(lambda self: self.forces["volume"], doc="The `EnclosedVolumeForce`.")
@@ -406,6 +468,10 @@ class Placement:
     def particles(self):
         """Indices of the particles, a range."""
         return range(self.offset, self.offset + self.num_vertices)
+
+    def mesh(self, context):
+        """The `Mesh` as it is now in a Context of the System: positions and triangles."""
+        return Mesh.from_context(context, self.area)
 
     def energies(self, context):
         """Energy per term in a Context of the System, a dict of float, kJ/mol.

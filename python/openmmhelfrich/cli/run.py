@@ -45,6 +45,14 @@ __all__ = ["run"]
 @click.option("--ply", "frames", flag_value="ply", help="Short for --frames ply.")
 @click.option("--no-ply", "frames", flag_value="none", help="Short for --frames none.")
 @click.option(
+    "--flips",
+    type=click.FloatRange(0, 100),
+    default=0.0,
+    metavar="RATE",
+    help="Make the membranes of a VCM configuration fluid: attempts to flip a bond for each edge and "
+    "time step, such as 0.01. TOML has a key of its own.",
+)
+@click.option(
     "--checkpoint",
     "checkpoint_seconds",
     type=click.FloatRange(min=0),

@@ -13,6 +13,7 @@ from .values import (
     choice,
     choices,
     energy,
+    flips,
     integer,
     mode,
     number,
@@ -123,6 +124,10 @@ KEYS: tuple[Key, ...] = (
         "Stiffness that keeps vertex areas equal, kJ/mol. Default: 0, none."),
     Key("vesicle", "min_triangle_area", number(least=0), None,
         "Triangle area below which triangles repel, nm². Default: 0, none."),
+    Key("vesicle", "flips", flips, None,
+        "Flip bonds, so that the membrane is fluid: attempts per edge and step, such as 0.01, or a "
+        "table `{ attempts_per_edge = 0.1, frequency = 10, min_degree = 3, max_degree = 10, "
+        "max_edge_length = 0, temperature = 300 }`; see [flips.md](flips.md). Default: none."),
     Key("vesicle.mesh", "file", text, None,
         "A mesh file, beside the configuration: PLY, OBJ, STL, OFF, VTK, VTP, VTU, Gmsh."),
     Key("vesicle.mesh", "triangulate", boolean, False,

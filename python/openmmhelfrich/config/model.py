@@ -46,6 +46,7 @@ class Configuration(vcm.Config):
     def __init__(self, document: Document, seed: int = 0):
         self.path = document.path
         self.vcm_compatible = False
+        self.flips = 0.0
         for name in document.data:
             if name not in _TABLES:
                 hint = nearest(name, _TABLES)
@@ -79,6 +80,11 @@ class Configuration(vcm.Config):
         self.system()
 
     @property
+    def flows(self) -> bool:
+        """Whether bonds flip in any vesicle."""
+        return any(membrane.vesicle.flips is not None for membrane in self.membranes)
+
+    @property
     def step_size(self) -> float:
         """Time step, ps."""
         return self._step_size
@@ -107,6 +113,11 @@ class Configuration(vcm.Config):
             groups = [used + i if apart else kinds.index(kind) for i, kind in enumerate(names)]
             used += len(names)
             placement = membrane.vesicle.add_to(result, groups)
+            mover = placement.flips
+            if mover is not None:
+                mover.setRandomNumberSeed(self.seed)
+                if "temperature" not in membrane.vesicle.flips:
+                    mover.setDefaultTemperature(self.temperature)
             for kind, group in zip(names, groups, strict=True):
                 alone = len(self.membranes) == 1 or not apart
                 term = kind if alone else f"{kind} {membrane.label}"
@@ -164,14 +175,23 @@ def read(path, *, seed: int = 0) -> Configuration:
     return Configuration(Document(path), seed)
 
 
-def read_any(path, vcm_compatible: bool = False, *, ignore_unknown: bool = False, seed: int = 0):
+def read_any(
+    path,
+    vcm_compatible: bool = False,
+    *,
+    ignore_unknown: bool = False,
+    seed: int = 0,
+    flips: float = 0.0,
+):
     """Read a configuration of either kind: TOML if the name ends in ``.toml``, or else VCM's.
 
     Arguments and errors are those of `vcm.read`; options that only VCM's have are refused with
     TOML.
     """
     if Path(path).suffix.lower() != ".toml":
-        return vcm.read(path, vcm_compatible, ignore_unknown=ignore_unknown, seed=seed)
+        return vcm.read(path, vcm_compatible, ignore_unknown=ignore_unknown, seed=seed, flips=flips)
+    if flips:
+        raise ConfigError(f"{path}:1: write flips = {flips:g} in [[vesicle]], in place of --flips")
     for name, given in (("vcm_compatible", vcm_compatible), ("ignore_unknown", ignore_unknown)):
         if given:
             raise ConfigError(f"{path}:1: {name} is for VCM's configurations, and this is TOML")

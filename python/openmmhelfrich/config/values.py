@@ -19,6 +19,7 @@ __all__ = [
     "choice",
     "choices",
     "energy",
+    "flips",
     "integer",
     "mode",
     "number",
@@ -156,6 +157,33 @@ def mode(value, kT):
         raise ValueError(f"expected {{ l = …, m = …, amplitude = … }}, got {value!r}")
     l = integer(0)(value["l"], kT)
     return l, integer(-l, l)(value["m"], kT), _finite(value["amplitude"])
+
+
+#: The keys of ``flips``, with the arguments of `MonteCarloBondFlip` that they are.
+_FLIPS = {
+    "temperature": ("temperature", number(above=0)),
+    "frequency": ("frequency", integer(0)),
+    "attempts_per_edge": ("attemptsPerEdge", number(least=0)),
+    "min_degree": ("minDegree", integer(3)),
+    "max_degree": ("maxDegree", integer(3)),
+    "max_edge_length": ("maxEdgeLength", number(least=0)),
+}
+
+
+def flips(value, kT):
+    """Attempts per edge and step, or a table of what `MonteCarloBondFlip` takes."""
+    if not isinstance(value, dict):
+        return number(least=0)(value, kT)
+    arguments = {}
+    for name, given in value.items():
+        if name not in _FLIPS:
+            raise ValueError(f"there is no {name!r} in flips; {nearest(name, _FLIPS)}")
+        argument, read = _FLIPS[name]
+        try:
+            arguments[argument] = read(given, kT)
+        except ValueError as reason:
+            raise ValueError(f"{name}: {reason}") from None
+    return arguments
 
 
 def table(value, kT):

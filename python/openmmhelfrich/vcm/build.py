@@ -15,7 +15,7 @@ import openmm
 from openmm import app, unit
 
 from .. import platforms
-from . import interactions, membrane_forces, springs
+from . import connectivity, interactions, membrane_forces, springs
 
 if TYPE_CHECKING:
     from .config import Config
@@ -98,6 +98,8 @@ def system(cfg: Config, terms: tuple[Term, ...]) -> openmm.System:
         force.setName(term.name)
         force.setForceGroup(term.group)
         result.addForce(force)
+    if cfg.flips:
+        connectivity.add_movers(cfg, result)
     _add_box(cfg, result)
     if cfg.general["CMMotionRemoverStep"]:
         result.addForce(openmm.CMMotionRemover(cfg.general["CMMotionRemoverStep"]))

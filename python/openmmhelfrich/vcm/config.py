@@ -25,6 +25,8 @@ __all__ = ["Config", "Membrane", "read"]
 
 # VCM's value of the gas constant, kJ/mol/K, from before the SI of 2019.
 _VCM_BOLTZMANN = 0.008314459920816468
+# What MonteCarloBondFlip takes, over the steps between two rounds.
+_MAX_FLIPS = 100
 # The largest seed that OpenMM's generators take.
 _MAX_SEED = 2**31 - 1
 
@@ -71,6 +73,8 @@ class Config:
         Of all random numbers, above 0: the file's, or one drawn if that is 0.
     platform : str or None
         OpenMM platform for a run that is told no other; VCM's files name none.
+    flips : float
+        Attempts to flip a bond for each edge and time step; 0 for none.
     writes : dict
         What a run that is not told writes: "xtc", a bool, and "frames", one of `frames.FRAMES`.
     """
@@ -78,8 +82,17 @@ class Config:
     platform: str | None = None
     writes: Mapping[str, bool | str] = MappingProxyType({"xtc": True, "frames": "none"})
 
-    def __init__(self, path, sections: list[Section], compatible: bool, ignore: bool, seed: int):
+    def __init__(
+        self,
+        path,
+        sections: list[Section],
+        compatible: bool,
+        ignore: bool,
+        seed: int,
+        flips: float = 0.0,
+    ):
         self.path = Path(path)
+        self.flips = flips
         self.vcm_compatible = compatible
         found = [section for section in sections if section.kind == GENERAL]
         self.general = Settings(found[0] if found else None, GENERAL, ignore)
@@ -97,6 +110,8 @@ class Config:
         self.table = interactions.read_table(tables[0] if tables else None, len(membranes))
         # What cannot be built shall be refused when the file is read, with its line.
         self._plan = build.plan(self)
+        if flips:
+            self.system()
 
     def __repr__(self) -> str:
         return f"<{self.name}: {len(self.membranes)} membranes, {self.num_particles} particles>"
@@ -152,6 +167,11 @@ class Config:
         return np.concatenate(rows)
 
     @property
+    def flows(self) -> bool:
+        """Whether bonds flip in any membrane."""
+        return self.flips > 0
+
+    @property
     def terms(self) -> dict[str, int]:
         """The potentials of the System by name, with the force group of each."""
         return {term.name: term.group for term in self._plan}
@@ -187,7 +207,14 @@ class Config:
         return build.energies(self.terms, context)
 
 
-def read(path, vcm_compatible: bool = False, *, ignore_unknown: bool = False, seed: int = 0):
+def read(
+    path,
+    vcm_compatible: bool = False,
+    *,
+    ignore_unknown: bool = False,
+    seed: int = 0,
+    flips: float = 0.0,
+):
     """Read a configuration file of the Virtual Cell Model.
 
     Parameters
@@ -201,6 +228,9 @@ def read(path, vcm_compatible: bool = False, *, ignore_unknown: bool = False, se
         Skip keys that do not exist, instead of refusing them.
     seed : int
         In place of the file's, if not 0.
+    flips : float
+        Make all membranes fluid, which VCM's are not: attempts to flip a bond for each edge and time
+        step, see `MonteCarloBondFlip`. Default: none.
 
     Returns
     -------
@@ -216,7 +246,9 @@ def read(path, vcm_compatible: bool = False, *, ignore_unknown: bool = False, se
     """
     if not 0 <= seed <= _MAX_SEED:
         raise ValueError(f"read: seed must be 0 to {_MAX_SEED}, got {seed}")
-    return Config(path, read_sections(path), bool(vcm_compatible), ignore_unknown, seed)
+    if not 0 <= flips <= _MAX_FLIPS:
+        raise ValueError(f"read: flips must be 0 to {_MAX_FLIPS} per edge and step, got {flips}")
+    return Config(path, read_sections(path), bool(vcm_compatible), ignore_unknown, seed, flips)
 
 
 def _start_mesh(settings: Settings, folder: Path, random) -> tuple[Mesh, int]:

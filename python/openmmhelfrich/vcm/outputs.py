@@ -22,6 +22,7 @@ from .._mesh import geometry
 from .._writing import in_memory, naming
 from ..analysis import mean_curvature
 from ..wireframe import write_psf
+from .connectivity import present_triangles
 from .frames import MeshFrames
 
 if TYPE_CHECKING:
@@ -70,7 +71,8 @@ class Frame:
     """What is known about one moment of a simulation, in OpenMM's units.
 
     positions, velocities, forces: shape (num_particles, 3), nm, nm/ps, kJ/mol/nm; forces are None
-    unless asked for; terms: kJ/mol by name.
+    unless asked for; terms: kJ/mol by name; triangles: those of each membrane, shape
+    (num_triangles, 3), from its vertex 0.
     """
 
     step: int
@@ -82,6 +84,7 @@ class Frame:
     forces: np.ndarray | None
     terms: dict[str, float]
     box: np.ndarray
+    triangles: tuple[np.ndarray, ...]
 
 
 def take_frame(cfg: Config, context: openmm.Context, step: int) -> Frame:
@@ -118,6 +121,7 @@ def take_frame(cfg: Config, context: openmm.Context, step: int) -> Frame:
         forces,
         terms,
         np.asarray(box),
+        present_triangles(cfg, context),
     )
 
 
@@ -160,6 +164,7 @@ class Outputs:
             ),
             ".csv": (True, self._csv),
             ".xtc": (xtc, self._xtc),
+            ".triangles": (xtc and cfg.flows, self._all_triangles),
         }
         self._writers = {
             self._folder / (cfg.name + suffix): write
@@ -206,10 +211,8 @@ class Outputs:
                 file.seek(0, os.SEEK_END)
                 file.write(encode(frame))
         if self._frames.wanted:
-            for membrane, vertices in self._parts(frame):
-                self._frames.write(
-                    self._num_frames, membrane.label, vertices, membrane.mesh.triangles
-                )
+            for membrane, vertices, triangles in self._parts(frame):
+                self._frames.write(self._num_frames, membrane.label, vertices, triangles)
         self._num_frames += 1
 
     def state(self) -> dict:
@@ -289,26 +292,32 @@ class Outputs:
         )
         return in_memory(lambda name: xtc_write_frame(name.encode(), *values))
 
+    def _all_triangles(self, frame: Frame) -> bytes:
+        """Those of all membranes by particle, three little-endian integers of 32 bits each."""
+        offsets = [membrane.offset for membrane in self._cfg.membranes]
+        parts = [t + offset for t, offset in zip(frame.triangles, offsets, strict=True)]
+        return np.concatenate(parts).astype("<i4").tobytes()
+
     def _binary(self, values) -> bytes:
         return np.ascontiguousarray(values, dtype=self._type).tobytes()
 
     def _parts(self, frame: Frame):
-        """Each membrane with the positions of its vertices."""
-        for membrane in self._cfg.membranes:
-            yield membrane, frame.positions[membrane.offset : membrane.particles.stop]
+        """Each membrane with the positions of its vertices and its triangles."""
+        for membrane, triangles in zip(self._cfg.membranes, frame.triangles, strict=True):
+            vertices = frame.positions[membrane.offset : membrane.particles.stop]
+            yield membrane, vertices, triangles
 
     def _curvatures(self, frame: Frame) -> np.ndarray:
         """Mean curvature H = C1 + C2 of every vertex, 1/nm."""
         parts = self._parts(frame)
-        return np.concatenate([mean_curvature(v, membrane.mesh.triangles) for membrane, v in parts])
+        return np.concatenate([mean_curvature(vertices, corners) for _, vertices, corners in parts])
 
     def _csv(self, frame: Frame) -> bytes:
         columns: dict[str, float] = {"step": frame.step, "time (ps)": frame.time}
         columns.update({f"{name} (kJ/mol)": energy for name, energy in frame.terms.items()})
         columns["potential (kJ/mol)"] = frame.potential
         columns["kinetic (kJ/mol)"] = frame.kinetic
-        for membrane, vertices in self._parts(frame):
-            triangles = membrane.mesh.triangles
+        for membrane, vertices, triangles in self._parts(frame):
             area = geometry.surface_area(vertices, triangles)
             columns[f"area {membrane.label} (nm^2)"] = area
             columns[f"volume {membrane.label} (nm^3)"] = geometry.volume_enclosed(

@@ -49,6 +49,8 @@ class Run:
         As for `Outputs`; a resumed run keeps its own. Default: what the file says, or XTC only.
     ply : bool, optional
         Short for ``frames="ply"`` or, if False, ``frames="none"``.
+    flips : float
+        As for `read`; a resumed run keeps its own.
     checkpoint_seconds : float
         Wall time between checkpoints, s: what a kill can cost.
 
@@ -75,12 +77,17 @@ class Run:
         xtc: bool | None = None,
         ply: bool | None = None,
         frames: str | None = None,
+        flips: float = 0.0,
         checkpoint_seconds: float = 10.0,
     ):
         # Imported here, because configurations of ours build on those of VCM.
         from ..config import read_any as read
 
-        options = {"vcm_compatible": vcm_compatible, "ignore_unknown": ignore_unknown}
+        options = {
+            "vcm_compatible": vcm_compatible,
+            "ignore_unknown": ignore_unknown,
+            "flips": flips,
+        }
         self._checkpoint_seconds = checkpoint_seconds
         self.cfg = cfg = read(config, seed=seed, **options)
         asked = {"xtc": xtc, "frames": frames or {True: "ply", False: "none"}.get(ply)}
@@ -105,7 +112,8 @@ class Run:
             # A run goes on as it began, whatever options were given again or left out.
             self._options = saved.options
             platform, seed = self._agree(saved, platform, seed)
-            options = {name: saved.options[name] for name in ("vcm_compatible", "ignore_unknown")}
+            known = ("vcm_compatible", "ignore_unknown", "flips")
+            options = {name: saved.options[name] for name in known if name in saved.options}
             self.cfg = read(config, seed=seed, **options)
         cfg = self.cfg
         self._fingerprint = _fingerprint(cfg)

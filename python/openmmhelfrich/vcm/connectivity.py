@@ -1,0 +1,72 @@
+"""Bond flips in a run: the movers of a configuration, and what they have made of its membranes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import openmm
+
+from ..forces import MonteCarloBondFlip
+from .grammar import ConfigError
+
+if TYPE_CHECKING:
+    from .config import Config
+
+__all__ = ["add_movers", "movers", "present_triangles"]
+
+#: Steps from one round of flips to the next, where only a rate is given.
+FLIP_STEPS = 10
+
+
+def add_movers(cfg: Config, system: openmm.System) -> None:
+    """Let the bonds of a VCM configuration's membranes flip, at its temperature.
+
+    Raises
+    ------
+    ConfigError
+        If a force refers to edges or triangles as they are at the start, and would not follow.
+    """
+    for force in system.getForces():
+        bonds = isinstance(force, (openmm.HarmonicBondForce, openmm.CustomBondForce))
+        angles = isinstance(force, (openmm.CustomCompoundBondForce, openmm.CustomTorsionForce))
+        if bonds or angles:
+            raise ConfigError(
+                f'{cfg.path}: flips: the potential "{force.getName()}" acts on the edges or '
+                "triangles that the mesh starts with, and does not follow flips; leave out one of "
+                "the two"
+            )
+    for membrane in cfg.membranes:
+        mover = MonteCarloBondFlip(
+            membrane.mesh,
+            cfg.temperature,
+            frequency=FLIP_STEPS,
+            attemptsPerEdge=FLIP_STEPS * cfg.flips,
+            offset=membrane.offset,
+        )
+        mover.setName(f"flips {membrane.label}")
+        mover.setRandomNumberSeed(cfg.seed)
+        system.addForce(mover)
+
+
+def movers(context: openmm.Context) -> dict[int, MonteCarloBondFlip]:
+    """The movers of a Context, by the lowest particle of their surfaces."""
+    found = {}
+    for force in context.getSystem().getForces():
+        if MonteCarloBondFlip.isinstance(force):
+            mover = MonteCarloBondFlip.cast(force)
+            found[int(mover.getTrianglesInContext(context).min())] = mover
+    return found
+
+
+def present_triangles(cfg: Config, context: openmm.Context) -> tuple[np.ndarray, ...]:
+    """The triangles of each membrane as they are now, shape (num_triangles, 3), from vertex 0."""
+    moving = movers(context)
+    found = []
+    for membrane in cfg.membranes:
+        mover = moving.get(membrane.offset)
+        if mover is None:
+            found.append(membrane.mesh.triangles)
+        else:
+            found.append(mover.getTrianglesInContext(context) - membrane.offset)
+    return tuple(found)
