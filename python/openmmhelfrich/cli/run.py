@@ -49,8 +49,8 @@ __all__ = ["run"]
     type=click.FloatRange(0, 100),
     default=0.0,
     metavar="RATE",
-    help="Make the membranes of a VCM configuration fluid: attempts to flip a bond for each edge and "
-    "time step, such as 0.01. TOML has a key of its own.",
+    help="Make the membranes of a VCM configuration fluid: attempts to flip a bond for each edge "
+    "and time step, such as 0.01. TOML has a key of its own.",
 )
 @click.option(
     "--checkpoint",

@@ -229,8 +229,8 @@ def read(
     seed : int
         In place of the file's, if not 0.
     flips : float
-        Make all membranes fluid, which VCM's are not: attempts to flip a bond for each edge and time
-        step, see `MonteCarloBondFlip`. Default: none.
+        Make all membranes fluid, which VCM's are not: attempts to flip a bond for each edge and
+        time step, see `MonteCarloBondFlip`. Default: none.
 
     Returns
     -------
