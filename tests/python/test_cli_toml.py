@@ -16,6 +16,7 @@ from openmmhelfrich.config.document import Document
 from openmmhelfrich.config.keys import REQUIRED
 from openmmhelfrich.vcm import ConfigError
 from openmmhelfrich.vcm.runner import Run
+from run_files import contents, results
 
 ROOT = Path(__file__).resolve().parents[2]
 SMALL = """simulation.duration = 4
@@ -337,22 +338,16 @@ last = 5
 
 
 class TestRun:
-    def contents(self, folder):
-        return {
-            str(path.relative_to(folder)): path.read_bytes()
-            for path in sorted(folder.rglob("*"))
-            if path.is_file()
-        }
-
     def test_outputs(self, write, tmp_path):
         out = tmp_path / "out"
         result = invoke("run", write(TWO), "--out", out)
         assert result.exit_code == 0, result.output
         assert "pair: 2 membrane(s), 82 vertices, platform Reference, seed 7" in result.output
-        files = set(self.contents(out))
+        files = set(contents(out))
         frames = {f"frames/pair_{v}_{n:06d}.ply" for v in ("first", "1") for n in range(6)}
         assert files == {
-            ".lock", "checkpoint.bin", "pair.csv", "pair.xyz", "pair.vel", *frames
+            ".lock", "checkpoint.bin", "checkpoint-previous.bin",
+            "pair.csv", "pair.xyz", "pair.vel", *frames,
         }  # fmt: skip
         rows = list(csv.DictReader((out / "pair.csv").open(encoding="utf-8")))
         assert [float(row["time (ps)"]) for row in rows] == pytest.approx(
@@ -371,7 +366,7 @@ class TestRun:
                 job = Run(path, tmp_path / folder, resume=number > 0)
                 assert job.advance(end)
                 job.close()
-        assert self.contents(tmp_path / "one") == self.contents(tmp_path / "two")
+        assert results(tmp_path / "one") == results(tmp_path / "two")
 
     def test_options_override_the_file(self, write, tmp_path):
         out = tmp_path / "out"
@@ -379,7 +374,7 @@ class TestRun:
             "run", write(TWO), "--out", out, "--xtc", "--no-ply", "--platform", "CPU", "--steps", 5
         )
         assert "platform CPU" in result.output
-        assert "pair.xtc" in self.contents(out)
+        assert "pair.xtc" in contents(out)
         assert not (out / "frames").exists()
 
     def test_info(self, write):

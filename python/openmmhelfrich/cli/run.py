@@ -29,6 +29,11 @@ __all__ = ["run"]
 @click.option("--seed", type=click.IntRange(1, 2**31 - 1), help="Seed in place of the file's.")
 @click.option("--resume", is_flag=True, help="Go on with the run that the folder holds.")
 @click.option(
+    "--resume-previous",
+    is_flag=True,
+    help="Go on from the checkpoint before the last one, if that is damaged.",
+)
+@click.option(
     "--xtc/--no-xtc", default=None, help="Write an XTC trajectory. Default: as CONFIG says, or yes."
 )
 @click.option(

@@ -19,6 +19,7 @@ from openmm import unit
 from openmm.app.internal.xtc_utils import xtc_write_frame
 
 from .._mesh import geometry, ply
+from .._writing import naming
 from ..analysis import mean_curvature
 from ..wireframe import write_psf
 
@@ -156,18 +157,18 @@ class Outputs:
                 lambda f: self._binary([f.time, f.potential, f.kinetic]),
             ),
             ".csv": (True, self._csv),
+            ".xtc": (xtc, self._xtc),
         }
         self._writers = {
             self._folder / (cfg.name + suffix): write
             for suffix, (wanted, write) in writers.items()
             if wanted
         }
-        self._xtc = self._folder / f"{cfg.name}.xtc" if xtc else None
 
     @property
     def paths(self) -> list[Path]:
         """The files that grow."""
-        return [*self._writers, *([self._xtc] if self._xtc else [])]
+        return list(self._writers)
 
     @property
     def num_frames(self) -> int:
@@ -181,21 +182,23 @@ class Outputs:
         self._remove_frames_from(0)
         if "PSF" in self._cfg.general["TextOutputs"]:
             psf = self._folder / f"{self._cfg.name}.psf"
-            write_psf(psf, self._cfg.topology(), self._cfg.system())
+            with naming(psf):
+                write_psf(psf, self._cfg.topology(), self._cfg.system())
 
     def write(self, frame: Frame) -> None:
-        """Add one frame to every file."""
+        """Add one frame to every file.
+
+        Raises
+        ------
+        OSError
+            If the system refuses, or a file has been taken away. Files may then have a part of the
+            frame, until `restore`.
+        """
         for path, encode in self._writers.items():
-            with path.open("ab") as file:
+            # Not "ab", which would make a new file where one was taken away.
+            with naming(path), path.open("r+b") as file:
+                file.seek(0, os.SEEK_END)
                 file.write(encode(frame))
-        if self._xtc:
-            xtc_write_frame(
-                os.fsencode(self._xtc),
-                frame.positions.astype(np.float32),
-                frame.box.astype(np.float32),
-                np.float32(frame.time),
-                np.int32(frame.step),
-            )
         if self._ply:
             self._write_ply(frame)
         self._num_frames += 1
@@ -264,6 +267,24 @@ class Outputs:
             )
         return ("\n".join([*lines, "ENDMDL"]) + "\n").encode()
 
+    def _xtc(self, frame: Frame) -> bytes:
+        """A frame of an XTC file.
+
+        OpenMM writes to names only, and says nothing if the disk is full: it writes into memory.
+        """
+        handle = os.memfd_create("frame")
+        try:
+            xtc_write_frame(
+                f"/proc/self/fd/{handle}".encode(),
+                frame.positions.astype(np.float32),
+                frame.box.astype(np.float32),
+                np.float32(frame.time),
+                np.int32(frame.step),
+            )
+            return os.pread(handle, os.fstat(handle).st_size, 0)
+        finally:
+            os.close(handle)
+
     def _binary(self, values) -> bytes:
         return np.ascontiguousarray(values, dtype=self._type).tobytes()
 
@@ -300,7 +321,9 @@ class Outputs:
         self._frames().mkdir(exist_ok=True)
         for membrane, vertices in self._parts(frame):
             name = f"{self._cfg.name}_{membrane.label}_{self._num_frames:06d}.ply"
-            (self._frames() / name).write_text(ply.write(vertices, membrane.mesh.triangles))
+            path = self._frames() / name
+            with naming(path):
+                path.write_text(ply.write(vertices, membrane.mesh.triangles))
 
     def _remove_frames_from(self, number: int) -> None:
         if not self._ply:

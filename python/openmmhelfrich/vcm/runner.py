@@ -2,19 +2,14 @@
 
 A checkpoint is one file, replaced at once or not at all: what OpenMM needs to go on bit by bit, the
 step, and the length of every output at that moment. Whatever stops a run, it goes on from the last
-checkpoint with the outputs cut back to it.
+checkpoint with the outputs cut back to it. `run_folder.py` keeps checkpoints.
 """
 
 from __future__ import annotations
 
-import contextlib
-import fcntl
 import hashlib
-import json
-import os
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 
 import openmm
@@ -22,26 +17,12 @@ import openmm
 from . import build
 from .config import Config
 from .outputs import Frame, Outputs, report_steps, take_frame
+from .run_folder import CHECKPOINT, RunError, RunFolder, Saved
 
 __all__ = ["CHECKPOINT", "Run", "RunError"]
 
-CHECKPOINT = "checkpoint.bin"
-_LOCK = ".lock"
-_FORMAT = "openmm-helfrich checkpoint 1"
 # Wall time between looks at a request to stop, s.
 _CHUNK_SECONDS = 0.25
-
-
-class RunError(Exception):
-    """A run cannot be started or resumed; the message says why and what to do."""
-
-
-@dataclass(frozen=True)
-class _Saved:
-    """A checkpoint as it is in its file."""
-
-    header: dict
-    state: bytes
 
 
 class Run:
@@ -58,7 +39,9 @@ class Run:
     seed : int
         In place of the file's, if not 0.
     resume : bool
-        Go on with the run that the folder holds. Without a checkpoint it starts at the beginning.
+        Go on with the run that the folder holds. In an empty folder it starts at the beginning.
+    resume_previous : bool
+        Go on from the checkpoint before the last one, which is given up: for one that is damaged.
     vcm_compatible, ignore_unknown : bool
         As for `read`; a resumed run keeps its own.
     xtc, ply : bool, optional
@@ -70,7 +53,8 @@ class Run:
     ------
     RunError
         If the folder holds a run already and `resume` is False, if another process is at work
-        there, or if the run there is of another configuration.
+        there, if its checkpoint is damaged or missing, if the run there is of another
+        configuration, or if files cannot be written.
     ConfigError
         See `read`.
     """
@@ -82,6 +66,7 @@ class Run:
         platform: str | None = None,
         seed: int = 0,
         resume: bool = False,
+        resume_previous: bool = False,
         vcm_compatible: bool = False,
         ignore_unknown: bool = False,
         xtc: bool | None = None,
@@ -93,22 +78,34 @@ class Run:
 
         options = {"vcm_compatible": vcm_compatible, "ignore_unknown": ignore_unknown}
         self._checkpoint_seconds = checkpoint_seconds
-        cfg = read(config, seed=seed, **options)
+        self.cfg = cfg = read(config, seed=seed, **options)
         asked = {"xtc": xtc, "ply": ply}
         wanted = {name: given for name, given in asked.items() if given is not None}
         self._options = {**options, **cfg.writes, **wanted}
         self.folder = Path(folder if folder is not None else cfg.name)
-        saved = self._find(resume)
+        self._folder = RunFolder(self.folder)
+        self._folder.enter(resume or resume_previous)
+        try:
+            self._start(config, platform, seed, resume, resume_previous)
+        except BaseException:
+            self.close()
+            raise
+
+    def _start(self, config, platform, seed: int, resume: bool, resume_previous: bool) -> None:
+        """Bring Context and outputs to where the run begins or goes on."""
+        from ..config import read_any as read
+
+        found = self._folder.read(resume_previous) if resume or resume_previous else None
+        saved, state = (None, b"") if found is None else found
         if saved is not None:
             # A run goes on as it began, whatever options were given again or left out.
-            self._options = saved.header["options"]
+            self._options = saved.options
             platform, seed = self._agree(saved, platform, seed)
-            options = {name: self._options[name] for name in options}
-            cfg = read(config, seed=seed, **options)
-        self.cfg = cfg
-        self._lock()
+            options = {name: saved.options[name] for name in ("vcm_compatible", "ignore_unknown")}
+            self.cfg = read(config, seed=seed, **options)
+        cfg = self.cfg
         self._fingerprint = _fingerprint(cfg)
-        if saved is not None and saved.header["fingerprint"] != self._fingerprint:
+        if saved is not None and saved.fingerprint != self._fingerprint:
             raise RunError(
                 f"{self.folder} holds a run of another system or integrator: the configuration or "
                 "a mesh has changed since; give another folder with --out"
@@ -116,20 +113,26 @@ class Run:
         try:
             platform = platform or cfg.platform or build.DEFAULT_PLATFORM
             self.simulation = build.unprepared_simulation(cfg, platform)
+            if saved is None:
+                build.prepare(cfg, self.context)
         except openmm.OpenMMException as reason:
-            raise RunError(f"OpenMM cannot start: {reason}") from None
+            where = "" if saved is None else f" on the platform {platform} of the checkpoint"
+            raise RunError(f"OpenMM cannot start{where}: {reason}") from None
         self.outputs = Outputs(cfg, self.folder, self._options["xtc"], self._options["ply"])
         self.resumed = saved is not None
+        self.step = 0 if saved is None else saved.step
+        if saved is not None:
+            self._load(saved, state, resume_previous)
+        self.frame = self._take_frame()
         if saved is None:
-            build.prepare(cfg, self.context)
-            self.step = 0
-            self.outputs.start()
-            self.frame = take_frame(cfg, self.context, 0)
-            self.outputs.write(self.frame)
+            # The first checkpoint comes before the first output, so that a run which is killed at
+            # any moment leaves either nothing or what it can go on from.
+            self._save(None)
+        if saved is None or saved.outputs is None:
+            with self._folder.writing():
+                self.outputs.start()
+                self.outputs.write(self.frame)
             self.save()
-        else:
-            self._restore(saved)
-            self.frame = take_frame(cfg, self.context, self.step)
 
     @property
     def context(self) -> openmm.Context:
@@ -169,7 +172,8 @@ class Run:
         Raises
         ------
         RunError
-            If the simulation breaks down. The last checkpoint is from before.
+            If the simulation breaks down, or a file cannot be written. The last checkpoint is from
+            before; `close` this run and make another with ``resume=True``.
         """
         interval = self.cfg.general["ReportIntervalInFs"]
         due = report_steps(interval, self.cfg.step_size, self.cfg.num_steps)
@@ -181,7 +185,8 @@ class Run:
             progress(self.step)
             if self.step == next_report:
                 self.frame = self._take_frame()
-                self.outputs.write(self.frame)
+                with self._folder.writing():
+                    self.outputs.write(self.frame)
                 next_report = next(due, None)
                 report(self.frame)
             if time.monotonic() - saved_at >= self._checkpoint_seconds:
@@ -190,7 +195,8 @@ class Run:
                 self.save()
                 saved_at = time.monotonic()
         self.frame = self._take_frame()
-        self.save()
+        if self.step != self._folder.saved_step:
+            self.save()
         return self.step >= last_step
 
     def _run_to(self, end: int, chunk: int) -> int:
@@ -220,86 +226,52 @@ class Run:
         )
 
     def save(self) -> None:
-        """Write a checkpoint in place of the last one."""
-        header = {
-            "format": _FORMAT,
-            "step": self.step,
-            "platform": self.platform,
-            "seed": self.cfg.seed,
-            "options": self._options,
-            "fingerprint": self._fingerprint,
-            "outputs": self.outputs.state(),
-        }
-        path = self.folder / CHECKPOINT
-        fresh = path.with_suffix(".new")
-        with fresh.open("wb") as file:
-            file.write(json.dumps(header).encode() + b"\n" + self.context.createCheckpoint())
-            file.flush()
-            os.fsync(file.fileno())
-        # The new file takes the old one's name in one go: there is always a whole one.
-        os.replace(fresh, path)
+        """Write a checkpoint; the last one becomes the one before."""
+        with self._folder.writing():
+            outputs = self.outputs.state()
+        self._save(outputs)
 
-    def _find(self, resume: bool) -> _Saved | None:
-        """The checkpoint to go on from, None to start at the beginning."""
-        path = self.folder / CHECKPOINT
-        if not resume:
-            occupied = self.folder.is_dir() and any(
-                entry.name != _LOCK for entry in self.folder.iterdir()
-            )
-            if occupied:
-                raise RunError(
-                    f"{self.folder} is not empty; go on with the run in it with --resume, or give "
-                    "another folder with --out"
-                )
-        if not resume or not path.exists():
-            return None
-        first, _, state = path.read_bytes().partition(b"\n")
-        try:
-            header = json.loads(first)
-            known = header["format"] == _FORMAT
-        except (ValueError, KeyError, TypeError):
-            known = False
-        if not known:
-            raise RunError(f"{path} is not a checkpoint of this version of openmm-helfrich")
-        return _Saved(header, state)
+    def _save(self, outputs: dict | None) -> None:
+        saved = Saved(
+            self.step,
+            self.platform,
+            self.cfg.seed,
+            self._options,
+            self._fingerprint,
+            outputs,
+        )
+        self._folder.save(saved, self.context.createCheckpoint())
 
     @staticmethod
-    def _agree(saved: _Saved, platform: str | None, seed: int) -> tuple[str, int]:
+    def _agree(saved: Saved, platform: str | None, seed: int) -> tuple[str, int]:
         """Platform and seed of the run to resume; RunError if others are asked for."""
-        header = saved.header
-        if platform is not None and platform != header["platform"]:
+        if platform is not None and platform != saved.platform:
             raise RunError(
-                f"the run is on the platform {header['platform']}, whose checkpoints {platform} "
+                f"the run is on the platform {saved.platform}, whose checkpoints {platform} "
                 "cannot read; leave out --platform"
             )
-        if seed not in (0, header["seed"]):
-            raise RunError(f"the run has the seed {header['seed']}; leave out --seed")
-        return header["platform"], header["seed"]
+        if seed not in (0, saved.seed):
+            raise RunError(f"the run has the seed {saved.seed}; leave out --seed")
+        return saved.platform, saved.seed
 
-    def _lock(self) -> None:
-        """Keep other processes out of the folder for as long as this one lives."""
-        self.folder.mkdir(parents=True, exist_ok=True)
-        self._lock_file = (self.folder / _LOCK).open("wb")
+    def _load(self, saved: Saved, state: bytes, previous: bool) -> None:
+        """Bring the Context, and outputs that were begun, back to a checkpoint."""
         try:
-            fcntl.flock(self._lock_file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            raise RunError(f"another process is running in {self.folder}") from None
-
-    def _restore(self, saved: _Saved) -> None:
-        try:
-            self.context.loadCheckpoint(saved.state)
+            self.context.loadCheckpoint(state)
         except openmm.OpenMMException as reason:
-            raise RunError(f"OpenMM cannot read {self.folder / CHECKPOINT}: {reason}") from None
-        self.step = saved.header["step"]
-        try:
-            self.outputs.restore(saved.header["outputs"])
-        except ValueError as reason:
-            raise RunError(f"cannot resume: {reason}") from None
+            raise RunError(f"OpenMM cannot go on from {self.folder}: {reason}") from None
+        with self._folder.writing():
+            if saved.outputs is not None:
+                try:
+                    self.outputs.restore(saved.outputs)
+                except ValueError as reason:
+                    raise RunError(f"cannot resume: {reason}") from None
+        if previous:
+            self._folder.go_back()
 
     def close(self) -> None:
         """Let other processes into the folder."""
-        with contextlib.suppress(OSError):
-            self._lock_file.close()
+        self._folder.leave()
 
 
 def _fingerprint(cfg: Config) -> str:

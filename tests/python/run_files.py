@@ -1,0 +1,58 @@
+"""Runs of the command line in a folder, for the tests of its files and its checkpoints."""
+
+from __future__ import annotations
+
+import re
+
+from click.testing import CliRunner
+from openmmhelfrich.cli import main
+
+GENERAL = """ProjectName cell
+SimulationTimeInPs 4
+StepSizeInFs 20
+ReportIntervalInFs 400
+Integrator {integrator}
+FrictionIninvertPs 0.1
+setVelocitiesToTemperature true
+Seed 5
+TextOutputs PSF XYZ PDB VEL FORCE CURVE
+BinOutputs XYZ VEL TPK"""
+MEMBRANE = """NodeMass 50
+MeanCurvatureModel Julicher1996
+MeanCurvatureCoeff 20
+SurfaceConstraint GWCAH 0.3
+SurfaceConstraintCoeff 40
+VolumeConstraint G
+VolumeConstraintCoeff 40"""
+
+
+def config(folder, integrator="LM", more="", **replaced):
+    """A configuration in a `Folder`, with other words after some keys."""
+    text = folder.text(MEMBRANE, GENERAL.format(integrator=integrator), more=more)
+    for key, words in replaced.items():
+        text = re.sub(rf"^{key} .*$", f"{key} {words}", text, flags=re.M)
+    return folder.write(text)
+
+
+def invoke(*arguments):
+    """The command line with these words."""
+    return CliRunner().invoke(main, [str(word) for word in arguments])
+
+
+def contents(folder):
+    """Every file below a folder, by name."""
+    return {
+        str(path.relative_to(folder)): path.read_bytes()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file()
+    }
+
+
+def results(folder):
+    """What must not depend on whether and when a run was stopped: not when it was saved before."""
+    found = contents(folder)
+    return {
+        name: data
+        for name, data in found.items()
+        if name != "checkpoint-previous.bin" and not name.endswith(".new")
+    }
