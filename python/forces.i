@@ -37,19 +37,61 @@ using namespace HelfrichPlugin;
 %pybuffer_binary(const char* data, size_t size);
 
 /* Arrays come as one buffer, through _arguments.py; numbers go by the setters, which know units. */
-%ignore HelfrichPlugin::MembraneForce::addTriangles;
-%ignore HelfrichPlugin::MembraneForce::getTriangles;
+%ignore HelfrichPlugin::TriangulatedForce::addTriangles;
+%ignore HelfrichPlugin::TriangulatedForce::getTriangles;
+%ignore HelfrichPlugin::TriangulatedForce::getTrianglesInContext;
+%ignore HelfrichPlugin::TriangulatedForce::setTrianglesInContext;
+%ignore HelfrichPlugin::TriangulatedForce::saveConnectivity;
+%ignore HelfrichPlugin::TriangulatedForce::restoreConnectivity;
+%ignore HelfrichPlugin::MonteCarloBondFlip::getStatistics;
 %ignore HelfrichPlugin::MembraneForce::setParameterValue;
 %rename(_setElementValues) HelfrichPlugin::MembraneForce::setElementValues;
+%nodefaultctor HelfrichPlugin::TriangulatedForce;
 %nodefaultctor HelfrichPlugin::MembraneForce;
 
-%extend HelfrichPlugin::MembraneForce {
+%{
+static PyObject* toBytes(const void* data, size_t size) {
+    return PyBytes_FromStringAndSize(static_cast<const char*>(data), (Py_ssize_t) size);
+}
+%}
+
+%extend HelfrichPlugin::TriangulatedForce {
     void _addTriangleBuffer(const char* data, size_t size) {
         const int* corners = reinterpret_cast<const int*>(data);
         $self->addTriangles(std::vector<int>(corners, corners + size / sizeof(int)));
     }
+    PyObject* _triangleBuffer() {
+        const std::vector<int>& corners = $self->getTriangles();
+        return toBytes(corners.data(), corners.size() * sizeof(int));
+    }
+    PyObject* _getTrianglesInContext(OpenMM::Context& context) {
+        std::vector<int> corners = $self->getTrianglesInContext(context);
+        return toBytes(corners.data(), corners.size() * sizeof(int));
+    }
+    void _setTrianglesInContext(OpenMM::Context& context, const char* data, size_t size) {
+        const int* corners = reinterpret_cast<const int*>(data);
+        $self->setTrianglesInContext(context, std::vector<int>(corners, corners + size / sizeof(int)));
+    }
+    PyObject* _saveConnectivity(OpenMM::Context& context) {
+        std::string saved = $self->saveConnectivity(context);
+        return toBytes(saved.data(), saved.size());
+    }
+    void _restoreConnectivity(OpenMM::Context& context, const char* data, size_t size) {
+        $self->restoreConnectivity(context, std::string(data, size));
+    }
 }
 
+%extend HelfrichPlugin::MonteCarloBondFlip {
+    PyObject* _getStatistics(OpenMM::Context& context) {
+        PyObject* statistics = PyDict_New();
+        for (const auto& entry : $self->getStatistics(context)) {
+            PyObject* value = PyFloat_FromDouble(entry.second);
+            PyDict_SetItemString(statistics, entry.first.c_str(), value);
+            Py_DECREF(value);
+        }
+        return statistics;
+    }
+}
 
 /* `system.getForce(i)` and XML give plain openmm.Force objects; each class tells and casts its own. */
 %define MEMBRANE_FORCE(CLASS)
@@ -70,9 +112,11 @@ using namespace HelfrichPlugin;
 
 %template(_IntVector) std::vector<int>;
 %template(_DoubleVector) std::vector<double>;
+%include "openmm-helfrich/TriangulatedForce.h"
 %include "openmm-helfrich/MembraneForce.h"
 %include "OpenMMHelfrich.h"
 HELFRICH_FORCES(MEMBRANE_FORCE)
+MEMBRANE_FORCE(MonteCarloBondFlip)
 
 /* For platforms.py: why a System is not one for the platform Helfrich, or an empty text. */
 %inline %{
@@ -82,9 +126,15 @@ std::string _why_not_helfrich(const OpenMM::System& system, const OpenMM::Integr
 %}
 
 %pythoncode %{
-from openmmhelfrich import _arguments
+from openmmhelfrich import _arguments, _bond_flips
 for _class in MembraneForce.__subclasses__():
     _arguments.accept_units(_class)
-_arguments.accept_arrays(MembraneForce)
-__all__ = ["MembraneForce", *(_class.__name__ for _class in MembraneForce.__subclasses__())]
+_arguments.accept_arrays(TriangulatedForce)
+_bond_flips.accept_arguments(MonteCarloBondFlip)
+__all__ = [
+    "MembraneForce",
+    "MonteCarloBondFlip",
+    "TriangulatedForce",
+    *(_class.__name__ for _class in MembraneForce.__subclasses__()),
+]
 %}

@@ -111,6 +111,36 @@ forward! {
     /// Copy the scalars to a Context (an `OpenMM_Context`).
     Helfrich_MembraneForce_updateParametersInContext =>
         helfrich_shim_updateParametersInContext(force: *mut Force, context: *mut c_void) -> c_int;
+    /// Write the three corners of each triangle as they are in a Context (an `OpenMM_Context`) now.
+    Helfrich_MembraneForce_getTrianglesInContext =>
+        helfrich_shim_getTrianglesInContext(force: *mut Force, context: *mut c_void, corners: *mut c_int) -> c_int;
+    /// Connect the particles of a Context in another way.
+    Helfrich_MembraneForce_setTrianglesInContext =>
+        helfrich_shim_setTrianglesInContext(force: *mut Force, context: *mut c_void, corners: *const c_int, num_triangles: c_int) -> c_int;
+    /// Make a MonteCarloBondFlip; null if an argument is refused.
+    Helfrich_MonteCarloBondFlip_create =>
+        helfrich_shim_createMover(triangles: *const c_int, num_triangles: c_int, temperature: c_double, frequency: c_int, attempts_per_edge: c_double, min_degree: c_int, max_degree: c_int, max_edge_length: c_double) -> *mut Force;
+    /// Copy frequency, attempts, bounds and ensemble to a Context.
+    Helfrich_MonteCarloBondFlip_updateParametersInContext =>
+        helfrich_shim_updateMover(force: *mut Force, context: *mut c_void) -> c_int;
+    /// Read one of the statistics of a MonteCarloBondFlip in a Context by its name.
+    Helfrich_MonteCarloBondFlip_getStatistic =>
+        helfrich_shim_getStatistic(force: *mut Force, context: *mut c_void, name: *const c_char, value: *mut c_double) -> c_int;
+}
+
+/// `get` and `set` of values of a MonteCarloBondFlip.
+macro_rules! mover_values {
+    ($($name:ident: $type:ty),*) => { paste::paste! { forward! { $(
+        #[doc = concat!("The ", stringify!($name), " of a MonteCarloBondFlip.")]
+        [<Helfrich_MonteCarloBondFlip_get $name>] => [<helfrich_shim_getMover $name>](force: *mut Force) -> $type;
+        #[doc = concat!("Set the ", stringify!($name), " of a MonteCarloBondFlip.")]
+        [<Helfrich_MonteCarloBondFlip_set $name>] => [<helfrich_shim_setMover $name>](force: *mut Force, value: $type) -> c_int;
+    )* } } };
+}
+
+mover_values! {
+    DefaultTemperature: c_double, Frequency: c_int, AttemptsPerEdge: c_double, MinDegree: c_int, MaxDegree: c_int,
+    MaxEdgeLength: c_double, Ensemble: c_int, RandomNumberSeed: c_int
 }
 
 /// `create`, and `get` and `set` of each scalar, for a force class.

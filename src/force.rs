@@ -8,6 +8,9 @@ use crate::potentials;
 use std::ffi::{CString, c_int};
 use std::ptr::NonNull;
 
+mod bond_flip;
+pub use bond_flip::MonteCarloBondFlip;
+
 /// A force on a membrane that no System owns yet.
 ///
 /// ```

@@ -28,6 +28,7 @@ from .forces import __all__ as _force_names  # noqa: E402
 from .mesh import Mesh  # noqa: E402
 from .ramps import harden  # noqa: E402
 from .reporters import MembraneReporter, ModeReporter  # noqa: E402
+from .states import load_state, save_state  # noqa: E402
 from .vesicle import Vesicle  # noqa: E402
 
 __version__ = _plugin.version()
@@ -47,7 +48,9 @@ __all__ = [
     "harden",
     "include_path",
     "library_path",
+    "load_state",
     "platforms",
+    "save_state",
     "set_backend",
     "vcm",
     *_force_names,

@@ -24,7 +24,7 @@ from ._values import (
     triangles,
 )
 
-__all__ = ["accept_arrays", "accept_units"]
+__all__ = ["accept_arrays", "accept_units", "own_what_is_cast"]
 
 
 def accept_units(force: type) -> None:
@@ -78,7 +78,7 @@ def accept_units(force: type) -> None:
         _accept_unit_in_setter(force, parameter)
     if form is not None:
         _accept_name_in_setter(force, form)
-    _own_what_is_cast(force)
+    own_what_is_cast(force)
 
 
 def _accept_unit_in_setter(force: type, parameter: Scalar) -> None:
@@ -115,7 +115,7 @@ def _accept_name_in_setter(force: type, form: str) -> None:
     setattr(force, method, setter)
 
 
-def _own_what_is_cast(force: type) -> None:
+def own_what_is_cast(force: type) -> None:
     """Let `cast` hand over the ownership of a force that no System has.
 
     A force read from XML belongs to the Python object that was read; without this it would die with
@@ -169,6 +169,54 @@ def accept_arrays(force: type) -> None:
         return swig_add_triangle(self, one, two, three)
 
     force.addTriangle = add_triangle
+
+    def get_triangles_in_context(self, context):
+        """The triangles as they are in a Context now.
+
+        Parameters
+        ----------
+        context : openmm.Context
+
+        Returns
+        -------
+        ndarray of int, shape (num_triangles, 3)
+            Particle indices, counter-clockwise seen from outside.
+        """
+        corners = np.frombuffer(self._getTrianglesInContext(context), dtype=np.intc)
+        return corners.astype(np.int64).reshape(-1, 3)
+
+    def set_triangles_in_context(self, context, given, *, offset=0):
+        """Connect the particles of a Context in another way, for all forces on the same triangles.
+
+        Positions stay as they are.
+
+        Parameters
+        ----------
+        context : openmm.Context
+        given : Mesh or array_like of int, shape (num_triangles, 3)
+            Particle indices, counter-clockwise seen from outside: as many triangles of the same
+            particles as there are.
+        offset : int
+            Added to all indices.
+
+        Raises
+        ------
+        openmm.OpenMMException
+            If they are no such triangles, or a MonteCarloBondFlip does not allow their degrees.
+            Nothing has changed then.
+        TypeError, ValueError
+            If the indices are not integers in triples.
+        """
+        corners = triangles(type(self).__name__, given, offset)
+        self._setTrianglesInContext(context, corners.data)
+
+    for name, method in (
+        ("getTrianglesInContext", get_triangles_in_context),
+        ("setTrianglesInContext", set_triangles_in_context),
+    ):
+        method.__name__ = name
+        method.__qualname__ = f"{force.__name__}.{name}"
+        setattr(force, name, method)
 
     # OpenMM's own methods make an openmm.Force, on which the methods of the class do not work.
     def adopt(self, plain):

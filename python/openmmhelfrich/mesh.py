@@ -148,6 +148,22 @@ class Mesh:
         files.write(path, self._vertices, self._triangles, point_data, binary)
 
     @classmethod
+    def from_context(cls, context, force) -> Mesh:
+        """The surface of a force in its present state: positions, and triangles after bond flips.
+
+        Parameters
+        ----------
+        context : openmm.Context
+        force : MembraneForce or MonteCarloBondFlip
+            Of the System of the Context. Vertex i is the i-th of its particles, in ascending order.
+
+        Returns
+        -------
+        Mesh
+        """
+        return cls(*on_openmm.present(context, force))
+
+    @classmethod
     def icosphere(cls, n, radius) -> Mesh:
         """A regular sphere about the origin, of 10 n² + 2 vertices and 20 n² triangles.
 

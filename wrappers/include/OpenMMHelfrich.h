@@ -6,6 +6,7 @@
 #include "openmm-helfrich/BendingForce.h"
 #include "openmm-helfrich/DihedralForce.h"
 #include "openmm-helfrich/EnclosedVolumeForce.h"
+#include "openmm-helfrich/MonteCarloBondFlip.h"
 #include "openmm-helfrich/PlaquetteAreaForce.h"
 #include "openmm-helfrich/SurfaceAreaForce.h"
 #include "openmm-helfrich/TriangleAreaForce.h"

@@ -51,6 +51,10 @@ extern int Helfrich_MembraneForce_setBackend(OpenMM_Force* force, const char* ba
 extern int Helfrich_MembraneForce_setContextParameter(OpenMM_Force* force, const char* parameter, const char* name);
 extern int Helfrich_MembraneForce_addEnergyParameterDerivative(OpenMM_Force* force, const char* name);
 extern int Helfrich_MembraneForce_updateParametersInContext(OpenMM_Force* force, OpenMM_Context* context);
+/** Write three particle indices a triangle, as they are in the Context now. */
+extern int Helfrich_MembraneForce_getTrianglesInContext(OpenMM_Force* force, OpenMM_Context* context, int* corners);
+extern int Helfrich_MembraneForce_setTrianglesInContext(OpenMM_Force* force, OpenMM_Context* context,
+                                                        const int* corners, int numTriangles);
 
 /** The schemes of BendingForce. */
 typedef enum {
@@ -124,6 +128,40 @@ extern double Helfrich_TriangleAreaRepulsionForce_getMinArea(OpenMM_Force* force
 extern int Helfrich_TriangleAreaRepulsionForce_setMinArea(OpenMM_Force* force, double minArea);
 extern double Helfrich_TriangleAreaRepulsionForce_getEpsilon(OpenMM_Force* force);
 extern int Helfrich_TriangleAreaRepulsionForce_setEpsilon(OpenMM_Force* force, double epsilon);
+
+/** Who pays for the flips of a MonteCarloBondFlip. */
+typedef enum {
+    Helfrich_MonteCarloBondFlip_Canonical = 0,
+    Helfrich_MonteCarloBondFlip_Microcanonical = 1
+} Helfrich_MonteCarloBondFlip_Ensemble;
+
+/*
+ * Bond flips. The functions of Helfrich_MembraneForce for triangles and destroy() are for this class too. Getters
+ * return NaN or -1 for failure.
+ */
+extern OpenMM_Force* Helfrich_MonteCarloBondFlip_create(const int* triangles, int numTriangles, double temperature,
+                                                        int frequency, double attemptsPerEdge, int minDegree,
+                                                        int maxDegree, double maxEdgeLength);
+extern double Helfrich_MonteCarloBondFlip_getDefaultTemperature(OpenMM_Force* force);
+extern int Helfrich_MonteCarloBondFlip_setDefaultTemperature(OpenMM_Force* force, double defaultTemperature);
+extern int Helfrich_MonteCarloBondFlip_getFrequency(OpenMM_Force* force);
+extern int Helfrich_MonteCarloBondFlip_setFrequency(OpenMM_Force* force, int frequency);
+extern double Helfrich_MonteCarloBondFlip_getAttemptsPerEdge(OpenMM_Force* force);
+extern int Helfrich_MonteCarloBondFlip_setAttemptsPerEdge(OpenMM_Force* force, double attemptsPerEdge);
+extern int Helfrich_MonteCarloBondFlip_getMinDegree(OpenMM_Force* force);
+extern int Helfrich_MonteCarloBondFlip_setMinDegree(OpenMM_Force* force, int minDegree);
+extern int Helfrich_MonteCarloBondFlip_getMaxDegree(OpenMM_Force* force);
+extern int Helfrich_MonteCarloBondFlip_setMaxDegree(OpenMM_Force* force, int maxDegree);
+extern double Helfrich_MonteCarloBondFlip_getMaxEdgeLength(OpenMM_Force* force);
+extern int Helfrich_MonteCarloBondFlip_setMaxEdgeLength(OpenMM_Force* force, double maxEdgeLength);
+extern int Helfrich_MonteCarloBondFlip_getEnsemble(OpenMM_Force* force);
+extern int Helfrich_MonteCarloBondFlip_setEnsemble(OpenMM_Force* force, int ensemble);
+extern int Helfrich_MonteCarloBondFlip_getRandomNumberSeed(OpenMM_Force* force);
+extern int Helfrich_MonteCarloBondFlip_setRandomNumberSeed(OpenMM_Force* force, int randomNumberSeed);
+extern int Helfrich_MonteCarloBondFlip_updateParametersInContext(OpenMM_Force* force, OpenMM_Context* context);
+/** `name` is "attempts", "accepted" or another that MonteCarloBondFlip.h tells. */
+extern int Helfrich_MonteCarloBondFlip_getStatistic(OpenMM_Force* force, OpenMM_Context* context, const char* name,
+                                                    double* value);
 
 #ifdef __cplusplus
 }

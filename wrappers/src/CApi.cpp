@@ -2,7 +2,10 @@
 
 #include <openmm/Context.h>
 
+#include <algorithm>
+#include <cmath>
 #include <exception>
+#include <map>
 #include <memory>
 
 using namespace HelfrichPlugin;
@@ -12,13 +15,31 @@ using std::vector;
 
 namespace {
 
-MembraneForce& asForce(void* force) {
+template <class Wanted>
+Wanted& as(const string& name, void* force) {
     // C hands over the address of an OpenMM::Force.
     OpenMM::Force* any = static_cast<OpenMM::Force*>(force);
-    auto* found = dynamic_cast<MembraneForce*>(any);
+    auto* found = dynamic_cast<Wanted*>(any);
     if (found == nullptr)
-        throw OpenMMException("MembraneForce: the force \"" + any->getName() + "\" is of another class");
+        throw OpenMMException(name + ": the force \"" + any->getName() + "\" is of another class");
     return *found;
+}
+
+MembraneForce& asForce(void* force) {
+    return as<MembraneForce>("MembraneForce", force);
+}
+
+/** A membrane force or a mover. */
+TriangulatedForce& asTriangulated(void* force) {
+    return as<TriangulatedForce>("MembraneForce", force);
+}
+
+MonteCarloBondFlip& asMover(void* force) {
+    return as<MonteCarloBondFlip>("MonteCarloBondFlip", force);
+}
+
+OpenMM::Context& asContext(void* context) {
+    return *static_cast<OpenMM::Context*>(context);
 }
 
 /** Run something that may throw; C gets a status and a message. */
@@ -65,18 +86,18 @@ void helfrich_shim_destroyForce(void* force) {
 
 int helfrich_shim_addTriangle(void* force, int particle1, int particle2, int particle3) {
     int index = -1;
-    guarded([&] { index = asForce(force).addTriangle(particle1, particle2, particle3); });
+    guarded([&] { index = asTriangulated(force).addTriangle(particle1, particle2, particle3); });
     return index;
 }
 
 int helfrich_shim_getNumTriangles(void* force) {
     int count = -1;
-    guarded([&] { count = asForce(force).getNumTriangles(); });
+    guarded([&] { count = asTriangulated(force).getNumTriangles(); });
     return count;
 }
 
 int helfrich_shim_getTriangle(void* force, int index, int* corners) {
-    return guarded([&] { asForce(force).getTriangle(index, corners[0], corners[1], corners[2]); });
+    return guarded([&] { asTriangulated(force).getTriangle(index, corners[0], corners[1], corners[2]); });
 }
 
 int helfrich_shim_getValue(void* force, const char* parameter, double* value) {
@@ -112,6 +133,74 @@ int helfrich_shim_addEnergyParameterDerivative(void* force, const char* name) {
 }
 
 int helfrich_shim_updateParametersInContext(void* force, void* context) {
-    return guarded([&] { asForce(force).updateParametersInContext(*static_cast<OpenMM::Context*>(context)); });
+    return guarded([&] { asForce(force).updateParametersInContext(asContext(context)); });
 }
+int helfrich_shim_getTrianglesInContext(void* force, void* context, int* corners) {
+    return guarded([&] {
+        vector<int> found = asTriangulated(force).getTrianglesInContext(asContext(context));
+        std::copy(found.begin(), found.end(), corners);
+    });
+}
+
+int helfrich_shim_setTrianglesInContext(void* force, void* context, const int* corners, int numTriangles) {
+    return guarded([&] {
+        TriangulatedForce& surface = asTriangulated(force);
+        if (numTriangles < 0)
+            throw OpenMMException(surface.getTypeName() + ": the number of triangles is negative");
+        vector<int> given(corners, corners + 3 * (size_t) numTriangles);
+        surface.setTrianglesInContext(asContext(context), given);
+    });
+}
+
+void* helfrich_shim_createMover(const int* triangles, int numTriangles, double temperature, int frequency,
+                                double attemptsPerEdge, int minDegree, int maxDegree, double maxEdgeLength) {
+    OpenMM::Force* created = nullptr;
+    guarded([&] {
+        if (numTriangles < 0)
+            throw OpenMMException("MonteCarloBondFlip: the number of triangles is negative");
+        vector<int> corners(triangles, triangles + 3 * (size_t) numTriangles);
+        created = new MonteCarloBondFlip(corners, temperature, frequency, attemptsPerEdge, minDegree, maxDegree,
+                                         maxEdgeLength);
+    });
+    return created;
+}
+
+int helfrich_shim_updateMover(void* force, void* context) {
+    return guarded([&] { asMover(force).updateParametersInContext(asContext(context)); });
+}
+
+int helfrich_shim_getStatistic(void* force, void* context, const char* name, double* value) {
+    return guarded([&] {
+        std::map<string, double> statistics = asMover(force).getStatistics(asContext(context));
+        auto found = statistics.find(name);
+        if (found == statistics.end()) {
+            string known;
+            for (const auto& entry : statistics)
+                known += (known.empty() ? "" : ", ") + entry.first;
+            throw OpenMMException("MonteCarloBondFlip: there is no statistic \"" + string(name) +
+                                  "\"; known are: " + known);
+        }
+        *value = found->second;
+    });
+}
+
+// A getter, which gives a value that cannot be if the force is of another class, and a setter.
+#define MOVER_VALUE(Type, Name, Nothing, Cast)                                                                         \
+    Type helfrich_shim_getMover##Name(void* force) {                                                                   \
+        Type value = Nothing;                                                                                          \
+        guarded([&] { value = asMover(force).get##Name(); });                                                          \
+        return value;                                                                                                  \
+    }                                                                                                                  \
+    int helfrich_shim_setMover##Name(void* force, Type value) {                                                        \
+        return guarded([&] { asMover(force).set##Name((Cast) value); });                                               \
+    }
+MOVER_VALUE(double, DefaultTemperature, std::nan(""), double)
+MOVER_VALUE(int, Frequency, -1, int)
+MOVER_VALUE(double, AttemptsPerEdge, std::nan(""), double)
+MOVER_VALUE(int, MinDegree, -1, int)
+MOVER_VALUE(int, MaxDegree, -1, int)
+MOVER_VALUE(double, MaxEdgeLength, std::nan(""), double)
+MOVER_VALUE(int, Ensemble, -1, MonteCarloBondFlip::Ensemble)
+MOVER_VALUE(int, RandomNumberSeed, -1, int)
+#undef MOVER_VALUE
 }

@@ -1,4 +1,5 @@
 #include "HelfrichKernels.h"
+#include "SharedMembrane.h"
 
 #include <openmm/BrownianIntegrator.h>
 #include <openmm/LangevinMiddleIntegrator.h>
@@ -9,6 +10,7 @@
 #include <openmm/reference/ReferenceKernelFactory.h>
 #include <openmm/reference/SimTKOpenMMRealType.h>
 
+#include <algorithm>
 #include <istream>
 #include <ostream>
 
@@ -19,8 +21,10 @@ using std::vector;
 
 namespace {
 
-/** Starts what this platform adds to a checkpoint. */
+/** Starts what this platform adds to a checkpoint: random numbers, */
 const uint32_t CHECKPOINT_MARK = 0x31464c48;
+/** or these and then the connectivity of membranes that is not the System's, or may change. */
+const uint32_t CONNECTIVITY_MARK = 0x32464c48;
 
 Kernel createReferenceKernel(const string& name, const Platform& platform, ContextImpl& context) {
     return Kernel(ReferenceKernelFactory().createKernelImpl(name, platform, context));
@@ -48,8 +52,21 @@ T read(std::istream& stream) {
     T value{};
     stream.read(reinterpret_cast<char*>(&value), sizeof(T));
     if (!stream)
-        throw OpenMMException("loadCheckpoint: the checkpoint ends before its random numbers; it is damaged");
+        throw OpenMMException("loadCheckpoint: the checkpoint ends too early; it is damaged");
     return value;
+}
+
+/** Read so many bytes; a number that is damaged shall not take all memory. */
+string readBytes(std::istream& stream, uint64_t size) {
+    string bytes;
+    while (bytes.size() < size) {
+        size_t before = bytes.size();
+        bytes.resize((size_t) std::min<uint64_t>(size, before + (1 << 20)));
+        stream.read(&bytes[before], (std::streamsize) (bytes.size() - before));
+        if (!stream)
+            throw OpenMMException("loadCheckpoint: the checkpoint ends too early; it is damaged");
+    }
+    return bytes;
 }
 
 } // namespace
@@ -170,15 +187,24 @@ void HelfrichUpdateStateDataKernel::setPeriodicBoxVectors(ContextImpl& context, 
 
 void HelfrichUpdateStateDataKernel::createCheckpoint(ContextImpl& context, std::ostream& stream) {
     reference.createCheckpoint(context, stream);
-    write(stream, CHECKPOINT_MARK);
+    vector<string> connectivity = SharedMembrane::saveAll(context);
+    write(stream, connectivity.empty() ? CHECKPOINT_MARK : CONNECTIVITY_MARK);
     write(stream, (uint32_t) data.streams.size());
     for (const HelfrichStream& random : data.streams)
         write(stream, random);
+    if (connectivity.empty())
+        return;
+    write(stream, (uint32_t) connectivity.size());
+    for (const string& saved : connectivity) {
+        write(stream, (uint64_t) saved.size());
+        stream.write(saved.data(), (std::streamsize) saved.size());
+    }
 }
 
 void HelfrichUpdateStateDataKernel::loadCheckpoint(ContextImpl& context, std::istream& stream) {
     reference.loadCheckpoint(context, stream);
-    if (read<uint32_t>(stream) != CHECKPOINT_MARK)
+    auto mark = read<uint32_t>(stream);
+    if (mark != CHECKPOINT_MARK && mark != CONNECTIVITY_MARK)
         throw OpenMMException("loadCheckpoint: the checkpoint has no random numbers of platform Helfrich; it is "
                               "damaged, or of another version of openmm-helfrich");
     // As with other platforms, a checkpoint may go on with another integrator; its streams stay as they are.
@@ -188,6 +214,11 @@ void HelfrichUpdateStateDataKernel::loadCheckpoint(ContextImpl& context, std::is
         if (i < data.streams.size())
             data.streams[i] = random;
     }
+    vector<string> connectivity;
+    if (mark == CONNECTIVITY_MARK)
+        for (uint32_t left = read<uint32_t>(stream); left > 0; left--)
+            connectivity.push_back(readBytes(stream, read<uint64_t>(stream)));
+    SharedMembrane::restoreAll("loadCheckpoint", context, connectivity);
 }
 
 TimeStep::TimeStep(const string& name, const Platform& platform, ContextImpl& context)

@@ -16,7 +16,7 @@ namespace HelfrichPlugin {
  * other platform OpenMM's support for forces in plain C++ carries positions to the processor and forces
  * back.
  */
-class MembraneForceImpl : public OpenMM::CustomCPPForceImpl, public UpdatableImpl {
+class MembraneForceImpl : public OpenMM::CustomCPPForceImpl, public UpdatableImpl, public ConnectivityImpl {
 public:
     explicit MembraneForceImpl(const MembraneForce& owner);
     ~MembraneForceImpl();
@@ -31,6 +31,18 @@ public:
     std::vector<std::pair<int, int>> getBondedParticles() const;
     std::vector<std::string> getKernelNames();
     void updateParametersInContext(OpenMM::ContextImpl& context);
+    std::vector<int> getTrianglesInContext() const {
+        return membrane->getPresentTriangles();
+    }
+    void setTrianglesInContext(OpenMM::ContextImpl& context, const std::vector<int>& corners) {
+        membrane->setTriangles(owner.getTypeName(), context, corners);
+    }
+    std::string saveConnectivity(OpenMM::ContextImpl& context) const {
+        return membrane->save(context);
+    }
+    void restoreConnectivity(OpenMM::ContextImpl& context, const std::string& saved) {
+        membrane->restore(owner.getTypeName(), context, saved);
+    }
     /** Whether the force belongs to one of some groups, given as bits. */
     bool isInGroups(int groups) const;
     /** Whether a scalar is a Context parameter. */

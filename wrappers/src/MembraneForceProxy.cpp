@@ -1,17 +1,13 @@
 #include "MembraneForceProxy.h"
 
-#include "openmm-helfrich/internal/Core.h"
+#include "XmlElements.h"
 
-#include <openmm/serialization/SerializationNode.h>
-
-#include <cerrno>
-#include <climits>
-#include <cstdlib>
 #include <memory>
 #include <set>
 #include <vector>
 
 using namespace HelfrichPlugin;
+using namespace HelfrichPlugin::xml;
 using namespace OpenMM;
 using std::set;
 using std::string;
@@ -38,92 +34,6 @@ vector<string> findSwitches(const string& force) {
     while (Helfrich_Potential_switch(force.c_str(), (int) names.size(), &name) == 0)
         names.push_back(name);
     return names;
-}
-
-/** The beginning of a message about an element. */
-string about(const string& force, const SerializationNode& node) {
-    // The element of the force itself has no name when it is the root.
-    return force + ": element <" + (node.getName().empty() ? "Force" : node.getName()) + "> ";
-}
-
-/** Refuse what a node should not have, so that nothing is lost unnoticed. */
-void allow(const string& force, const SerializationNode& node, const set<string>& properties,
-           const set<string>& children) {
-    string where = about(force, node);
-    for (const auto& property : node.getProperties())
-        if (properties.count(property.first) == 0)
-            throw OpenMMException(where + "has an unknown attribute \"" + property.first + "\"");
-    for (const SerializationNode& child : node.getChildren()) {
-        if (children.count(child.getName()) == 0)
-            throw OpenMMException(where + "has an unknown child <" + child.getName() + ">");
-    }
-}
-
-/** The text of an attribute that must be there. */
-string text(const string& force, const SerializationNode& node, const string& property) {
-    if (!node.hasProperty(property))
-        throw OpenMMException(about(force, node) + "lacks the attribute \"" + property + "\"");
-    return node.getStringProperty(property);
-}
-
-[[noreturn]] void refuse(const string& force, const SerializationNode& node, const string& property,
-                         const string& expected) {
-    throw OpenMMException(about(force, node) + "has " + property + "=\"" + node.getStringProperty(property) +
-                          "\", which is not " + expected);
-}
-
-/** A number to the last character: what is broken shall not become a zero. */
-double number(const string& force, const SerializationNode& node, const string& property) {
-    string value = text(force, node, property);
-    char* end = nullptr;
-    double result = std::strtod(value.c_str(), &end);
-    if (value.empty() || *end != '\0')
-        refuse(force, node, property, "a number");
-    return result;
-}
-
-int integer(const string& force, const SerializationNode& node, const string& property) {
-    string value = text(force, node, property);
-    char* end = nullptr;
-    errno = 0;
-    long result = std::strtol(value.c_str(), &end, 10);
-    if (value.empty() || *end != '\0' || errno != 0 || result < INT_MIN || result > INT_MAX)
-        refuse(force, node, property, "an integer");
-    return (int) result;
-}
-
-bool boolean(const string& force, const SerializationNode& node, const string& property) {
-    string value = text(force, node, property);
-    if (value != "0" && value != "1" && value != "true" && value != "false")
-        refuse(force, node, property, "true or false");
-    return value == "1" || value == "true";
-}
-
-/** The one child of a name. */
-const SerializationNode& child(const string& force, const SerializationNode& node, const string& name) {
-    const SerializationNode* found = nullptr;
-    for (const SerializationNode& candidate : node.getChildren())
-        if (candidate.getName() == name) {
-            if (found != nullptr)
-                throw OpenMMException(about(force, node) + "has the child <" + name + "> twice");
-            found = &candidate;
-        }
-    if (found == nullptr)
-        throw OpenMMException(about(force, node) + "lacks the child <" + name + ">");
-    return *found;
-}
-
-/** Do something with an element's content; what it throws shall name the element. */
-template <class Body>
-void within(const string& force, const SerializationNode& node, Body body) {
-    try {
-        body();
-    } catch (const OpenMMException& error) {
-        string message = error.what();
-        if (message.find("element <") != string::npos)
-            throw;
-        throw OpenMMException(message + " (in element <" + (node.getName().empty() ? "Force" : node.getName()) + ">)");
-    }
 }
 
 } // namespace
@@ -158,15 +68,7 @@ void MembraneForceProxy::serialize(const void* object, SerializationNode& node) 
     for (int i = 0; i < force.getNumEnergyParameterDerivatives(); i++)
         derivatives.createChildNode("Derivative")
             .setStringProperty("contextParameter", force.getEnergyParameterDerivativeName(i));
-    SerializationNode& triangles = node.createChildNode("Triangles");
-    for (int i = 0; i < force.getNumTriangles(); i++) {
-        int p1, p2, p3;
-        force.getTriangle(i, p1, p2, p3);
-        triangles.createChildNode("Triangle")
-            .setIntProperty("p1", p1)
-            .setIntProperty("p2", p2)
-            .setIntProperty("p3", p3);
-    }
+    writeTriangles(force, node);
 }
 
 void* MembraneForceProxy::deserialize(const SerializationNode& node) const {
@@ -217,14 +119,7 @@ void MembraneForceProxy::readForce(const SerializationNode& node, MembraneForce&
         string parameter = text(forceName, element, "contextParameter");
         within(forceName, element, [&] { force.addEnergyParameterDerivative(parameter); });
     }
-
-    const SerializationNode& triangles = child(forceName, node, "Triangles");
-    allow(forceName, triangles, {}, {"Triangle"});
-    for (const SerializationNode& element : triangles.getChildren()) {
-        allow(forceName, element, {"p1", "p2", "p3"}, {});
-        force.addTriangle(integer(forceName, element, "p1"), integer(forceName, element, "p2"),
-                          integer(forceName, element, "p3"));
-    }
+    readTriangles(forceName, node, force);
 }
 
 void MembraneForceProxy::readParameters(const SerializationNode& parameters, MembraneForce& force) const {

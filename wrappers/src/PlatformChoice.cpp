@@ -1,5 +1,5 @@
 #include "PlatformChoice.h"
-#include "openmm-helfrich/MembraneForce.h"
+#include "openmm-helfrich/TriangulatedForce.h"
 
 #include <OpenMM.h>
 
@@ -117,8 +117,8 @@ string nameOf(const Force& force) {
 }
 
 string Tally::add(const Force& force) {
-    if (auto* membrane = dynamic_cast<const MembraneForce*>(&force)) {
-        for (int particle : membrane->getTriangles())
+    if (auto* surface = dynamic_cast<const TriangulatedForce*>(&force)) {
+        for (int particle : surface->getTriangles())
             // The Context will say so if there is no such particle.
             if (particle >= 0 && particle < (int) isVertex.size())
                 isVertex[particle] = true;

@@ -2,6 +2,8 @@
 #include "HelfrichPlatform.h"
 #include "MembraneForceImpl.h"
 #include "MembraneForceProxy.h"
+#include "MonteCarloBondFlipImpl.h"
+#include "MonteCarloBondFlipProxy.h"
 #include "PlatformChoice.h"
 
 #include <openmm/Platform.h>
@@ -45,6 +47,7 @@ int helfrich_shim_registerSerialization() {
 #define REGISTER(ForceClass) registerForce<ForceClass>(#ForceClass);
     HELFRICH_FORCES(REGISTER)
 #undef REGISTER
+    OpenMM::SerializationProxy::registerProxy(typeid(MonteCarloBondFlip), new MonteCarloBondFlipProxy());
     return 0;
 }
 
@@ -85,7 +88,12 @@ int helfrich_shim_checkPlatform(const void* system, const void* integrator) {
 
 void* helfrich_shim_createImpl(const void* force) {
     try {
-        OpenMM::ForceImpl* impl = new MembraneForceImpl(*static_cast<const MembraneForce*>(force));
+        const auto& owner = *static_cast<const OpenMM::Force*>(force);
+        OpenMM::ForceImpl* impl = nullptr;
+        if (auto* mover = dynamic_cast<const MonteCarloBondFlip*>(&owner))
+            impl = new MonteCarloBondFlipImpl(*mover);
+        else
+            impl = new MembraneForceImpl(dynamic_cast<const MembraneForce&>(owner));
         return impl;
     } catch (const std::exception& error) {
         helfrich_setLastError(error.what());

@@ -2,11 +2,13 @@
 
 #include "HelfrichPlatform.h"
 #include "MembraneForceImpl.h"
+#include "MonteCarloBondFlipImpl.h"
 
 #include <openmm/System.h>
 
 #include <algorithm>
 #include <mutex>
+#include <set>
 
 using namespace HelfrichPlugin;
 using namespace OpenMM;
@@ -24,24 +26,48 @@ std::multimap<const ContextImpl*, std::weak_ptr<SharedMembrane>> registry;
 
 shared_ptr<SharedMembrane> SharedMembrane::acquire(const string& subject, ContextImpl& context,
                                                    const vector<int>& triangles) {
+    vector<shared_ptr<SharedMembrane>> known = findAll(context);
+    for (const auto& membrane : known)
+        if (membrane->triangles == triangles)
+            return membrane;
+    shared_ptr<SharedMembrane> membrane(new SharedMembrane(subject, context, triangles));
+    for (const auto& other : known)
+        if (other->mover != nullptr)
+            refuseOthers(subject, *membrane, *other);
     std::lock_guard<std::mutex> lock(registryMutex);
+    registry.emplace(&context, membrane);
+    return membrane;
+}
+
+vector<shared_ptr<SharedMembrane>> SharedMembrane::findAll(ContextImpl& context) {
+    std::lock_guard<std::mutex> lock(registryMutex);
+    vector<shared_ptr<SharedMembrane>> found;
     for (auto entry = registry.begin(); entry != registry.end();) {
         shared_ptr<SharedMembrane> membrane = entry->second.lock();
         if (membrane == nullptr) {
             entry = registry.erase(entry);
             continue;
         }
-        if (entry->first == &context && membrane->triangles == triangles && membrane->belongsTo(context))
-            return membrane;
+        if (entry->first == &context && membrane->belongsTo(context))
+            found.push_back(membrane);
         ++entry;
     }
-    shared_ptr<SharedMembrane> membrane(new SharedMembrane(subject, context, triangles));
-    registry.emplace(&context, membrane);
-    return membrane;
+    return found;
+}
+
+void SharedMembrane::refuseOthers(const string& subject, const SharedMembrane& one, const SharedMembrane& other) {
+    std::set<int> particles(one.triangles.begin(), one.triangles.end());
+    for (int particle : other.triangles)
+        if (particles.count(particle) != 0)
+            throw OpenMMException(subject + ": particle " + std::to_string(particle) +
+                                  " belongs to two different triangulations, and a MonteCarloBondFlip would change one "
+                                  "of them only; give "
+                                  "all membrane forces on these particles and the MonteCarloBondFlip the same "
+                                  "triangles in the same order");
 }
 
 SharedMembrane::SharedMembrane(const string& subject, ContextImpl& context, const vector<int>& triangles)
-    : triangles(triangles), core(nullptr) {
+    : triangles(triangles), core(nullptr), mover(nullptr) {
     check(Helfrich_Membrane_create(subject.c_str(), triangles.data(), (int64_t) triangles.size() / 3,
                                    context.getSystem().getNumParticles(), &core));
     if (int threads = helfrichThreads(context))
@@ -54,9 +80,10 @@ SharedMembrane::~SharedMembrane() {
 
 bool SharedMembrane::belongsTo(ContextImpl& context) const {
     const vector<ForceImpl*>& impls = context.getForceImpls();
-    return !members.empty() && std::all_of(members.begin(), members.end(), [&](const MembraneForceImpl* member) {
-        return std::find(impls.begin(), impls.end(), static_cast<const ForceImpl*>(member)) != impls.end();
-    });
+    auto isThere = [&](const ForceImpl* impl) { return std::find(impls.begin(), impls.end(), impl) != impls.end(); };
+    if (mover == nullptr && members.empty())
+        return false;
+    return (mover == nullptr || isThere(mover)) && std::all_of(members.begin(), members.end(), isThere);
 }
 
 void SharedMembrane::join(MembraneForceImpl* member) {
@@ -67,6 +94,22 @@ void SharedMembrane::leave(MembraneForceImpl* member) {
     members.erase(std::remove(members.begin(), members.end(), member), members.end());
 }
 
+void SharedMembrane::join(MonteCarloBondFlipImpl* joining, ContextImpl& context) {
+    const string& subject = joining->getOwner().getTypeName();
+    if (mover != nullptr)
+        throw OpenMMException(subject + ": the same triangles have another " + subject +
+                              "; one is enough, with more attemptsPerEdge if need be");
+    for (const auto& other : findAll(context))
+        if (other.get() != this)
+            refuseOthers(subject, *this, *other);
+    mover = joining;
+}
+
+void SharedMembrane::leave(MonteCarloBondFlipImpl* leaving) {
+    if (mover == leaving)
+        mover = nullptr;
+}
+
 bool SharedMembrane::isLeader(const MembraneForceImpl& member, int groups) const {
     for (const MembraneForceImpl* other : members)
         if (other->isInGroups(groups))
@@ -74,8 +117,7 @@ bool SharedMembrane::isLeader(const MembraneForceImpl& member, int groups) const
     return false;
 }
 
-double SharedMembrane::evaluate(const string& subject, ContextImpl& context, int groups, const vector<Vec3>& positions,
-                                bool includeEnergy, vector<Vec3>* forces, std::map<string, double>* derivatives) {
+void SharedMembrane::collect(ContextImpl& context, int groups) {
     active.clear();
     terms.clear();
     for (MembraneForceImpl* member : members)
@@ -86,6 +128,11 @@ double SharedMembrane::evaluate(const string& subject, ContextImpl& context, int
             if (member->usesContextParameters())
                 checkTerm(member->getOwner().getTypeName(), terms.back());
         }
+}
+
+double SharedMembrane::evaluate(const string& subject, ContextImpl& context, int groups, const vector<Vec3>& positions,
+                                bool includeEnergy, vector<Vec3>* forces, std::map<string, double>* derivatives) {
+    collect(context, groups);
     bool wantsDerivatives = derivatives != nullptr &&
         std::any_of(terms.begin(), terms.end(), [](const HelfrichTerm& term) { return term.wantsDerivatives != 0; });
     contributions.assign(terms.size(), HelfrichContribution());
@@ -102,6 +149,22 @@ double SharedMembrane::evaluate(const string& subject, ContextImpl& context, int
             active[i]->addDerivatives(contributions[i], *derivatives);
     }
     return energy;
+}
+
+int64_t SharedMembrane::flip(const string& subject, ContextImpl& context, int groups, const vector<Vec3>& positions,
+                             const HelfrichFlipRules& rules, int64_t attempts, HelfrichFlipState& state) {
+    collect(context, groups);
+    int64_t made = 0;
+    check(Helfrich_Membrane_flip(subject.c_str(), core, terms.data(), (int64_t) terms.size(),
+                                 (int64_t) positions.size(), reinterpret_cast<const double*>(positions.data()), &rules,
+                                 attempts, &state, &made));
+    return made;
+}
+
+vector<int> SharedMembrane::getPresentTriangles() const {
+    vector<int> corners(triangles.size());
+    Helfrich_Membrane_triangles(core, corners.data());
+    return corners;
 }
 
 vector<std::pair<int, int>> SharedMembrane::getEdges() const {

@@ -13,11 +13,12 @@
 namespace HelfrichPlugin {
 
 class MembraneForceImpl;
+class MonteCarloBondFlipImpl;
 
 /**
  * A mesh in one Context, shared by all forces on the same triangles, so that the geometry is computed
  * once per evaluation. The first of the forces that an evaluation asks for is its leader and computes
- * the sum of all that are asked for; the others add nothing.
+ * the sum of all that are asked for; the others add nothing. Its connectivity changes by bond flips.
  */
 class SharedMembrane {
 public:
@@ -30,12 +31,17 @@ public:
      */
     static std::shared_ptr<SharedMembrane> acquire(const std::string& subject, OpenMM::ContextImpl& context,
                                                    const std::vector<int>& triangles);
+    /** All membranes of a Context, in the order in which they were made. */
+    static std::vector<std::shared_ptr<SharedMembrane>> findAll(OpenMM::ContextImpl& context);
     ~SharedMembrane();
     SharedMembrane(const SharedMembrane&) = delete;
     SharedMembrane& operator=(const SharedMembrane&) = delete;
     /** Add a force to the membrane; OpenMM makes them in the order in which it will call them. */
     void join(MembraneForceImpl* member);
     void leave(MembraneForceImpl* member);
+    /** Add what flips edges, of which there can be one. */
+    void join(MonteCarloBondFlipImpl* mover, OpenMM::ContextImpl& context);
+    void leave(MonteCarloBondFlipImpl* mover);
     /** Whether a member is the first whose force group is among those asked for. */
     bool isLeader(const MembraneForceImpl& member, int groups) const;
     /**
@@ -54,6 +60,44 @@ public:
     double evaluate(const std::string& subject, OpenMM::ContextImpl& context, int groups,
                     const std::vector<OpenMM::Vec3>& positions, bool includeEnergy, std::vector<OpenMM::Vec3>* forces,
                     std::map<std::string, double>* derivatives);
+    /**
+     * Try to flip edges.
+     *
+     * @param subject    the class that messages shall name
+     * @param context    the Context
+     * @param groups     a bit for each force group whose members' energy counts
+     * @param positions  of all particles, nm
+     * @param rules      what flips may do
+     * @param attempts   how many to try
+     * @param state      what has come of flips so far, and the random numbers
+     * @return how many were made
+     */
+    int64_t flip(const std::string& subject, OpenMM::ContextImpl& context, int groups,
+                 const std::vector<OpenMM::Vec3>& positions, const HelfrichFlipRules& rules, int64_t attempts,
+                 HelfrichFlipState& state);
+    /** Refuse rules that make no sense, or that the present triangles violate. */
+    void checkRules(const std::string& subject, const HelfrichFlipRules& rules) const {
+        check(Helfrich_Membrane_checkFlips(subject.c_str(), core, &rules));
+    }
+    /** The corners of the triangles as they are now. */
+    std::vector<int> getPresentTriangles() const;
+    /** Go on with other triangles; if they are refused, everything stays as it was. */
+    void setTriangles(const std::string& subject, OpenMM::ContextImpl& context, const std::vector<int>& corners);
+    /** A number that tells the present triangles from others, 0 for those of the System. */
+    double getFingerprint() const {
+        return Helfrich_Membrane_fingerprint(core, triangles.data());
+    }
+    /** Whether something has to be saved to go on with the same bits. */
+    bool needsSaving() const;
+    /** What restore() takes; SavedConnectivity.cpp has the format. */
+    std::string save(OpenMM::ContextImpl& context) const;
+    /** Go on with what had been saved; if it is refused, everything stays as it was. */
+    void restore(const std::string& subject, OpenMM::ContextImpl& context, const std::string& saved);
+    /** Save all membranes of a Context that need it. */
+    static std::vector<std::string> saveAll(OpenMM::ContextImpl& context);
+    /** Restore all membranes of a Context. Those that had nothing to save have the triangles of the System again. */
+    static void restoreAll(const std::string& subject, OpenMM::ContextImpl& context,
+                           const std::vector<std::string>& saved);
     /** Choose what computes the forces, for one that joins; `backend` is empty if it does not mind. */
     void choose(const std::string& subject, const std::string& backend) {
         check(Helfrich_Membrane_choose(subject.c_str(), core, backend.c_str()));
@@ -64,6 +108,9 @@ public:
     }
     const std::vector<int>& getTriangles() const {
         return triangles;
+    }
+    int64_t getNumEdges() const {
+        return Helfrich_Membrane_numEdges(core);
     }
     /** The pairs of particles that edges connect. */
     std::vector<std::pair<int, int>> getEdges() const;
@@ -76,10 +123,21 @@ private:
      * its forces behind and frees its memory, and the next Context may get the same address.
      */
     bool belongsTo(OpenMM::ContextImpl& context) const;
+    /** Refuse two triangulations of the same particles if one of them changes. */
+    static void refuseOthers(const std::string& subject, const SharedMembrane& one, const SharedMembrane& other);
+    /** Note the members in some force groups, and their terms. */
+    void collect(OpenMM::ContextImpl& context, int groups);
+    /** Go on with other triangles, or back to the old ones if the mover cannot go on from there. */
+    template <class Change>
+    void change(const std::string& subject, OpenMM::ContextImpl& context, Change make);
+    /** The smallest index of a particle, which stands for the membrane in what is saved. */
+    int getSmallestParticle() const;
 
     std::vector<int> triangles;
     HelfrichMembrane* core;
     std::vector<MembraneForceImpl*> members;
+    /** What flips edges, or null. */
+    MonteCarloBondFlipImpl* mover;
     std::vector<MembraneForceImpl*> active;
     std::vector<HelfrichTerm> terms;
     std::vector<HelfrichContribution> contributions;

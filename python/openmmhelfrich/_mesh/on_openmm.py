@@ -9,7 +9,7 @@ import copy
 
 import numpy as np
 
-__all__ = ["energy", "topology"]
+__all__ = ["energy", "present", "topology"]
 
 
 def topology(num_vertices: int, edges: np.ndarray):
@@ -41,3 +41,14 @@ def energy(vertices: np.ndarray, force) -> float:
     context.setPositions(vertices)
     state = context.getState(getEnergy=True)
     return state.getPotentialEnergy().value_in_unit(unit.kilojoule_per_mole)
+
+
+def present(context, force) -> tuple[np.ndarray, np.ndarray]:
+    """What `Mesh.from_context` makes a mesh of: vertices, nm, and triangles of vertices."""
+    from openmm import unit
+
+    corners = force.getTrianglesInContext(context)
+    particles, triangles = np.unique(corners, return_inverse=True)
+    positions = context.getState(getPositions=True).getPositions(asNumpy=True)
+    vertices = positions.value_in_unit(unit.nanometer)[particles]
+    return vertices, triangles.reshape(-1, 3)

@@ -1,11 +1,8 @@
 #ifndef HELFRICH_MEMBRANE_FORCE_H_
 #define HELFRICH_MEMBRANE_FORCE_H_
 
-#include "internal/Core.h"
+#include "TriangulatedForce.h"
 #include "internal/UpdatableImpl.h"
-
-#include <openmm/Context.h>
-#include <openmm/Force.h>
 
 #include <string>
 #include <vector>
@@ -25,44 +22,8 @@ namespace HelfrichPlugin {
  * are undefined; the evaluation then throws an OpenMMException that names the triangle, and so it does
  * for a particle at a position that is not finite. The Context stays usable with other positions.
  */
-class MembraneForce : public OpenMM::Force {
+class MembraneForce : public TriangulatedForce {
 public:
-    /**
-     * Add a triangle.
-     *
-     * @param particle1  the index of the first corner
-     * @param particle2  the index of the second corner, counter-clockwise seen from outside
-     * @param particle3  the index of the third corner
-     * @return the index of the triangle that was added
-     */
-    int addTriangle(int particle1, int particle2, int particle3);
-    /**
-     * Get the number of triangles.
-     */
-    int getNumTriangles() const {
-        return (int) triangles.size() / 3;
-    }
-    /**
-     * Get the corners of a triangle.
-     *
-     * @param index            the index of the triangle
-     * @param[out] particle1   the index of the first corner
-     * @param[out] particle2   the index of the second corner
-     * @param[out] particle3   the index of the third corner
-     */
-    void getTriangle(int index, int& particle1, int& particle2, int& particle3) const;
-    /**
-     * Get the corners of all triangles, one after the other.
-     */
-    const std::vector<int>& getTriangles() const {
-        return triangles;
-    }
-    /**
-     * Add many triangles.
-     *
-     * @param corners  the particle indices of the corners, three for each triangle
-     */
-    void addTriangles(const std::vector<int>& corners);
     /**
      * Get the number of scalar parameters.
      */
@@ -170,12 +131,6 @@ public:
         return false;
     }
     /**
-     * Get the name of the class, as messages and XML have it.
-     */
-    const std::string& getTypeName() const {
-        return type;
-    }
-    /**
      * Get which variant of the potential is computed, 0 if there are none.
      */
     int getForm() const {
@@ -216,7 +171,6 @@ protected:
      */
     MembraneForce(const std::string& type, const std::vector<int>& triangles, const std::vector<double>& values,
                   int form = 0);
-    OpenMM::ForceImpl* createImpl() const;
 
 private:
     struct Parameter {
@@ -231,10 +185,7 @@ private:
     int findParameter(const std::string& name) const;
     unsigned int findSwitch(const std::string& name) const;
     bool hasContextParameter(const std::string& name) const;
-    [[noreturn]] void fail(const std::string& message) const;
 
-    std::string type;
-    std::vector<int> triangles;
     std::vector<Parameter> parameters;
     std::vector<std::string> derivatives;
     int form;
@@ -242,49 +193,20 @@ private:
     std::string backend;
 };
 
-/*
- * The classes are all in their headers, on top of the C functions that the library exports: whoever uses
- * them needs no other library than the plugin.
- */
 #ifndef SWIG
 
 inline MembraneForce::MembraneForce(const std::string& type, const std::vector<int>& triangles,
                                     const std::vector<double>& values, int form)
-    : type(type), form(0), switches(0) {
-    setName(type);
+    : TriangulatedForce(type, triangles), form(0), switches(0) {
     for (double value : values) {
         int index = (int) parameters.size();
         HelfrichParameterInfo info;
-        check(Helfrich_Potential_parameter(type.c_str(), index, &info));
-        check(Helfrich_Potential_check(type.c_str(), index, value));
+        check(Helfrich_Potential_parameter(getTypeName().c_str(), index, &info));
+        check(Helfrich_Potential_check(getTypeName().c_str(), index, value));
         parameters.push_back({info.name, value, "", {}, info.per != 0});
     }
     if (form != 0)
         setForm(form);
-    addTriangles(triangles);
-}
-
-inline void MembraneForce::fail(const std::string& message) const {
-    throw OpenMM::OpenMMException(type + ": " + message);
-}
-
-inline int MembraneForce::addTriangle(int particle1, int particle2, int particle3) {
-    triangles.insert(triangles.end(), {particle1, particle2, particle3});
-    return getNumTriangles() - 1;
-}
-
-inline void MembraneForce::addTriangles(const std::vector<int>& corners) {
-    if (corners.size() % 3 != 0)
-        fail("a list of " + std::to_string(corners.size()) + " corners is not made of triangles");
-    triangles.insert(triangles.end(), corners.begin(), corners.end());
-}
-
-inline void MembraneForce::getTriangle(int index, int& particle1, int& particle2, int& particle3) const {
-    if (index < 0 || index >= getNumTriangles())
-        fail("there is no triangle " + std::to_string(index) + " among " + std::to_string(getNumTriangles()));
-    particle1 = triangles[3 * index];
-    particle2 = triangles[3 * index + 1];
-    particle3 = triangles[3 * index + 2];
 }
 
 inline const std::string& MembraneForce::getParameterName(int index) const {
@@ -309,7 +231,7 @@ inline double MembraneForce::getParameterValue(const std::string& name) const {
 
 inline void MembraneForce::setParameterValue(const std::string& name, double value) {
     int index = findParameter(name);
-    check(Helfrich_Potential_check(type.c_str(), index, value));
+    check(Helfrich_Potential_check(getTypeName().c_str(), index, value));
     parameters[index].value = value;
 }
 
@@ -318,7 +240,7 @@ inline void MembraneForce::setElementValues(const std::string& name, const std::
     if (!parameters[index].perElement && !values.empty())
         fail(name + " is one value for the whole membrane; it cannot be given for single elements");
     for (size_t i = 0; i < values.size(); i++)
-        if (Helfrich_Potential_check(type.c_str(), index, values[i]) != 0)
+        if (Helfrich_Potential_check(getTypeName().c_str(), index, values[i]) != 0)
             throw OpenMM::OpenMMException(lastError() + " at index " + std::to_string(i));
     parameters[index].elementValues = values;
 }
@@ -365,13 +287,13 @@ inline const std::string& MembraneForce::getEnergyParameterDerivativeName(int in
 
 inline void MembraneForce::setForm(int number) {
     const char *what, *name;
-    check(Helfrich_Potential_form(type.c_str(), number, &what, &name));
+    check(Helfrich_Potential_form(getTypeName().c_str(), number, &what, &name));
     form = number;
 }
 
 inline unsigned int MembraneForce::findSwitch(const std::string& name) const {
     const char* found;
-    for (int i = 0; Helfrich_Potential_switch(type.c_str(), i, &found) == 0; i++)
+    for (int i = 0; Helfrich_Potential_switch(getTypeName().c_str(), i, &found) == 0; i++)
         if (name == found)
             return 1u << i;
     fail("there is no switch called \"" + name + "\"");
@@ -388,19 +310,12 @@ inline void MembraneForce::setSwitch(const std::string& name, bool on) {
 
 inline void MembraneForce::setBackend(const std::string& choice) {
     if (!choice.empty())
-        check(Helfrich_checkBackend(type.c_str(), choice.c_str()));
+        check(Helfrich_checkBackend(getTypeName().c_str(), choice.c_str()));
     backend = choice;
 }
 
 inline void MembraneForce::updateParametersInContext(OpenMM::Context& context) {
     dynamic_cast<UpdatableImpl&>(getImplInContext(context)).updateParametersInContext(getContextImpl(context));
-}
-
-inline OpenMM::ForceImpl* MembraneForce::createImpl() const {
-    void* impl = Helfrich_createImpl(this);
-    if (impl == nullptr)
-        throw OpenMM::OpenMMException(lastError());
-    return static_cast<OpenMM::ForceImpl*>(impl);
 }
 
 #endif /*SWIG*/

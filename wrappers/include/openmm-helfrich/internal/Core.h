@@ -44,6 +44,26 @@ struct HelfrichContribution {
     double byParameter[HELFRICH_MAX_PARAMETERS];
 };
 
+/** What bond flips may do. */
+struct HelfrichFlipRules {
+    /** kT, kJ/mol. */
+    double temperature;
+    int minDegree, maxDegree;
+    /** nm; 0 for any. */
+    double maxEdgeLength;
+    /** Whether a demon takes the place of a bath. */
+    int demon;
+};
+
+/** What a mover has come to: the key of its random numbers, and how many flips were tried, made and refused for what.
+ */
+struct HelfrichFlipState {
+    uint32_t key[2];
+    uint64_t attempts, accepted, byDegree, byLength, byShape, byEnergy, byEdge;
+    /** kJ/mol. */
+    double demonEnergy;
+};
+
 int64_t Helfrich_lastError(char* buffer, int64_t size);
 void helfrich_setLastError(const char* message);
 const char* Helfrich_openmmVersion();
@@ -70,6 +90,20 @@ int Helfrich_Membrane_evaluate(const char* subject, HelfrichMembrane* membrane, 
  * else 1, and the last error says why not.
  */
 int Helfrich_Platform_check(const void* system, const void* integrator);
+int Helfrich_Membrane_checkFlips(const char* subject, const HelfrichMembrane* membrane, const HelfrichFlipRules* rules);
+int Helfrich_Membrane_flip(const char* subject, HelfrichMembrane* membrane, const HelfrichTerm* terms, int64_t numTerms,
+                           int64_t numParticles, const double* positions, const HelfrichFlipRules* rules,
+                           int64_t attempts, HelfrichFlipState* state, int64_t* made);
+int64_t Helfrich_Membrane_numTriangles(const HelfrichMembrane* membrane);
+int64_t Helfrich_Membrane_numVertices(const HelfrichMembrane* membrane);
+void Helfrich_Membrane_triangles(const HelfrichMembrane* membrane, int* corners);
+int Helfrich_Membrane_setTriangles(const char* subject, HelfrichMembrane* membrane, const int* corners,
+                                   int64_t numTriangles);
+int64_t Helfrich_Membrane_order(const HelfrichMembrane* membrane, uint32_t* order);
+int Helfrich_Membrane_restore(const char* subject, HelfrichMembrane* membrane, const int* corners,
+                              const uint32_t* order, int64_t flips);
+double Helfrich_Membrane_fingerprint(const HelfrichMembrane* membrane, const int* corners);
+/** `force` is the address of an OpenMM::Force. */
 void* Helfrich_createImpl(const void* force);
 }
 

@@ -1,0 +1,162 @@
+"""The whole state of a Context in a file: what OpenMM's State holds, and the connectivity.
+
+Bond flips change which particles are neighbours. OpenMM's State, and its checkpoints on other
+platforms than Helfrich, do not know that; these files do, and they can be read on any platform.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from openmm import unit
+
+from . import _blocks, _writing
+from .forces import MembraneForce, MonteCarloBondFlip
+
+__all__ = ["load_state", "save_state"]
+
+_KIND = "state"
+#: Newest versions of the blocks of a file.
+_KNOWN = {
+    "positions": 1,
+    "velocities": 1,
+    "box": 1,
+    "parameters": 1,
+    "clock": 1,
+    "connectivity": 1,
+}
+_NEEDED = sorted(_KNOWN.keys() - {"connectivity"})
+_CLASSES = [MonteCarloBondFlip, *MembraneForce.__subclasses__()]
+
+
+def save_state(context, path) -> None:
+    """Save positions, velocities, parameters, time and connectivity of a Context.
+
+    `load_state` restores them to the last bit of what OpenMM hands out: of all digits on the
+    platforms Reference, CPU and Helfrich, and elsewhere in the precision of the platform. What
+    bond flips have come to, with their random numbers and their statistics, is among it; the
+    random numbers of integrators are not (checkpoints of platform Helfrich have them too).
+
+    Parameters
+    ----------
+    context : openmm.Context
+    path : str or path-like
+        The file; it is replaced in one go, so that there is always a whole one. It has a checksum
+        and a version.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written.
+    """
+    state = context.getState(getPositions=True, getVelocities=True, getParameters=True)
+    arrays = {
+        "positions": state.getPositions(asNumpy=True),
+        "velocities": state.getVelocities(asNumpy=True),
+        "box": state.getPeriodicBoxVectors(asNumpy=True),
+    }
+    blocks = {
+        name: _blocks.Block(np.array(array.value_in_unit_system(unit.md_unit_system), np.float64))
+        for name, array in arrays.items()
+    }
+    blocks["parameters"] = _blocks.Block(
+        {name: float(value).hex() for name, value in sorted(state.getParameters().items())}
+    )
+    clock = {
+        "time": state.getTime().value_in_unit(unit.picosecond).hex(),
+        "step": context.getStepCount(),
+    }
+    blocks["clock"] = _blocks.Block(clock)
+    for number, force in enumerate(_surfaces(context)):
+        blocks[f"connectivity/{number}"] = _blocks.Block(force._saveConnectivity(context))
+    _writing.write_whole(path, _blocks.pack(_KIND, blocks))
+
+
+def load_state(context, path) -> None:
+    """Restore what `save_state` has saved, the connectivity too.
+
+    Parameters
+    ----------
+    context : openmm.Context
+        With as many particles, with forces on the same surfaces, and with all parameters that were
+        saved; on any platform.
+    path : str or path-like
+        The file.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be read.
+    ValueError
+        If the file is damaged, of another kind or of a newer version, or belongs to a Context with
+        other particles, surfaces or parameters. Nothing has changed then.
+    openmm.OpenMMException
+        If the connectivity is not one of these particles, or is not allowed by a
+        MonteCarloBondFlip.
+    """
+    name = Path(path)
+    try:
+        blocks = _blocks.unpack(name.read_bytes(), _KIND, _KNOWN)
+    except _blocks.BlockError as reason:
+        raise ValueError(f"load_state: {name} {reason}") from None
+    missing = [needed for needed in _NEEDED if needed not in blocks]
+    if missing:
+        raise ValueError(f"load_state: {name} has no {', '.join(missing)}")
+    values = {key: block.value for key, block in blocks.items()}
+    parameters = {key: float.fromhex(text) for key, text in values["parameters"].items()}
+    surfaces = _surfaces(context)
+    connectivity = _in_order(values)
+    _check(context, name, values["positions"], parameters, surfaces, connectivity)
+    # First what may be refused.
+    for force, saved in zip(surfaces, connectivity, strict=True):
+        force._restoreConnectivity(context, saved)
+    present = context.getParameters()
+    for key, value in parameters.items():
+        # Connectivity has set its own.
+        if not key.startswith("BondFlipConnectivity") and present[key] != value:
+            context.setParameter(key, value)
+    context.setPeriodicBoxVectors(*values["box"])
+    context.setPositions(values["positions"])
+    context.setVelocities(values["velocities"])
+    context.setTime(float.fromhex(values["clock"]["time"]))
+    context.setStepCount(values["clock"]["step"])
+
+
+def _in_order(values: dict) -> list[bytes]:
+    """What was saved of the surfaces, in their order."""
+    found = []
+    while (key := f"connectivity/{len(found)}") in values:
+        found.append(values[key])
+    return found
+
+
+def _check(context, name, positions, parameters, surfaces, connectivity) -> None:
+    count = context.getSystem().getNumParticles()
+    if len(positions) != count:
+        raise ValueError(
+            f"load_state: {name} has {len(positions)} particles, but the Context has {count}"
+        )
+    unknown = sorted(parameters.keys() - set(context.getParameters().keys()))
+    if unknown:
+        raise ValueError(
+            f"load_state: {name} has the parameter {unknown[0]}, which the Context has not; "
+            "make it with the same forces"
+        )
+    if len(connectivity) != len(surfaces):
+        raise ValueError(
+            f"load_state: {name} has {len(connectivity)} triangulated surfaces, but the forces of "
+            f"the Context have {len(surfaces)}"
+        )
+
+
+def _surfaces(context) -> list:
+    """One force on each of the triangulated surfaces of a Context, in their order."""
+    found = {}
+    for plain in context.getSystem().getForces():
+        for cls in _CLASSES:
+            if cls.isinstance(plain):
+                force = cls.cast(plain)
+                found.setdefault(force._triangleBuffer(), force)
+                break
+    return list(found.values())

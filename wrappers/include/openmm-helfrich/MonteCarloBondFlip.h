@@ -1,0 +1,262 @@
+#ifndef HELFRICH_MONTE_CARLO_BOND_FLIP_H_
+#define HELFRICH_MONTE_CARLO_BOND_FLIP_H_
+
+#include "TriangulatedForce.h"
+#include "internal/UpdatableImpl.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace HelfrichPlugin {
+
+/**
+ * Makes a membrane fluid: now and then it tries to flip edges of the mesh, so that neighbours change during a
+ * simulation.
+ *
+ * The edge ij of two triangles (i, j, k) and (j, i, l) becomes kl, at fixed positions and velocities. An edge is chosen
+ * uniformly among all; the flip is refused if a vertex would have fewer neighbours than minDegree or more than
+ * maxDegree, if kl would be longer than maxEdgeLength or exists already, or if a new triangle would have no area.
+ * Otherwise it is accepted with probability
+ *
+ *     min(1, exp(-dE / kB T))
+ *
+ * where dE is the change of the energy of all membrane forces on these triangles whose force group is among the
+ * integrator's (Integrator::getIntegrationForceGroups()): N. Metropolis et al., doi:10.1063/1.1699114. With a
+ * thermostat of the same temperature, positions, velocities and connectivity have their joint Boltzmann distribution.
+ * See G. Gompper and D. M. Kroll, doi:10.1088/0953-8984/9/42/001, and on the viscosity that the rate of flips sets
+ * H. Noguchi and G. Gompper, doi:10.1103/PhysRevE.72.011901.
+ *
+ * Without a thermostat, choose the ensemble Microcanonical: a demon (M. Creutz, doi:10.1103/PhysRevLett.50.1411), whose
+ * energy is never below zero, pays for flips and takes what they set free, so that the energy of the System and the
+ * demon together is conserved.
+ *
+ * Like a barostat, this class has neither energy nor forces, and acts whenever an integrator updates the state of the
+ * Context: all integrators of OpenMM do, a CustomIntegrator where it has addUpdateContextState(). Forces must have the
+ * same triangles in the same order to be on the same surface; other forces may not act on a triangulation of the same
+ * particles. A surface has one MonteCarloBondFlip at most. Particles of mass 0 stay where they are, but their bonds
+ * flip like others.
+ *
+ * Connectivity is part of the state of a Context, with positions and velocities, but OpenMM's State does not hold it;
+ * its checkpoints do on platform Helfrich only. A fingerprint of the triangles in a parameter of the Context
+ * (getConnectivityParameter(); 0 for those that the System has) tells when a State with other connectivity is loaded:
+ * the next step or evaluation is refused. Use saveConnectivity() and restoreConnectivity(), or in Python save_state()
+ * and load_state(). On the platforms Reference, CPU and Helfrich, and where it computes parameters of the Context, a
+ * CustomIntegrator sets back what changes during its steps: there the fingerprint of the triangles before the last
+ * flips is taken for the present one, and set right by evaluations between steps.
+ */
+class MonteCarloBondFlip : public TriangulatedForce {
+public:
+    /**
+     * Who pays for flips.
+     */
+    enum Ensemble {
+        /**
+         * A bath of a temperature.
+         */
+        Canonical = 0,
+        /**
+         * A demon, which has no energy when a Context is made. The temperature is not used.
+         */
+        Microcanonical = 1
+    };
+    /**
+     * The name of the Context parameter that holds the temperature of the flips, K.
+     */
+    static const std::string& Temperature() {
+        static const std::string key = "BondFlipTemperature";
+        return key;
+    }
+    /**
+     * @param triangles        the particle indices of the corners, three for each triangle
+     * @param temperature      the default temperature, K, above zero: that of the thermostat
+     * @param frequency        every how many time steps flips are tried; 0 for never
+     * @param attemptsPerEdge  how many flips are tried each time, for each edge of the mesh, from 0 to 1000; a fraction
+     * of an attempt is carried over to the next time
+     * @param minDegree        the fewest neighbours of a vertex, 3 or more
+     * @param maxDegree        the most neighbours of a vertex
+     * @param maxEdgeLength    the longest that a new edge may be, nm; 0 for any length
+     */
+    MonteCarloBondFlip(const std::vector<int>& triangles, double temperature, int frequency = 10,
+                       double attemptsPerEdge = 0.1, int minDegree = 3, int maxDegree = 10, double maxEdgeLength = 0)
+        : TriangulatedForce("MonteCarloBondFlip", triangles), ensemble(Canonical), randomNumberSeed(0) {
+        setDefaultTemperature(temperature);
+        setFrequency(frequency);
+        setAttemptsPerEdge(attemptsPerEdge);
+        setMinDegree(minDegree);
+        setMaxDegree(maxDegree);
+        setMaxEdgeLength(maxEdgeLength);
+        if (maxDegree < minDegree)
+            fail("maxDegree must not be below minDegree, got " + std::to_string(maxDegree) + " and " +
+                 std::to_string(minDegree));
+    }
+    /**
+     * Get the default temperature, K.
+     */
+    double getDefaultTemperature() const {
+        return temperature;
+    }
+    /**
+     * Set the default temperature, K, above zero, of Contexts that are made from now on; in others it is the parameter
+     * Temperature().
+     */
+    void setDefaultTemperature(double temperature) {
+        if (!(temperature > 0 && std::isfinite(temperature)))
+            fail("temperature must be a finite number of K above zero, got " + text(temperature));
+        this->temperature = temperature;
+    }
+    /**
+     * Get every how many time steps flips are tried.
+     */
+    int getFrequency() const {
+        return frequency;
+    }
+    /**
+     * Set every how many time steps flips are tried; 0 for never.
+     */
+    void setFrequency(int frequency) {
+        if (frequency < 0)
+            fail("frequency must be a number of steps, or 0 for never, got " + std::to_string(frequency));
+        this->frequency = frequency;
+    }
+    /**
+     * Get how many flips are tried each time, for each edge.
+     */
+    double getAttemptsPerEdge() const {
+        return attemptsPerEdge;
+    }
+    /**
+     * Set how many flips are tried each time, for each edge, from 0 to 1000.
+     */
+    void setAttemptsPerEdge(double attemptsPerEdge) {
+        if (!(attemptsPerEdge >= 0 && attemptsPerEdge <= 1000))
+            fail("attemptsPerEdge must be from 0 to 1000, got " + text(attemptsPerEdge));
+        this->attemptsPerEdge = attemptsPerEdge;
+    }
+    /**
+     * Get the fewest neighbours of a vertex.
+     */
+    int getMinDegree() const {
+        return minDegree;
+    }
+    /**
+     * Set the fewest neighbours of a vertex, 3 or more.
+     */
+    void setMinDegree(int minDegree) {
+        if (minDegree < 3)
+            fail("minDegree must be 3 or more, got " + std::to_string(minDegree));
+        this->minDegree = minDegree;
+    }
+    /**
+     * Get the most neighbours of a vertex.
+     */
+    int getMaxDegree() const {
+        return maxDegree;
+    }
+    /**
+     * Set the most neighbours of a vertex, 3 or more.
+     */
+    void setMaxDegree(int maxDegree) {
+        if (maxDegree < 3)
+            fail("maxDegree must be 3 or more, got " + std::to_string(maxDegree));
+        this->maxDegree = maxDegree;
+    }
+    /**
+     * Get the longest that a new edge may be, nm; 0 for any length.
+     */
+    double getMaxEdgeLength() const {
+        return maxEdgeLength;
+    }
+    /**
+     * Set the longest that a new edge may be, nm; 0 for any length.
+     */
+    void setMaxEdgeLength(double maxEdgeLength) {
+        if (!(maxEdgeLength >= 0 && std::isfinite(maxEdgeLength)))
+            fail("maxEdgeLength must be a finite number of nm, or 0 for any length, got " + text(maxEdgeLength));
+        this->maxEdgeLength = maxEdgeLength;
+    }
+    /**
+     * Get who pays for flips.
+     */
+    Ensemble getEnsemble() const {
+        return ensemble;
+    }
+    /**
+     * Set who pays for flips: Canonical, a bath, or Microcanonical, a demon.
+     */
+    void setEnsemble(Ensemble ensemble) {
+        if (ensemble != Canonical && ensemble != Microcanonical)
+            fail("there is no ensemble " + std::to_string((int) ensemble));
+        this->ensemble = ensemble;
+    }
+    /**
+     * Get the seed of the random numbers.
+     */
+    int getRandomNumberSeed() const {
+        return randomNumberSeed;
+    }
+    /**
+     * Set the seed of the random numbers, for Contexts that are made from now on. The same seed gives the same flips,
+     * on any number of threads. With 0, the default, each Context gets a seed of its own.
+     */
+    void setRandomNumberSeed(int seed) {
+        randomNumberSeed = seed;
+    }
+    /**
+     * Copy frequency, attemptsPerEdge, the bounds and the ensemble of this object to a Context. The temperature is a
+     * parameter of the Context; changed triangles are refused (use Context::reinitialize()).
+     *
+     * @param context  the Context to update
+     */
+    void updateParametersInContext(OpenMM::Context& context) {
+        dynamic_cast<UpdatableImpl&>(getImplInContext(context)).updateParametersInContext(getContextImpl(context));
+    }
+    /**
+     * Get what has come of the flips that were tried in a Context since it was made: "attempts", those "accepted", and
+     * those refused, by the first of these that they failed: "refusedByDegree", "refusedByLength",
+     * "refusedByShape" (a triangle would have no area), "refusedByEnergy" and "refusedByEdge" (the new edge was there
+     * already); "acceptance", accepted over attempts; "time", the time that has been simulated, ps; "rate", accepted
+     * for each edge and ps; and "demonEnergy", kJ/mol. Ratios are NaN as long as there is nothing to divide by.
+     *
+     * @param context  the Context
+     */
+    std::map<std::string, double> getStatistics(OpenMM::Context& context) const {
+        return dynamic_cast<StatisticsImpl&>(getImplInContext(context)).getStatistics(getContextImpl(context));
+    }
+    /**
+     * Get the name of the Context parameter that holds the fingerprint of the triangles: BondFlipConnectivity with the
+     * smallest index of a particle among them. It is not to be set.
+     */
+    std::string getConnectivityParameter() const {
+        const std::vector<int>& corners = getTriangles();
+        auto smallest = std::min_element(corners.begin(), corners.end());
+        return "BondFlipConnectivity" + (smallest == corners.end() ? "" : std::to_string(*smallest));
+    }
+    /**
+     * Positions are taken as they are, without periodic boundary conditions.
+     *
+     * @return false
+     */
+    bool usesPeriodicBoundaryConditions() const {
+        return false;
+    }
+
+private:
+    static std::string text(double value) {
+        char buffer[32];
+        std::snprintf(buffer, sizeof(buffer), "%g", value);
+        return buffer;
+    }
+
+    double temperature, attemptsPerEdge, maxEdgeLength;
+    int frequency, minDegree, maxDegree;
+    Ensemble ensemble;
+    int randomNumberSeed;
+};
+
+} // namespace HelfrichPlugin
+
+#endif /*HELFRICH_MONTE_CARLO_BOND_FLIP_H_*/

@@ -1,0 +1,180 @@
+#ifndef HELFRICH_TRIANGULATED_FORCE_H_
+#define HELFRICH_TRIANGULATED_FORCE_H_
+
+#include "internal/ConnectivityImpl.h"
+#include "internal/Core.h"
+
+#include <openmm/Context.h>
+#include <openmm/Force.h>
+
+#include <string>
+#include <vector>
+
+namespace HelfrichPlugin {
+
+/**
+ * What acts on a closed triangulated surface of particles.
+ *
+ * The triangles are those that a Context begins with, and they tell which forces act on the same surface. Bond flips
+ * (MonteCarloBondFlip) and setTrianglesInContext() change which particles are connected in a Context, for all forces on
+ * the same triangles at once; triangles keep their numbers.
+ */
+class TriangulatedForce : public OpenMM::Force {
+public:
+    /**
+     * Add a triangle.
+     *
+     * @param particle1  the index of the first corner
+     * @param particle2  the index of the second corner, counter-clockwise seen from outside
+     * @param particle3  the index of the third corner
+     * @return the index of the triangle that was added
+     */
+    int addTriangle(int particle1, int particle2, int particle3);
+    /**
+     * Get the number of triangles.
+     */
+    int getNumTriangles() const {
+        return (int) triangles.size() / 3;
+    }
+    /**
+     * Get the corners of a triangle.
+     *
+     * @param index            the index of the triangle
+     * @param[out] particle1   the index of the first corner
+     * @param[out] particle2   the index of the second corner
+     * @param[out] particle3   the index of the third corner
+     */
+    void getTriangle(int index, int& particle1, int& particle2, int& particle3) const;
+    /**
+     * Get the corners of all triangles, one after the other.
+     */
+    const std::vector<int>& getTriangles() const {
+        return triangles;
+    }
+    /**
+     * Add many triangles.
+     *
+     * @param corners  the particle indices of the corners, three for each triangle
+     */
+    void addTriangles(const std::vector<int>& corners);
+    /**
+     * Get the corners of all triangles as they are in a Context now, one after the other.
+     *
+     * @param context  the Context
+     */
+    std::vector<int> getTrianglesInContext(OpenMM::Context& context) const;
+    /**
+     * Connect the particles of a surface in a Context in another way, for all forces on the same triangles. Positions
+     * stay as they are.
+     *
+     * @param context  the Context
+     * @param corners  the particle indices of the corners, three for each triangle: as many triangles of the same
+     *                 particles as there are, counter-clockwise seen from outside
+     */
+    void setTrianglesInContext(OpenMM::Context& context, const std::vector<int>& corners) const;
+    /**
+     * Get all that restoreConnectivity() needs to go on with the same bits: the triangles of a Context, the order in
+     * which sums are formed, and what a MonteCarloBondFlip on them has come to. Positions are not among it. The bytes
+     * have a checksum and are those of processors with little-endian numbers.
+     *
+     * @param context  the Context
+     */
+    std::string saveConnectivity(OpenMM::Context& context) const;
+    /**
+     * Go on with what saveConnectivity() has returned.
+     *
+     * @param context  a Context with a force on the same triangles
+     * @param saved    the bytes
+     */
+    void restoreConnectivity(OpenMM::Context& context, const std::string& saved) const;
+    /**
+     * Get the name of the class, as messages and XML have it.
+     */
+    const std::string& getTypeName() const {
+        return type;
+    }
+
+protected:
+    /**
+     * @param type       the name of the class
+     * @param triangles  the particle indices of the corners, three for each triangle
+     */
+    TriangulatedForce(const std::string& type, const std::vector<int>& triangles);
+    OpenMM::ForceImpl* createImpl() const;
+    [[noreturn]] void fail(const std::string& message) const;
+
+private:
+    ConnectivityImpl& getConnectivityImpl(OpenMM::Context& context) const;
+
+    std::string type;
+    std::vector<int> triangles;
+};
+
+/*
+ * The classes are all in their headers, on top of the C functions that the library exports: whoever uses
+ * them needs no other library than the plugin.
+ */
+#ifndef SWIG
+
+inline TriangulatedForce::TriangulatedForce(const std::string& type, const std::vector<int>& triangles) : type(type) {
+    setName(type);
+    addTriangles(triangles);
+}
+
+inline void TriangulatedForce::fail(const std::string& message) const {
+    throw OpenMM::OpenMMException(type + ": " + message);
+}
+
+inline int TriangulatedForce::addTriangle(int particle1, int particle2, int particle3) {
+    triangles.insert(triangles.end(), {particle1, particle2, particle3});
+    return getNumTriangles() - 1;
+}
+
+inline void TriangulatedForce::addTriangles(const std::vector<int>& corners) {
+    if (corners.size() % 3 != 0)
+        fail("a list of " + std::to_string(corners.size()) + " corners is not made of triangles");
+    triangles.insert(triangles.end(), corners.begin(), corners.end());
+}
+
+inline void TriangulatedForce::getTriangle(int index, int& particle1, int& particle2, int& particle3) const {
+    if (index < 0 || index >= getNumTriangles())
+        fail("there is no triangle " + std::to_string(index) + " among " + std::to_string(getNumTriangles()));
+    particle1 = triangles[3 * index];
+    particle2 = triangles[3 * index + 1];
+    particle3 = triangles[3 * index + 2];
+}
+
+inline ConnectivityImpl& TriangulatedForce::getConnectivityImpl(OpenMM::Context& context) const {
+    return dynamic_cast<ConnectivityImpl&>(getImplInContext(context));
+}
+
+inline std::vector<int> TriangulatedForce::getTrianglesInContext(OpenMM::Context& context) const {
+    return getConnectivityImpl(context).getTrianglesInContext();
+}
+
+inline void TriangulatedForce::setTrianglesInContext(OpenMM::Context& context, const std::vector<int>& corners) const {
+    if (corners.size() % 3 != 0)
+        fail("a list of " + std::to_string(corners.size()) + " corners is not made of triangles");
+    getConnectivityImpl(context).setTrianglesInContext(getContextImpl(context), corners);
+}
+
+inline std::string TriangulatedForce::saveConnectivity(OpenMM::Context& context) const {
+    return getConnectivityImpl(context).saveConnectivity(getContextImpl(context));
+}
+
+inline void TriangulatedForce::restoreConnectivity(OpenMM::Context& context, const std::string& saved) const {
+    getConnectivityImpl(context).restoreConnectivity(getContextImpl(context), saved);
+}
+
+inline OpenMM::ForceImpl* TriangulatedForce::createImpl() const {
+    void* impl = Helfrich_createImpl(static_cast<const OpenMM::Force*>(this));
+    if (impl == nullptr)
+        throw OpenMM::OpenMMException(lastError());
+    return static_cast<OpenMM::ForceImpl*>(impl);
+}
+
+#endif /*SWIG*/
+
+} // namespace HelfrichPlugin
+
+#endif /*HELFRICH_TRIANGULATED_FORCE_H_*/

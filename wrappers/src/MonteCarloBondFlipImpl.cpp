@@ -1,0 +1,246 @@
+#include "MonteCarloBondFlipImpl.h"
+
+#include <openmm/CompoundIntegrator.h>
+#include <openmm/CustomIntegrator.h>
+#include <openmm/System.h>
+#include <openmm/internal/OSRngSeed.h>
+#include <openmm/reference/ReferencePlatform.h>
+#include <openmm/reference/SimTKOpenMMRealType.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+
+using namespace HelfrichPlugin;
+using namespace OpenMM;
+using std::map;
+using std::string;
+using std::vector;
+
+namespace {
+
+/** The second word of the random numbers' key, plus the number of the mover; integrators' streams count from zero. */
+const uint32_t KEY = 0x464c0000;
+
+/** A step that no other follows. */
+const long long NEVER = -2;
+
+/** How many movers a System has before this one. */
+uint32_t findNumber(const System& system, const MonteCarloBondFlip& owner) {
+    uint32_t number = 0;
+    for (int i = 0; i < system.getNumForces(); i++) {
+        if (&system.getForce(i) == &owner)
+            break;
+        if (dynamic_cast<const MonteCarloBondFlip*>(&system.getForce(i)) != nullptr)
+            number++;
+    }
+    return number;
+}
+
+/** Refuse forces on the same particles that are evaluated in a Context of their own, which flips would not reach. */
+void refuseContained(const MonteCarloBondFlip& owner, ContextImpl& context) {
+    const vector<int>& corners = owner.getTriangles();
+    const std::set<int> particles(corners.begin(), corners.end());
+    for (const ForceImpl* impl : context.getForceImpls())
+        for (const Force* contained : impl->getContainedForces())
+            if (auto* force = dynamic_cast<const TriangulatedForce*>(contained))
+                for (int particle : force->getTriangles())
+                    if (particles.count(particle) != 0)
+                        throw OpenMMException(owner.getTypeName() + ": particle " + std::to_string(particle) +
+                                              " has a " + force->getTypeName() + " inside of the force \"" +
+                                              impl->getOwner().getName() +
+                                              "\", which would not see flips; add it to the System itself");
+}
+
+/** The integrator that makes the present step. */
+const Integrator& findIntegrator(ContextImpl& context) {
+    const Integrator& integrator = context.getIntegrator();
+    auto* compound = dynamic_cast<const CompoundIntegrator*>(&integrator);
+    return compound == nullptr ? integrator : compound->getIntegrator(compound->getCurrentIntegrator());
+}
+
+/**
+ * Whether an integrator writes parameters of the Context during a step, from copies that it made at the step's
+ * beginning: Reference's CustomIntegrator always does, others if they compute parameters.
+ */
+bool writesParameters(const Integrator& integrator, ContextImpl& context, bool onReference) {
+    if (auto* compound = dynamic_cast<const CompoundIntegrator*>(&integrator)) {
+        for (int i = 0; i < compound->getNumIntegrators(); i++)
+            if (writesParameters(compound->getIntegrator(i), context, onReference))
+                return true;
+        return false;
+    }
+    auto* custom = dynamic_cast<const CustomIntegrator*>(&integrator);
+    if (custom == nullptr || onReference)
+        return custom != nullptr;
+    for (int i = 0; i < custom->getNumComputations(); i++) {
+        CustomIntegrator::ComputationType type;
+        string variable, expression;
+        custom->getComputationStep(i, type, variable, expression);
+        if (context.getParameters().count(variable) != 0)
+            return true;
+    }
+    return false;
+}
+
+} // namespace
+
+MonteCarloBondFlipImpl::MonteCarloBondFlipImpl(const MonteCarloBondFlip& owner)
+    : owner(owner), state(), rules(), frequency(0), attemptsPerEdge(0), inPlace(false), announced(nullptr), present(0),
+      replaced(0), mayRevert(false), lastTime(0), lastStep(NEVER) {
+}
+
+MonteCarloBondFlipImpl::~MonteCarloBondFlipImpl() {
+    if (membrane != nullptr)
+        membrane->leave(this);
+}
+
+void MonteCarloBondFlipImpl::initialize(ContextImpl& context) {
+    inPlace = dynamic_cast<const ReferencePlatform*>(&context.getPlatform()) != nullptr;
+    refuseContained(owner, context);
+    membrane = SharedMembrane::acquire(owner.getTypeName(), context, owner.getTriangles());
+    try {
+        copyValues();
+        membrane->join(this, context);
+    } catch (...) {
+        // OpenMM will not delete this object any more; the membrane shall not stay for ever.
+        membrane.reset();
+        throw;
+    }
+    int seed = owner.getRandomNumberSeed();
+    state.flips.key[0] = (uint32_t) (seed == 0 ? osrngseed() : seed);
+    state.flips.key[1] = KEY + findNumber(context.getSystem(), owner);
+}
+
+void MonteCarloBondFlipImpl::copyValues() {
+    HelfrichFlipRules updated;
+    updated.temperature = BOLTZ * owner.getDefaultTemperature();
+    updated.minDegree = owner.getMinDegree();
+    updated.maxDegree = owner.getMaxDegree();
+    updated.maxEdgeLength = owner.getMaxEdgeLength();
+    updated.demon = owner.getEnsemble() == MonteCarloBondFlip::Microcanonical;
+    membrane->checkRules(owner.getTypeName(), updated);
+    rules = updated;
+    frequency = owner.getFrequency();
+    attemptsPerEdge = owner.getAttemptsPerEdge();
+}
+
+map<string, double> MonteCarloBondFlipImpl::getDefaultParameters() {
+    return {{MonteCarloBondFlip::Temperature(), owner.getDefaultTemperature()},
+            {owner.getConnectivityParameter(), 0.0}};
+}
+
+double MonteCarloBondFlipImpl::getAnnounced(ContextImpl& context) {
+    if (announced == nullptr) {
+        // OpenMM makes the parameters after it has initialised the forces, and then keeps them in their places.
+        announced = &context.getParameters().at(owner.getConnectivityParameter());
+        mayRevert = writesParameters(context.getIntegrator(), context, inPlace);
+    }
+    return *announced;
+}
+
+double MonteCarloBondFlipImpl::getThermalEnergy(ContextImpl& context) const {
+    double temperature = context.getParameter(MonteCarloBondFlip::Temperature());
+    if (!(temperature > 0 && std::isfinite(temperature)))
+        throw OpenMMException(owner.getTypeName() + ": the Context parameter " + MonteCarloBondFlip::Temperature() +
+                              " must be a finite number of K above zero, got " + std::to_string(temperature));
+    return BOLTZ * temperature;
+}
+
+void MonteCarloBondFlipImpl::updateContextState(ContextImpl& context, bool& forcesInvalid) {
+    checkConnectivity(context);
+    state.time += getTimeSinceUpdate(context);
+    lastTime = context.getTime();
+    lastStep = context.getStepCount();
+    if (frequency == 0 || ++state.updates < frequency)
+        return;
+    state.updates = 0;
+    // Whatever fraction of an attempt a round has, round n ends with floor(n x) attempts.
+    double perRound = attemptsPerEdge * (double) membrane->getNumEdges();
+    double done = std::floor((double) state.rounds * perRound);
+    auto attempts = (int64_t) (std::floor((double) ++state.rounds * perRound) - done);
+    if (attempts == 0)
+        return;
+    if (rules.demon == 0)
+        rules.temperature = getThermalEnergy(context);
+    if (!inPlace)
+        context.getPositions(positions);
+    const vector<Vec3>& now =
+        inPlace ? *static_cast<ReferencePlatform::PlatformData*>(context.getPlatformData())->positions : positions;
+    int groups = findIntegrator(context).getIntegrationForceGroups();
+    if (membrane->flip(owner.getTypeName(), context, groups, now, rules, attempts, state.flips) > 0) {
+        forcesInvalid = true;
+        // What a step begins with is what the integrator may set back.
+        double before = getAnnounced(context);
+        announceConnectivity(context);
+        replaced = before;
+    }
+}
+
+double MonteCarloBondFlipImpl::calcForcesAndEnergy(ContextImpl& context, bool, bool, int) {
+    checkConnectivity(context);
+    if (getAnnounced(context) != present)
+        context.setParameter(owner.getConnectivityParameter(), present);
+    return 0;
+}
+
+void MonteCarloBondFlipImpl::announceConnectivity(ContextImpl& context) {
+    present = replaced = membrane->getFingerprint();
+    if (getAnnounced(context) != present)
+        context.setParameter(owner.getConnectivityParameter(), present);
+}
+
+void MonteCarloBondFlipImpl::checkConnectivity(ContextImpl& context) {
+    double said = getAnnounced(context);
+    if (said == present || (mayRevert && said == replaced))
+        return;
+    throw OpenMMException(owner.getTypeName() + ": the Context parameter " + owner.getConnectivityParameter() +
+                          " says that positions belong to other triangles than the Context has: a State or checkpoint "
+                          "was loaded, which does not hold the connectivity. Load what helfrich.save_state() has saved "
+                          "with helfrich.load_state(), or give the Context the triangles with setTrianglesInContext()");
+}
+
+double MonteCarloBondFlipImpl::getTimeSinceUpdate(ContextImpl& context) const {
+    // A user may set the time, or load another State, between two steps.
+    long long step = context.getStepCount();
+    double passed = context.getTime() - lastTime;
+    return (step == lastStep || step == lastStep + 1) && passed > 0 ? passed : 0.0;
+}
+
+MoverState MonteCarloBondFlipImpl::getState(ContextImpl& context) const {
+    MoverState now = state;
+    now.time += getTimeSinceUpdate(context);
+    return now;
+}
+
+void MonteCarloBondFlipImpl::setState(const MoverState& restored) {
+    state = restored;
+    lastStep = NEVER;
+}
+
+void MonteCarloBondFlipImpl::updateParametersInContext(ContextImpl&) {
+    if (owner.getTriangles() != membrane->getTriangles())
+        throw OpenMMException(owner.getTypeName() + ": the triangles have changed since the Context was made; call " +
+                              "Context::reinitialize()");
+    copyValues();
+}
+
+map<string, double> MonteCarloBondFlipImpl::getStatistics(ContextImpl& context) const {
+    const HelfrichFlipState& flips = state.flips;
+    double time = getState(context).time;
+    auto ratio = [](double above, double below) {
+        return below > 0 ? above / below : std::numeric_limits<double>::quiet_NaN();
+    };
+    auto accepted = (double) flips.accepted, attempts = (double) flips.attempts;
+    return {{"attempts", attempts},
+            {"accepted", accepted},
+            {"refusedByDegree", (double) flips.byDegree},
+            {"refusedByLength", (double) flips.byLength},
+            {"refusedByShape", (double) flips.byShape},
+            {"refusedByEnergy", (double) flips.byEnergy},
+            {"refusedByEdge", (double) flips.byEdge},
+            {"acceptance", ratio(accepted, attempts)},
+            {"time", time},
+            {"rate", ratio(accepted, time * (double) membrane->getNumEdges())},
+            {"demonEnergy", flips.demonEnergy}};
+}

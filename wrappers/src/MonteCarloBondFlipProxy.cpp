@@ -1,0 +1,77 @@
+#include "MonteCarloBondFlipProxy.h"
+
+#include "XmlElements.h"
+#include "openmm-helfrich/MonteCarloBondFlip.h"
+
+#include <memory>
+
+using namespace HelfrichPlugin;
+using namespace HelfrichPlugin::xml;
+using namespace OpenMM;
+using std::string;
+
+namespace {
+
+const int VERSION = 1;
+const string NAME = "MonteCarloBondFlip";
+/** The names of the ensembles, by their numbers. */
+const string ENSEMBLES[] = {"Canonical", "Microcanonical"};
+
+} // namespace
+
+MonteCarloBondFlipProxy::MonteCarloBondFlipProxy() : SerializationProxy("Helfrich" + NAME) {
+}
+
+void MonteCarloBondFlipProxy::serialize(const void* object, SerializationNode& node) const {
+    const MonteCarloBondFlip& force = *static_cast<const MonteCarloBondFlip*>(object);
+    node.setIntProperty("version", VERSION)
+        .setIntProperty("forceGroup", force.getForceGroup())
+        .setStringProperty("name", force.getName())
+        .setDoubleProperty("temperature", force.getDefaultTemperature())
+        .setIntProperty("frequency", force.getFrequency())
+        .setDoubleProperty("attemptsPerEdge", force.getAttemptsPerEdge())
+        .setIntProperty("minDegree", force.getMinDegree())
+        .setIntProperty("maxDegree", force.getMaxDegree())
+        .setDoubleProperty("maxEdgeLength", force.getMaxEdgeLength())
+        .setStringProperty("ensemble", ENSEMBLES[force.getEnsemble()])
+        .setIntProperty("randomSeed", force.getRandomNumberSeed());
+    writeTriangles(force, node);
+}
+
+void* MonteCarloBondFlipProxy::deserialize(const SerializationNode& node) const {
+    std::unique_ptr<MonteCarloBondFlip> force;
+    within(NAME, node, [&] {
+        int version = integer(NAME, node, "version");
+        if (version != VERSION)
+            throw OpenMMException(about(NAME, node) + "has version " + std::to_string(version) + ", but only " +
+                                  std::to_string(VERSION) +
+                                  " is known; it was written by another release of openmm-helfrich");
+        allow(NAME, node,
+              {"type", "version", "forceGroup", "name", "temperature", "frequency", "attemptsPerEdge", "minDegree",
+               "maxDegree", "maxEdgeLength", "ensemble", "randomSeed"},
+              {"Triangles"});
+        // What has a default may be left out, as in OpenMM's own XML.
+        auto integerOr = [&](const string& name, int value) {
+            return node.hasProperty(name) ? integer(NAME, node, name) : value;
+        };
+        auto numberOr = [&](const string& name, double value) {
+            return node.hasProperty(name) ? number(NAME, node, name) : value;
+        };
+        const MonteCarloBondFlip defaults({}, 1.0);
+        force.reset(new MonteCarloBondFlip(
+            {}, number(NAME, node, "temperature"), integerOr("frequency", defaults.getFrequency()),
+            numberOr("attemptsPerEdge", defaults.getAttemptsPerEdge()), integerOr("minDegree", defaults.getMinDegree()),
+            integerOr("maxDegree", defaults.getMaxDegree()), numberOr("maxEdgeLength", defaults.getMaxEdgeLength())));
+        force->setRandomNumberSeed(integerOr("randomSeed", defaults.getRandomNumberSeed()));
+        force->setForceGroup(integerOr("forceGroup", defaults.getForceGroup()));
+        if (node.hasProperty("name"))
+            force->setName(text(NAME, node, "name"));
+        string ensemble = node.hasProperty("ensemble") ? text(NAME, node, "ensemble") : ENSEMBLES[0];
+        if (ensemble != ENSEMBLES[0] && ensemble != ENSEMBLES[1])
+            refuse(NAME, node, "ensemble", ENSEMBLES[0] + " or " + ENSEMBLES[1]);
+        force->setEnsemble(ensemble == ENSEMBLES[0] ? MonteCarloBondFlip::Canonical
+                                                    : MonteCarloBondFlip::Microcanonical);
+        readTriangles(NAME, node, *force);
+    });
+    return static_cast<Force*>(force.release());
+}

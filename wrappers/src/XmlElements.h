@@ -1,0 +1,132 @@
+#ifndef HELFRICH_XML_ELEMENTS_H_
+#define HELFRICH_XML_ELEMENTS_H_
+
+#include "openmm-helfrich/TriangulatedForce.h"
+
+#include <openmm/serialization/SerializationNode.h>
+
+#include <cerrno>
+#include <climits>
+#include <cstdlib>
+#include <set>
+#include <string>
+
+namespace HelfrichPlugin {
+
+/** What the proxies read XML with; messages begin with the class of the force and name the element. */
+namespace xml {
+
+/** The beginning of a message about an element. */
+inline std::string about(const std::string& force, const OpenMM::SerializationNode& node) {
+    // The element of the force itself has no name when it is the root.
+    return force + ": element <" + (node.getName().empty() ? "Force" : node.getName()) + "> ";
+}
+
+/** Refuse what a node should not have, so that nothing is lost unnoticed. */
+inline void allow(const std::string& force, const OpenMM::SerializationNode& node,
+                  const std::set<std::string>& properties, const std::set<std::string>& children) {
+    std::string where = about(force, node);
+    for (const auto& property : node.getProperties())
+        if (properties.count(property.first) == 0)
+            throw OpenMM::OpenMMException(where + "has an unknown attribute \"" + property.first + "\"");
+    for (const OpenMM::SerializationNode& child : node.getChildren()) {
+        if (children.count(child.getName()) == 0)
+            throw OpenMM::OpenMMException(where + "has an unknown child <" + child.getName() + ">");
+    }
+}
+
+/** The text of an attribute that must be there. */
+inline std::string text(const std::string& force, const OpenMM::SerializationNode& node, const std::string& property) {
+    if (!node.hasProperty(property))
+        throw OpenMM::OpenMMException(about(force, node) + "lacks the attribute \"" + property + "\"");
+    return node.getStringProperty(property);
+}
+
+[[noreturn]] inline void refuse(const std::string& force, const OpenMM::SerializationNode& node,
+                                const std::string& property, const std::string& expected) {
+    throw OpenMM::OpenMMException(about(force, node) + "has " + property + "=\"" + node.getStringProperty(property) +
+                                  "\", which is not " + expected);
+}
+
+/** A number to the last character: what is broken shall not become a zero. */
+inline double number(const std::string& force, const OpenMM::SerializationNode& node, const std::string& property) {
+    std::string value = text(force, node, property);
+    char* end = nullptr;
+    double result = std::strtod(value.c_str(), &end);
+    if (value.empty() || *end != '\0')
+        refuse(force, node, property, "a number");
+    return result;
+}
+
+inline int integer(const std::string& force, const OpenMM::SerializationNode& node, const std::string& property) {
+    std::string value = text(force, node, property);
+    char* end = nullptr;
+    errno = 0;
+    long result = std::strtol(value.c_str(), &end, 10);
+    if (value.empty() || *end != '\0' || errno != 0 || result < INT_MIN || result > INT_MAX)
+        refuse(force, node, property, "an integer");
+    return (int) result;
+}
+
+inline bool boolean(const std::string& force, const OpenMM::SerializationNode& node, const std::string& property) {
+    std::string value = text(force, node, property);
+    if (value != "0" && value != "1" && value != "true" && value != "false")
+        refuse(force, node, property, "true or false");
+    return value == "1" || value == "true";
+}
+
+/** The one child of a name. */
+inline const OpenMM::SerializationNode& child(const std::string& force, const OpenMM::SerializationNode& node,
+                                              const std::string& name) {
+    const OpenMM::SerializationNode* found = nullptr;
+    for (const OpenMM::SerializationNode& candidate : node.getChildren())
+        if (candidate.getName() == name) {
+            if (found != nullptr)
+                throw OpenMM::OpenMMException(about(force, node) + "has the child <" + name + "> twice");
+            found = &candidate;
+        }
+    if (found == nullptr)
+        throw OpenMM::OpenMMException(about(force, node) + "lacks the child <" + name + ">");
+    return *found;
+}
+
+/** Do something with an element's content; what it throws shall name the element. */
+template <class Body>
+void within(const std::string& force, const OpenMM::SerializationNode& node, Body body) {
+    try {
+        body();
+    } catch (const OpenMM::OpenMMException& error) {
+        std::string message = error.what();
+        if (message.find("element <") != std::string::npos)
+            throw;
+        throw OpenMM::OpenMMException(message + " (in element <" + (node.getName().empty() ? "Force" : node.getName()) +
+                                      ">)");
+    }
+}
+
+inline void writeTriangles(const TriangulatedForce& force, OpenMM::SerializationNode& node) {
+    OpenMM::SerializationNode& triangles = node.createChildNode("Triangles");
+    for (int i = 0; i < force.getNumTriangles(); i++) {
+        int p1, p2, p3;
+        force.getTriangle(i, p1, p2, p3);
+        triangles.createChildNode("Triangle")
+            .setIntProperty("p1", p1)
+            .setIntProperty("p2", p2)
+            .setIntProperty("p3", p3);
+    }
+}
+
+inline void readTriangles(const std::string& name, const OpenMM::SerializationNode& node, TriangulatedForce& force) {
+    const OpenMM::SerializationNode& triangles = child(name, node, "Triangles");
+    allow(name, triangles, {}, {"Triangle"});
+    for (const OpenMM::SerializationNode& element : triangles.getChildren()) {
+        allow(name, element, {"p1", "p2", "p3"}, {});
+        force.addTriangle(integer(name, element, "p1"), integer(name, element, "p2"), integer(name, element, "p3"));
+    }
+}
+
+} // namespace xml
+
+} // namespace HelfrichPlugin
+
+#endif /*HELFRICH_XML_ELEMENTS_H_*/
