@@ -25,7 +25,7 @@ _LOCK = ".lock"
 # What a run may leave behind that is killed before it has written anything.
 _NOTHING = (_LOCK, CHECKPOINT + ".new")
 _KIND = "run"
-_KNOWN = {"run": 1, "openmm": 1}
+_KNOWN = {"run": 1, "openmm": 1, "connectivity": 1}
 # How the checkpoints began that had no checksum.
 _UNCHECKED = b'{"format": "openmm-helfrich checkpoint 1"'
 
@@ -49,6 +49,18 @@ class Saved:
     options: dict
     fingerprint: str
     outputs: dict | None
+
+
+@dataclass(frozen=True)
+class State:
+    """A Context at a checkpoint.
+
+    openmm: OpenMM's checkpoint; connectivity: what is saved of each surface whose bonds flip, which
+    OpenMM's checkpoint has on the platform Helfrich only.
+    """
+
+    openmm: bytes
+    connectivity: tuple[bytes, ...] = ()
 
 
 class RunFolder:
@@ -121,7 +133,7 @@ class RunFolder:
             "folder with --out"
         )
 
-    def read(self, previous: bool = False) -> tuple[Saved, bytes] | None:
+    def read(self, previous: bool = False) -> tuple[Saved, State] | None:
         """A checkpoint with the state of the Context; None if there is none, and nothing else.
 
         Parameters
@@ -144,7 +156,7 @@ class RunFolder:
         self._saved_step = found[0].step
         return found
 
-    def _unpack(self, name: str) -> tuple[Saved, bytes]:
+    def _unpack(self, name: str) -> tuple[Saved, State]:
         path = self.path / name
         try:
             data = path.read_bytes()
@@ -158,7 +170,10 @@ class RunFolder:
                 "the run with the version that began it, or give another folder with --out"
             )
         blocks = unpack(data, _KIND, _KNOWN)
-        return Saved(**blocks["run"].value), blocks["openmm"].value
+        connectivity = []
+        while (key := f"connectivity/{len(connectivity)}") in blocks:
+            connectivity.append(blocks[key].value)
+        return Saved(**blocks["run"].value), State(blocks["openmm"].value, tuple(connectivity))
 
     def _offer(self, other: str, reason: BlockError) -> str:
         """How to go on from the other checkpoint, if that helps."""
@@ -171,7 +186,7 @@ class RunFolder:
         option = "--resume-previous" if other == PREVIOUS else "--resume"
         return f"; {other} is whole: go on from step {saved.step} with {option}"
 
-    def save(self, saved: Saved, state: bytes) -> None:
+    def save(self, saved: Saved, state: State) -> None:
         """Write a checkpoint in place of the last one, which becomes the one before.
 
         Raises
@@ -179,7 +194,10 @@ class RunFolder:
         RunError
             If the system refuses; the last checkpoint is still there.
         """
-        data = pack(_KIND, {"run": Block(asdict(saved)), "openmm": Block(state)})
+        blocks = {"run": Block(asdict(saved)), "openmm": Block(state.openmm)}
+        for number, surface in enumerate(state.connectivity):
+            blocks[f"connectivity/{number}"] = Block(surface)
+        data = pack(_KIND, blocks)
         with self.writing():
             replace(self.path / CHECKPOINT, data, self.path / PREVIOUS)
         self._saved_step = saved.step

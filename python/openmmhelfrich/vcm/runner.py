@@ -16,8 +16,9 @@ import openmm
 
 from . import build
 from .config import Config
+from .connectivity import movers
 from .outputs import Frame, Outputs, report_steps, take_frame
-from .run_folder import CHECKPOINT, RunError, RunFolder, Saved
+from .run_folder import CHECKPOINT, RunError, RunFolder, Saved, State
 
 __all__ = ["CHECKPOINT", "Run", "RunError"]
 
@@ -107,7 +108,7 @@ class Run:
         from ..config import read_any as read
 
         found = self._folder.read(resume_previous) if resume or resume_previous else None
-        saved, state = (None, b"") if found is None else found
+        saved, state = (None, None) if found is None else found
         if saved is not None:
             # A run goes on as it began, whatever options were given again or left out.
             self._options = saved.options
@@ -251,7 +252,9 @@ class Run:
             self._fingerprint,
             outputs,
         )
-        self._folder.save(saved, self.context.createCheckpoint())
+        moving = movers(self.context).values()
+        connectivity = tuple(mover._saveConnectivity(self.context) for mover in moving)
+        self._folder.save(saved, State(self.context.createCheckpoint(), connectivity))
 
     @staticmethod
     def _agree(saved: Saved, platform: str | None, seed: int) -> tuple[str, int]:
@@ -265,10 +268,13 @@ class Run:
             raise RunError(f"the run has the seed {saved.seed}; leave out --seed")
         return saved.platform, saved.seed
 
-    def _load(self, saved: Saved, state: bytes, previous: bool) -> None:
+    def _load(self, saved: Saved, state: State, previous: bool) -> None:
         """Bring the Context, and outputs that were begun, back to a checkpoint."""
         try:
-            self.context.loadCheckpoint(state)
+            self.context.loadCheckpoint(state.openmm)
+            moving = movers(self.context).values()
+            for mover, surface in zip(moving, state.connectivity, strict=True):
+                mover._restoreConnectivity(self.context, surface)
         except openmm.OpenMMException as reason:
             raise RunError(f"OpenMM cannot go on from {self.folder}: {reason}") from None
         with self._folder.writing():
