@@ -9,9 +9,11 @@ import openmm
 from openmm import unit
 
 from ._numbers import whole_number
+from ._present import present_triangles
 from .analysis import mode_amplitudes, shape
 from .analysis._arrays import triangles_of
 from .analysis.tables import open_table
+from .forces import MonteCarloBondFlip
 
 __all__ = ["MembraneReporter", "ModeReporter"]
 
@@ -41,7 +43,7 @@ class _TableReporter:
     """Rows of numbers about one membrane, to a CSV or HDF5 file.
 
     Subclasses have `_include`, what they need of the State, `_columns`, the units of their columns
-    by name, and `_values`, a row.
+    by name, and `_values`, a row, from positions and triangles of the moment.
     """
 
     _include = ("positions",)
@@ -53,10 +55,9 @@ class _TableReporter:
         self._file, self._append = file, append
         corners = np.asarray(getattr(triangles, "triangles", triangles))
         highest = corners.max(initial=0) if corners.dtype.kind in "iu" else 0
-        corners = triangles_of(corners, int(highest) + 1) + offset
+        self._corners = triangles_of(corners, int(highest) + 1) + offset
         # Vertices in ascending order of particle index, as in the forces.
-        self._particles, inverse = np.unique(corners, return_inverse=True)
-        self._triangles = inverse.reshape(corners.shape)
+        self._particles = np.unique(self._corners)
         self._table = None
 
     def describeNextReport(self, simulation):
@@ -71,7 +72,13 @@ class _TableReporter:
         self._open(simulation)
         time = state.getTime().value_in_unit(unit.picosecond)
         positions = state.getPositions(asNumpy=True).value_in_unit(unit.nanometer)
-        values = self._values(simulation, state, np.asarray(positions)[self._particles])
+        try:
+            corners = present_triangles(simulation.context, self._corners)
+        except ValueError as reason:
+            raise ValueError(f"{type(self).__name__}: {reason}") from None
+        triangles = np.searchsorted(self._particles, corners)
+        vertices = np.asarray(positions)[self._particles]
+        values = self._values(simulation, state, vertices, triangles)
         self._table.add([int(simulation.currentStep), time, *(float(value) for value in values)])
 
     def _open(self, simulation):
@@ -106,7 +113,9 @@ class ModeReporter(_TableReporter):
         Steps between rows, 1 or more.
     triangles : Mesh or array_like of int
         The triangles as particle indices, shape (num_triangles, 3), counter-clockwise seen from
-        outside, as for the forces; or a Mesh whose vertex i is particle offset + i.
+        outside, as for the forces; or a Mesh whose vertex i is particle offset + i. Where a
+        `MonteCarloBondFlip` acts, these are the triangles at the start, and each row is about those
+        of its moment.
     lmax : int
         Largest l, 0 or more.
     quadrature, centre : str
@@ -150,8 +159,8 @@ class ModeReporter(_TableReporter):
     def _columns(self, simulation):
         return {f"u_{l}_{m}": "" for l in range(self._lmax + 1) for m in range(-l, l + 1)}
 
-    def _values(self, simulation, state, positions):
-        return mode_amplitudes(positions, self._triangles, self._lmax, **self._options)
+    def _values(self, simulation, state, positions, triangles):
+        return mode_amplitudes(positions, triangles, self._lmax, **self._options)
 
 
 class MembraneReporter(_TableReporter):
@@ -214,7 +223,7 @@ class MembraneReporter(_TableReporter):
             "anisotropy": "",
         }
 
-    def _values(self, simulation, state, positions):
+    def _values(self, simulation, state, positions, triangles):
         context = simulation.context
         terms = [
             context.getState(getEnergy=True, groups={group}).getPotentialEnergy() / _ENERGY
@@ -229,7 +238,7 @@ class MembraneReporter(_TableReporter):
             potential,
             kinetic / _ENERGY,
             temperature,
-            *shape(positions, self._triangles),
+            *shape(positions, triangles),
         ]
 
 
@@ -237,7 +246,9 @@ def _group_names(system):
     """The names of the forces of each force group, joined, by group in ascending order."""
     names = {}
     for force in system.getForces():
-        if not isinstance(force, openmm.CMMotionRemover):
+        if not isinstance(force, openmm.CMMotionRemover) and not MonteCarloBondFlip.isinstance(
+            force
+        ):
             names.setdefault(force.getForceGroup(), []).append(force.getName())
     joined, taken = {}, set()
     for group, parts in sorted(names.items()):

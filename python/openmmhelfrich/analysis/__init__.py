@@ -34,7 +34,7 @@ from .statistics import (
     spectrum,
 )
 from .tables import Modes, read_modes, read_table
-from .trajectories import Trajectory
+from .trajectories import Trajectory, read_triangles
 
 __all__ = [
     "Blocking",
@@ -67,6 +67,7 @@ __all__ = [
     "plane_grid",
     "read_modes",
     "read_table",
+    "read_triangles",
     "real_harmonics",
     "shape",
     "solid_angles",

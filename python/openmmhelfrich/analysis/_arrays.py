@@ -48,7 +48,8 @@ def over_frames(work, vertices, triangles=None, cost=None):
     vertices
         What `frames_of` takes, or a path or `Trajectory`, whose chunks are read as they are needed.
     triangles : array_like of int or Mesh, optional
-        Without, `faces` is None.
+        Shape (num_triangles, 3), or (num_frames, num_triangles, 3) if each frame has its own, as
+        where bonds flip. Without, `faces` is None.
     cost : callable, optional
         cost(num_vertices, num_triangles), about how many numbers a frame needs in memory. Default:
         30 for each vertex.
@@ -72,8 +73,11 @@ def over_frames(work, vertices, triangles=None, cost=None):
         def chunks(size):
             return (frames[first : first + size] for first in range(0, len(frames), size))
 
-    faces = None if triangles is None else triangles_of(triangles, num_vertices)
-    num_faces = 0 if faces is None else len(faces)
+    if np.ndim(triangles) == 3:
+        work, faces, num_faces = _with_own_triangles(work, triangles, num_vertices)
+    else:
+        faces = None if triangles is None else triangles_of(triangles, num_vertices)
+        num_faces = 0 if faces is None else len(faces)
     numbers = 30 * num_vertices if cost is None else cost(num_vertices, num_faces)
     first, parts = 0, []
     for part in chunks(max(1, _CHUNK // max(1, numbers))):
@@ -81,11 +85,34 @@ def over_frames(work, vertices, triangles=None, cost=None):
         first += len(part)
     if not parts:
         raise ValueError("vertices: there are no frames")
+    if np.ndim(triangles) == 3 and first != len(triangles):
+        raise ValueError(
+            f"triangles: there are those of {len(triangles)} frames, but {first} frames"
+        )
     if not isinstance(parts[0], tuple):
         joined = np.concatenate(parts)
         return joined[0] if single else joined
     joined = tuple(np.concatenate(column) for column in zip(*parts, strict=True))
     return tuple(column[0] for column in joined) if single else joined
+
+
+def _with_own_triangles(work, triangles, num_vertices: int):
+    """Let a function of frames with the same triangles work on frames that have their own."""
+
+    def each(frames, faces, first):
+        if first + len(frames) > len(triangles):
+            raise ValueError(
+                f"triangles: there are those of {len(triangles)} frames, but more frames"
+            )
+        parts = [
+            work(frame[np.newaxis], triangles_of(triangles[first + k], num_vertices), first + k)
+            for k, frame in enumerate(frames)
+        ]
+        if not isinstance(parts[0], tuple):
+            return np.concatenate(parts)
+        return tuple(np.concatenate(column) for column in zip(*parts, strict=True))
+
+    return each, None, triangles.shape[1]
 
 
 def frames_of(vertices) -> tuple[np.ndarray, bool]:

@@ -9,10 +9,49 @@ import numpy as np
 
 from .._numbers import whole_number
 
-__all__ = ["Trajectory"]
+__all__ = ["Trajectory", "read_triangles"]
 
 _SUFFIXES = (".xtc", ".dcd", ".pdb")
 _ANGSTROM = 0.1  # nm
+
+
+def read_triangles(path, num_triangles: int) -> np.ndarray:
+    """The triangles of each frame of a run whose bonds flip, which stand beside its XTC file.
+
+    Parameters
+    ----------
+    path : str or Path
+        ``<name>.triangles``: little-endian integers of 32 bits, three for each triangle.
+    num_triangles : int
+        Of all membranes together; it never changes.
+
+    Returns
+    -------
+    ndarray of int
+        Shape (num_frames, num_triangles, 3), by particle, mapped from the file and not read before
+        it is needed; all functions of this package that take triangles take it.
+
+    Raises
+    ------
+    FileNotFoundError
+        There is no such file.
+    ValueError
+        It does not consist of frames of so many triangles.
+
+    Examples
+    --------
+    >>> triangles = read_triangles("run/run.triangles", mesh.num_triangles)
+    >>> modes = mode_amplitudes("run/run.xtc", triangles, lmax=10)
+    """
+    path = Path(path)
+    count = whole_number(num_triangles, "read_triangles", "num_triangles", 1)
+    numbers, rest = divmod(path.stat().st_size, 4)
+    if rest or numbers == 0 or numbers % (3 * count):
+        raise ValueError(
+            f"read_triangles: {path} has {path.stat().st_size} bytes, which are not frames of "
+            f"{count} triangles, {12 * count} bytes each"
+        )
+    return np.memmap(path, dtype="<i4", mode="r").reshape(-1, count, 3)
 
 
 class Trajectory:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import openmm
 
+from .. import _present
 from ..forces import MonteCarloBondFlip
 from .grammar import ConfigError
 
@@ -49,24 +50,20 @@ def add_movers(cfg: Config, system: openmm.System) -> None:
         system.addForce(mover)
 
 
-def movers(context: openmm.Context) -> dict[int, MonteCarloBondFlip]:
-    """The movers of a Context, by the lowest particle of their surfaces."""
-    found = {}
-    for force in context.getSystem().getForces():
-        if MonteCarloBondFlip.isinstance(force):
-            mover = MonteCarloBondFlip.cast(force)
-            found[int(mover.getTrianglesInContext(context).min())] = mover
-    return found
+def movers(context: openmm.Context) -> list[MonteCarloBondFlip]:
+    """The movers of a Context, in their order."""
+    forces = context.getSystem().getForces()
+    return [
+        MonteCarloBondFlip.cast(force) for force in forces if MonteCarloBondFlip.isinstance(force)
+    ]
 
 
 def present_triangles(cfg: Config, context: openmm.Context) -> tuple[np.ndarray, ...]:
     """The triangles of each membrane as they are now, shape (num_triangles, 3), from vertex 0."""
-    moving = movers(context)
-    found = []
-    for membrane in cfg.membranes:
-        mover = moving.get(membrane.offset)
-        if mover is None:
-            found.append(membrane.mesh.triangles)
-        else:
-            found.append(mover.getTrianglesInContext(context) - membrane.offset)
-    return tuple(found)
+    if not cfg.flows:
+        return tuple(membrane.mesh.triangles for membrane in cfg.membranes)
+    return tuple(
+        _present.present_triangles(context, membrane.mesh.triangles + membrane.offset)
+        - membrane.offset
+        for membrane in cfg.membranes
+    )

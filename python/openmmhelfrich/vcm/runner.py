@@ -252,7 +252,7 @@ class Run:
             self._fingerprint,
             outputs,
         )
-        moving = movers(self.context).values()
+        moving = movers(self.context)
         connectivity = tuple(mover._saveConnectivity(self.context) for mover in moving)
         self._folder.save(saved, State(self.context.createCheckpoint(), connectivity))
 
@@ -272,7 +272,7 @@ class Run:
         """Bring the Context, and outputs that were begun, back to a checkpoint."""
         try:
             self.context.loadCheckpoint(state.openmm)
-            moving = movers(self.context).values()
+            moving = movers(self.context)
             for mover, surface in zip(moving, state.connectivity, strict=True):
                 mover._restoreConnectivity(self.context, surface)
         except openmm.OpenMMException as reason:

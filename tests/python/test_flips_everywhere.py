@@ -1,0 +1,269 @@
+"""Bond flips through the doors of vesicles, configuration files, reporters and analysis."""
+
+import csv
+
+import numpy as np
+import openmm
+import openmmhelfrich as helfrich
+import pytest
+from openmm import app
+from openmmhelfrich import MonteCarloBondFlip, analysis, vcm
+from run_files import contents, invoke
+
+MESH = helfrich.Mesh.random_sphere(252, 500, seed=5)
+
+TOML = """
+[simulation]
+duration = 16
+seed = 3
+[integrator]
+time_step = 0.4
+[output]
+interval = 4
+frames = "vtk"
+[[vesicle]]
+name = "fluid"
+flips = {flips}
+[vesicle.mesh]
+random = 132
+radius = 400
+[[vesicle]]
+name = "solid"
+[vesicle.mesh]
+random = 132
+radius = 400
+translate = [2000, 0, 0]
+"""
+
+VCM = """-GeneralParameters
+ProjectName run
+SimulationTimeInPs 8
+StepSizeInFs 400
+ReportIntervalInFs 2000
+Integrator LM
+Seed 4
+-Membrane 0
+MeshFile sphere.ply
+NodeMass 50
+MeanCurvatureModel Julicher1996
+MeanCurvatureCoeff 50
+SurfaceConstraint G
+SurfaceConstraintCoeff 1.3
+{more}
+-InteractionTable
+M0 0
+"""
+
+
+def toml(folder, flips):
+    path = folder / "run.toml"
+    path.write_text(TOML.format(flips=flips))
+    return path
+
+
+def integrator(temperature=310):
+    result = openmm.LangevinMiddleIntegrator(temperature, 0.01, 0.4)
+    result.setRandomNumberSeed(7)
+    return result
+
+
+class TestVesicle:
+    def test_rate_is_attempts_per_edge_and_step(self):
+        vesicle = helfrich.Vesicle(MESH, flips=0.03)
+        simulation = vesicle.simulation(integrator())
+        simulation.context.setVelocitiesToTemperature(310, 3)
+        simulation.step(200)
+        mover = vesicle.placement.flips
+        statistics = mover.getStatistics(simulation.context)
+        edges = len(MESH.edges)
+        assert statistics["attempts"] == pytest.approx(0.03 * 200 * edges, abs=1)
+        assert statistics["accepted"] > 0.1 * statistics["attempts"]
+        present = vesicle.placement.mesh(simulation.context)
+        assert present.num_triangles == MESH.num_triangles
+        assert set(map(tuple, present.edges)) != set(map(tuple, MESH.edges))
+
+    @pytest.mark.parametrize("given, expected", [({}, 310), ({"temperature": 290}, 290)])
+    def test_temperature_is_the_integrators_unless_it_is_given(self, given, expected):
+        simulation = helfrich.Vesicle(MESH, flips={"frequency": 5, **given}).simulation(
+            integrator()
+        )
+        assert simulation.context.getParameter(MonteCarloBondFlip.Temperature()) == expected
+
+    def test_arguments_reach_the_mover(self):
+        flips = {
+            "frequency": 4,
+            "attemptsPerEdge": 0.5,
+            "minDegree": 4,
+            "maxDegree": 9,
+            "maxEdgeLength": 200,
+            "randomNumberSeed": 11,
+            "ensemble": MonteCarloBondFlip.Microcanonical,
+        }
+        mover = helfrich.Vesicle(MESH, flips=flips).add_to(openmm.System()).flips
+        found = [mover.getFrequency(), mover.getAttemptsPerEdge(), mover.getMinDegree()]
+        found += [mover.getMaxDegree(), mover.getMaxEdgeLength(), mover.getRandomNumberSeed()]
+        assert [*found, mover.getEnsemble()] == list(flips.values())
+
+    @pytest.mark.parametrize(
+        "flips, message",
+        [
+            ({"rate": 1}, "flips has no argument 'rate'; known are temperature, frequency"),
+            (-0.1, "flips"),
+            ({"frequency": -1}, "frequency must be a number of steps"),
+            ({"maxDegree": 2}, "maxDegree must be 3 or more"),
+        ],
+    )
+    def test_mistakes_are_named_at_once(self, flips, message):
+        with pytest.raises((ValueError, openmm.OpenMMException), match=message):
+            helfrich.Vesicle(MESH, flips=flips)
+
+    def test_without_flips_nothing_moves(self):
+        placement = helfrich.Vesicle(MESH).add_to(system := openmm.System())
+        assert placement.flips is None and system.getNumForces() == len(placement.forces)
+
+
+class TestToml:
+    @pytest.mark.parametrize("platform", ["Helfrich", "Reference"])
+    def test_a_run_in_two_parts_has_the_bits_of_one(self, tmp_path, platform):
+        path = toml(tmp_path, 0.05)
+        option = ["--platform", platform]
+        invoke("run", path, "--out", tmp_path / "whole", *option)
+        invoke("run", path, "--out", tmp_path / "parts", "--steps", 20, *option)
+        invoke("run", path, "--out", tmp_path / "parts", "--resume")
+        whole, parts = (contents(tmp_path / name) for name in ("whole", "parts"))
+        names = {name for name in whole if "checkpoint" not in name}
+        assert {"run.csv", "run.xtc", "run.triangles"} <= names
+        assert {name: whole[name] for name in names} == {name: parts[name] for name in names}
+
+    def test_files_have_the_triangles_of_each_frame(self, tmp_path):
+        invoke("run", toml(tmp_path, 0.05), "--out", tmp_path / "run")
+        with (tmp_path / "run/run.csv").open() as file:
+            rows = list(csv.DictReader(file))
+        count = helfrich.Mesh.random_sphere(132, 400).num_triangles
+        triangles = analysis.read_triangles(tmp_path / "run/run.triangles", 2 * count)
+        assert len(triangles) == len(rows) == 11
+        changed = [len(np.argwhere((frame != triangles[0]).any(axis=1))) for frame in triangles]
+        assert changed[0] == 0 and min(changed[1:]) > 0
+        for number in range(11):
+            for label, mine in (("fluid", triangles[:, :count]), ("solid", triangles[:, count:])):
+                mesh = helfrich.Mesh.read(tmp_path / f"run/frames/run_{label}_{number:06d}.vtk")
+                volume = float(rows[number][f"volume {label} (nm^3)"])
+                assert mesh.volume == pytest.approx(volume, rel=1e-9)
+                offset = 132 if label == "solid" else 0
+                assert (mesh.triangles == mine[number] - offset).all()
+        assert (triangles[:, count:] == triangles[0, count:]).all()
+
+    def test_seed_and_temperature_are_the_runs(self, tmp_path):
+        cfg = helfrich.config.read(toml(tmp_path, "{ frequency = 5, max_degree = 9 }"))
+        forces = cfg.system().getForces()
+        (mover,) = (MonteCarloBondFlip.cast(f) for f in forces if MonteCarloBondFlip.isinstance(f))
+        assert (mover.getFrequency(), mover.getMaxDegree()) == (5, 9)
+        assert (mover.getRandomNumberSeed(), mover.getDefaultTemperature()) == (3, 300)
+        assert cfg.flows
+
+    @pytest.mark.parametrize(
+        "flips, message",
+        [
+            ("{ rate = 1 }", "there is no 'rate' in flips"),
+            ("{ max_degree = 2 }", "max_degree: must be 3 or more, got 2"),
+            ("-1", "must be 0 or more"),
+            ("true", "expected a number"),
+        ],
+    )
+    def test_mistakes_have_their_line(self, tmp_path, flips, message):
+        with pytest.raises(vcm.ConfigError, match=message) as caught:
+            helfrich.config.read(toml(tmp_path, flips))
+        assert "run.toml:11" in str(caught.value)
+
+
+class TestVcm:
+    def config(self, folder, more=""):
+        helfrich.Mesh.random_sphere(132, 400, seed=2).write(folder / "sphere.ply")
+        path = folder / "run.txt"
+        path.write_text(VCM.format(more=more))
+        return path
+
+    def test_membranes_flow_on_request(self, tmp_path):
+        path = self.config(tmp_path)
+        invoke("run", path, "--out", tmp_path / "run", "--flips", 0.05)
+        triangles = analysis.read_triangles(tmp_path / "run/run.triangles", 260)
+        assert (triangles[-1] != triangles[0]).any()
+        invoke("run", path, "--out", tmp_path / "solid")
+        assert not (tmp_path / "solid/run.triangles").exists()
+
+    def test_what_would_not_follow_is_refused(self, tmp_path):
+        path = self.config(tmp_path, "SpringModel H\nSpringCoeff 1")
+        vcm.read(path)
+        with pytest.raises(vcm.ConfigError, match="acts on the edges or triangles that the mesh"):
+            vcm.read(path, flips=0.05)
+
+    def test_a_toml_file_says_it_itself(self, tmp_path):
+        result = invoke("run", toml(tmp_path, 0.1), "--flips", 0.1)
+        assert result.exit_code == 1 and "in place of --flips" in result.output
+
+    @pytest.mark.parametrize("flips", [-1, 1000, float("nan")])
+    def test_rates_have_a_range(self, tmp_path, flips):
+        with pytest.raises(ValueError, match="flips must be 0 to 100"):
+            vcm.read(self.config(tmp_path), flips=flips)
+
+
+class TestReporters:
+    def test_rows_are_about_the_triangles_of_their_moment(self, tmp_path):
+        vesicle = helfrich.Vesicle(MESH, flips=0.1)
+        simulation = vesicle.simulation(integrator())
+        simulation.context.setVelocitiesToTemperature(310, 3)
+        reporters = simulation.reporters
+        reporters.append(helfrich.ModeReporter(tmp_path / "modes.csv", 50, MESH, lmax=3))
+        reporters.append(helfrich.MembraneReporter(tmp_path / "shape.csv", 50, MESH))
+        expected = []
+        for _ in range(4):
+            simulation.step(50)
+            expected.append(vesicle.placement.mesh(simulation.context))
+        table = analysis.read_table(tmp_path / "shape.csv")
+        assert table["volume"] == pytest.approx([mesh.volume for mesh in expected], rel=1e-9)
+        assert "flips_energy" not in table
+        _, _, amplitudes = analysis.read_modes(tmp_path / "modes.csv")
+        frames = np.array([mesh.vertices for mesh in expected])
+        own = np.array([mesh.triangles for mesh in expected])
+        assert amplitudes == pytest.approx(analysis.mode_amplitudes(frames, own, 3), abs=1e-12)
+        # The triangles of the start give other numbers, so that the test can fail.
+        wrong = analysis.mode_amplitudes(frames, MESH, 3)
+        assert np.abs(amplitudes - wrong).max() > 1e-6
+
+    def test_other_triangles_are_refused(self, tmp_path):
+        vesicle = helfrich.Vesicle(MESH, flips=0.1)
+        simulation = vesicle.simulation(integrator())
+        turned = np.roll(MESH.triangles, 1, axis=1)
+        simulation.reporters.append(helfrich.ModeReporter(tmp_path / "m.csv", 10, turned, lmax=2))
+        with pytest.raises(ValueError, match="ModeReporter: the triangles are not those on which"):
+            simulation.step(10)
+
+
+class TestAnalysis:
+    def test_frames_may_have_their_own_triangles(self):
+        meshes = [helfrich.Mesh.random_sphere(132, 400, seed=seed) for seed in range(3)]
+        frames = np.array([mesh.vertices for mesh in meshes])
+        own = np.array([mesh.triangles for mesh in meshes])
+        volumes = analysis.shape(frames, own).volume
+        assert volumes == pytest.approx([mesh.volume for mesh in meshes], rel=1e-12)
+        curvatures = analysis.mean_curvature(frames, own)
+        for mesh, found in zip(meshes, curvatures, strict=True):
+            assert found == pytest.approx(analysis.mean_curvature(mesh.vertices, mesh), rel=1e-12)
+
+    def test_there_must_be_triangles_for_each_frame(self):
+        frames = np.array([MESH.vertices] * 3)
+        for count in (2, 4):
+            with pytest.raises(ValueError, match="triangles: there are those of"):
+                analysis.shape(frames, np.array([MESH.triangles] * count))
+
+    def test_files_of_triangles_are_checked(self, tmp_path):
+        path = tmp_path / "run.triangles"
+        path.write_bytes(bytes(100))
+        with pytest.raises(ValueError, match="100 bytes, which are not frames of 4 triangles"):
+            analysis.read_triangles(path, 4)
+
+
+def test_topologies_are_those_of_the_start():
+    simulation = helfrich.Vesicle(MESH, flips=0.1).simulation(integrator())
+    assert isinstance(simulation, app.Simulation)
+    assert simulation.topology.getNumBonds() == len(MESH.edges)
