@@ -3,9 +3,30 @@
 //! OpenMM is looked for in `$OPENMM_DIR` (a folder with `include` and `lib`), else in the Python that
 //! `$PYTHON` names, else in `.venv` here, else in `python3`: the wheel from PyPI carries all that is needed.
 
+#[path = "src/potentials/codes.rs"]
+#[allow(dead_code, reason = "the crate uses the rest")]
+mod codes;
 #[cfg(feature = "gpu")]
 #[path = "shaders/compose.rs"]
 mod compose;
+#[cfg(feature = "gpu")]
+#[path = "shaders/constants.rs"]
+mod constants;
+#[path = "wrappers/codes.rs"]
+mod headers;
+#[cfg(feature = "gpu")]
+#[path = "src/evaluator/gpu/interface.rs"]
+#[allow(dead_code, reason = "the crate uses the rest")]
+mod interface;
+
+#[path = "src/ffi/records.rs"]
+mod records;
+
+/// Where the included files look for them.
+mod potentials {
+    #[allow(unused_imports, reason = "without a GPU nothing needs Needs")]
+    pub use crate::codes::{MAX_PARAMETERS, Needs};
+}
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, exit};
@@ -17,6 +38,9 @@ fn main() {
     }
     println!("cargo:rerun-if-changed=wrappers");
     println!("cargo:rerun-if-changed=shaders");
+    for shared in ["potentials/codes.rs", "evaluator/gpu/interface.rs", "ffi/records.rs"] {
+        println!("cargo:rerun-if-changed=src/{shared}");
+    }
     #[cfg(feature = "gpu")]
     if let Err(message) = compose::write_modules(Path::new("shaders"), &out_dir()) {
         fail(&message);
@@ -30,13 +54,17 @@ fn main() {
     println!("cargo:rustc-env=HELFRICH_OPENMM_VERSION={version}");
 
     let mut shim = cc::Build::new();
-    shim.cpp(true).std("c++17").include("wrappers/include").warnings(true);
+    shim.cpp(true).std("c++17").include("wrappers/include").include("wrappers/src").warnings(true);
     // OpenMM's headers are not ours to mend: as system headers they raise no warnings.
     shim.flag("-isystem").flag(&include).flag_if_supported("-Wno-unused-parameter");
     shim.define("HELFRICH_OPENMM_VERSION", format!("\"{version}\"").as_str());
     for source in sources(Path::new("wrappers/src")) {
         shim.file(source);
     }
+    let comparison = out_dir().join("codes.cpp");
+    fs::write(&comparison, headers::comparison()).expect("OUT_DIR is writable");
+    // An enumerator that Rust does not know is missing in a switch there.
+    shim.file(comparison).flag_if_supported("-Werror=switch");
     // Nothing in Rust refers to most of the shim, so the linker must be told to keep all of it.
     shim.link_lib_modifier("+whole-archive").compile("helfrich_shim");
 

@@ -49,7 +49,9 @@ def parse(arguments):
     parser.add_argument(
         "--steps", type=int, default=200_000, help="per integrator (default: %(default)d)"
     )
-    parser.add_argument("--platform", default="Reference", help="default: %(default)s")
+    parser.add_argument(
+        "--platform", help="default: the fastest one for membranes, which is Helfrich"
+    )
     parser.add_argument("--quick", action="store_true", help="a few seconds, to see that it works")
     options = parser.parse_args(arguments)
     if options.quick:
@@ -63,7 +65,7 @@ def run(options):
     mesh = Mesh.random_sphere(options.vertices, options.radius, options.seed)
     vesicle = Vesicle(mesh)
     print(f"Vesicle of {mesh.num_vertices} vertices, radius {vesicle.radius:.0f} nm, "
-          f"{options.steps} steps each, platform {options.platform}\n")  # fmt: skip
+          f"{options.steps} steps each", end="")  # fmt: skip
     positions, velocities = equilibrate(vesicle, options)
     for name, make in (
         ("Verlet", openmm.VerletIntegrator),
@@ -92,6 +94,7 @@ def equilibrate(vesicle, options):
     integrator = openmm.LangevinMiddleIntegrator(TEMPERATURE, 0.1, 0.1)
     integrator.setRandomNumberSeed(options.seed)
     simulation = vesicle.simulation(integrator, options.platform)
+    print(f", platform {simulation.context.getPlatform().getName()}\n")
     simulation.minimizeEnergy()
     simulation.context.setVelocitiesToTemperature(TEMPERATURE, options.seed)
     simulation.step(min(20_000, options.steps))

@@ -57,18 +57,18 @@ def build(seed: int):
     home = openmm.CustomExternalForce("0.5*k*((x-x0)^2+y^2+z^2)")
     home.addGlobalParameter("k", 1e-6)
     home.addGlobalParameter("x0", RADIUS)
-    repulsion = openmm.CustomNonbondedForce("strength*(1-r/contact)^2*step(contact-r)")
+    # Every vesicle and every bead is a body. (Interaction groups have no neighbour lists.)
+    repulsion = openmm.CustomNonbondedForce(
+        "(1-delta(body1-body2))*strength*(1-r/contact)^2*step(contact-r)"
+    )
+    repulsion.addPerParticleParameter("body")
     repulsion.addGlobalParameter("strength", 10 * KBT)
     repulsion.addGlobalParameter("contact", CONTACT)
-    groups = [set(placement.particles) for placement in placements]
-    groups.append(set(range(sum(map(len, groups)), system.getNumParticles())))
-    for index, first in enumerate(groups):
-        for second in groups[index + 1 :]:
-            repulsion.addInteractionGroup(first, second)
-    repulsion.addInteractionGroup(groups[2], groups[2])
-    for _ in range(system.getNumParticles()):
-        repulsion.addParticle()
-    for bead in groups[2]:
+    for body, placement in enumerate(placements):
+        for _ in placement.particles:
+            repulsion.addParticle([body])
+    for bead in range(repulsion.getNumParticles(), system.getNumParticles()):
+        repulsion.addParticle([bead])
         home.addParticle(bead)
     repulsion.setNonbondedMethod(openmm.CustomNonbondedForce.CutoffNonPeriodic)
     repulsion.setCutoffDistance(CONTACT)
@@ -88,8 +88,10 @@ def main(arguments=None) -> None:
     system, positions, placements, meshes = build(options.seed)
     integrator = openmm.LangevinMiddleIntegrator(TEMPERATURE, 0.01, 0.05)
     integrator.setRandomNumberSeed(options.seed)
-    platform = openmm.Platform.getPlatformByName("CPU")
-    context = openmm.Context(system, integrator, platform)
+    # Pairs of particles interact, for which a membrane's platform is not the fastest.
+    platform, reason = helfrich.platforms.choose(system, integrator)
+    print(f"Platform {platform}: {reason}")
+    context = openmm.Context(system, integrator, openmm.Platform.getPlatformByName(platform))
     context.setPositions(positions)
     openmm.LocalEnergyMinimizer.minimize(context, maxIterations=200)
     context.setVelocitiesToTemperature(TEMPERATURE, options.seed)

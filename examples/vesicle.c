@@ -73,8 +73,10 @@ int main(int argc, char** argv) {
     add(system, Helfrich_TriangleHeightForce_create(triangles, numTriangles, 20.0, 9.977));
 
     OpenMM_VerletIntegrator* integrator = OpenMM_VerletIntegrator_create(0.2);
-    OpenMM_Platform* platform = OpenMM_Platform_getPlatformByName("Reference");
-    OpenMM_Context* context = OpenMM_Context_create_2(system, (OpenMM_Integrator*) integrator, platform);
+    /* OpenMM chooses the platform Helfrich, which it knows of now. */
+    Helfrich_register();
+    OpenMM_Context* context = OpenMM_Context_create(system, (OpenMM_Integrator*) integrator);
+    printf("# platform %s\n", OpenMM_Platform_getName(OpenMM_Context_getPlatform(context)));
     OpenMM_Context_setPositions(context, positions);
     for (i = 0; i <= 1000; i += 500) {
         OpenMM_State* state = OpenMM_Context_getState(context, OpenMM_State_Energy, 0);

@@ -52,7 +52,10 @@ int main(int argc, char** argv) {
         system.addForce(new TriangleHeightForce(triangles, 20.0, 9.977));
 
         OpenMM::VerletIntegrator integrator(0.2);
-        OpenMM::Context context(system, integrator, OpenMM::Platform::getPlatformByName("Reference"));
+        // OpenMM chooses the platform Helfrich, which it knows of now.
+        Helfrich_register();
+        OpenMM::Context context(system, integrator);
+        std::printf("# platform %s\n", context.getPlatform().getName().c_str());
         context.setPositions(positions);
         for (int step = 0; step <= 1000; step += 500) {
             OpenMM::State state = context.getState(OpenMM::State::Energy);

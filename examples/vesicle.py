@@ -95,8 +95,7 @@ def parse(arguments):
     parser.add_argument("--out", type=Path, default=Path("out/vesicle"), help="output folder")
     parser.add_argument(
         "--platform",
-        default="Reference",
-        help="OpenMM platform (default: Reference, the fastest one for a mesh this small)",
+        help="OpenMM platform (default: the fastest one for membranes, which is Helfrich)",
     )
     parser.add_argument("--quick", action="store_true", help="a few seconds, to see that it works")
     options = parser.parse_args(arguments)
@@ -118,10 +117,10 @@ def run(options):
     mesh = Mesh.random_sphere(options.vertices, RADIUS, options.seed)
     vesicle = Vesicle(mesh, softness=options.softness)
     describe(vesicle, options)
-
     integrator = openmm.LangevinMiddleIntegrator(TEMPERATURE, SPECTRUM_FRICTION, options.time_step)
     integrator.setRandomNumberSeed(options.seed)
     simulation = vesicle.simulation(integrator, options.platform)
+    print(f"  on OpenMM's platform {simulation.context.getPlatform().getName()}")
 
     title("1. Relax the generated mesh")
     show_energies("before", vesicle.energies(simulation.context))

@@ -3,9 +3,11 @@
 //! `cargo run --release --example vesicle -- MESH.off`
 
 use nalgebra::Vector3;
+use openmm_helfrich::ffi::Helfrich_register;
 use openmm_helfrich::force::MembraneForce;
 use openmm_helfrich::openmm::*;
 use std::error::Error;
+use std::ffi::CStr;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).ok_or("usage: vesicle MESH.off")?;
@@ -40,8 +42,11 @@ fn main() -> Result<(), Box<dyn Error>> {
             OpenMM_System_addForce(system, force.into_openmm());
         }
         let integrator = OpenMM_VerletIntegrator_create(0.2);
-        let platform = OpenMM_Platform_getPlatformByName(c"Reference".as_ptr());
-        let context = OpenMM_Context_create_2(system, integrator.cast(), platform);
+        // OpenMM chooses the platform Helfrich, which it knows of now.
+        Helfrich_register();
+        let context = OpenMM_Context_create(system, integrator.cast());
+        let name = OpenMM_Platform_getName(OpenMM_Context_getPlatform(context));
+        println!("# platform {}", CStr::from_ptr(name).to_str()?);
         OpenMM_Context_setPositions(context, positions);
         for step in [0, 500, 1000] {
             let energy = OpenMM_State_DataType_OpenMM_State_Energy as i32;

@@ -118,6 +118,13 @@ static PyObject* toBytes(const void* data, size_t size) {
 HELFRICH_FORCES(MEMBRANE_FORCE)
 MEMBRANE_FORCE(MonteCarloBondFlip)
 
+/* For platforms.py: why a System is not one for the platform Helfrich, or an empty text. */
+%inline %{
+std::string _why_not_helfrich(const OpenMM::System& system, const OpenMM::Integrator& integrator) {
+    return Helfrich_Platform_check(&system, &integrator) == 0 ? "" : HelfrichPlugin::lastError();
+}
+%}
+
 %pythoncode %{
 from openmmhelfrich import _arguments, _bond_flips
 for _class in MembraneForce.__subclasses__():

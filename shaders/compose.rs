@@ -5,6 +5,7 @@
 //! `STEM_triangle`, `STEM_edge` or `STEM_vertex` for each kind of element on which it has energy. The functions
 //! `energy_of_…`, which choose among them by the number of a term's potential, are written here.
 
+use crate::constants;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use std::fs;
 use std::path::Path;
@@ -55,11 +56,11 @@ impl Module {
 /// `shaders.rs` that has them and the stems of the potentials in the order of their numbers.
 pub fn write_modules(folder: &Path, out: &Path) -> Result<(), String> {
     let stems = stems(&folder.join("potentials"))?;
-    for (precision, capabilities) in
-        [("single", Capabilities::empty()), ("double", Capabilities::FLOAT64)]
+    for (precision, real, capabilities) in
+        [("single", 4, Capabilities::empty()), ("double", 8, Capabilities::FLOAT64)]
     {
         let module = compose(folder, precision, &stems)?;
-        validate(&module, capabilities)
+        validate(&module, real, capabilities)
             .map_err(|error| format!("In {precision} precision: {error}"))?;
         write(&out.join(format!("{precision}.wgsl")), &module.text)?;
     }
@@ -94,6 +95,7 @@ fn stems(folder: &Path) -> Result<Vec<String>, String> {
 
 fn compose(folder: &Path, precision: &str, stems: &[String]) -> Result<Module, String> {
     let mut module = Module::default();
+    module.add("the constants and bindings (shaders/constants.rs)", &constants::declarations());
     for name in BEFORE {
         let name = name.replace('*', precision);
         module.add(&format!("shaders/{name}"), &read(&folder.join(&name))?);
@@ -147,15 +149,16 @@ fn choice(
     text + "        default: { return nothing(); }\n    }\n}\n"
 }
 
-fn validate(module: &Module, capabilities: Capabilities) -> Result<(), String> {
+fn validate(module: &Module, real: usize, capabilities: Capabilities) -> Result<(), String> {
     let at = |line: Option<u32>| line.map_or_else(String::new, |line| module.place(line as usize));
     let parsed = naga::front::wgsl::parse_str(&module.text).map_err(|error| {
         let line = error.location(&module.text).map(|place| place.line_number);
         format!("{}: {}", at(line), error.emit_to_string(&module.text))
     })?;
     let mut validator = Validator::new(ValidationFlags::all(), capabilities);
-    validator.validate(&parsed).map(|_| ()).map_err(|error| {
+    validator.validate(&parsed).map_err(|error| {
         let line = error.location(&module.text).map(|place| place.line_number);
         format!("{}: {}", at(line), error.emit_to_string(&module.text))
-    })
+    })?;
+    constants::check_layout(&parsed, real)
 }

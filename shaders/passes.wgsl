@@ -1,8 +1,6 @@
 // The passes over the mesh, one thread an element, each gathering what it needs in a fixed order. `energy_of_…`
 // call the potentials; build.rs writes them from the names of the functions in potentials/.
 
-const GROUPS_ACROSS = 32768u;
-
 // The number of a group. Those past the last one that has elements must not store anything.
 fn group_index(group: vec3<u32>) -> u32 {
     return group.y * GROUPS_ACROSS + group.x;
@@ -46,10 +44,10 @@ fn totals_forward(@builtin(local_invocation_index) lane: u32) {
             continue;
         }
         let contribution = energy_of_totals(term, &slopes);
-        let first = frame.terms[term].sums.x;
+        let first = frame.terms[term].sums[SUMS_OF_TOTALS];
         results[first] = contribution.energy;
         if (frame.terms[term].needs & DERIVATIVES) != 0u {
-            for (var k = 0u; k < 4u; k++) {
+            for (var k = 0u; k < PARAMETERS; k++) {
                 results[first + k + 1u] = contribution.by_parameter[k];
             }
         }
@@ -76,7 +74,7 @@ fn edges_forward(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_invocation
         if exists {
             contribution = energy_of_edge(term, index, edge, &slope);
         }
-        store_sums(term, frame.terms[term].sums.z, contribution, lane, group, groups_for(frame.num_edges));
+        store_sums(term, frame.terms[term].sums[SUMS_OF_EDGES], contribution, lane, group, groups_for(frame.num_edges));
     }
     if exists {
         let moment = select(real(0.0), slope / root(edge.length_squared), slope != real(0.0));
@@ -103,7 +101,7 @@ fn vertices_forward(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_invocat
         if exists {
             contribution = energy_of_vertex(term, index, vertex, &slopes);
         }
-        store_sums(term, frame.terms[term].sums.w, contribution, lane, group, groups_for(frame.num_vertices));
+        store_sums(term, frame.terms[term].sums[SUMS_OF_VERTICES], contribution, lane, group, groups_for(frame.num_vertices));
     }
     if exists {
         vertex_slopes[index] = vec4r(slopes.area, slopes.voronoi_area, slopes.curvature, real(0.0));
@@ -157,7 +155,7 @@ fn triangles_backward(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_invoc
             contribution = energy_of_triangle(term, index, triangle, &slopes);
         }
         let groups = groups_for(frame.num_triangles);
-        store_sums(term, frame.terms[term].sums.y, contribution, lane, group, groups);
+        store_sums(term, frame.terms[term].sums[SUMS_OF_TRIANGLES], contribution, lane, group, groups);
     }
     if !exists || !is_needed(FORCES) {
         return;
@@ -199,7 +197,7 @@ fn triangles_backward(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_invoc
         }
     }
     for (var k = 0u; k < 3u; k++) {
-        let first = 9u * index + 3u * k;
+        let first = FORCES_PER_TRIANGLE * index + 3u * k;
         corner_forces[first] = forces[k].x;
         corner_forces[first + 1u] = forces[k].y;
         corner_forces[first + 2u] = forces[k].z;

@@ -5,8 +5,7 @@
 alias real = f32;
 alias vec3r = vec3<f32>;
 alias vec4r = vec4<f32>;
-
-@group(0) @binding(1) var<storage, read> positions: array<i32>;
+alias coordinate = i32;
 
 // A triangle whose height is a smaller share of its longest side is left to the processor: the digits that its normal has
 // lost in single precision are missed in the forces (2e-4 of the largest at a share of 1e-4).

@@ -1,8 +1,6 @@
 // Sums over a workgroup, as trees of fixed shape: the same bits every time. The host adds up the groups,
 // in double precision and in order.
 
-const GROUP_SIZE = 64u;
-
 var<workgroup> shares: array<real, GROUP_SIZE>;
 
 // The sum of what the members of the group give; every member must call it, the first one gets it.
@@ -27,7 +25,7 @@ fn store_sums(term: u32, first: u32, contribution: Contribution, lane: u32, grou
     if (frame.terms[term].needs & DERIVATIVES) == 0u {
         return;
     }
-    for (var k = 0u; k < 4u; k++) {
+    for (var k = 0u; k < PARAMETERS; k++) {
         let derivative = sum_of_group(contribution.by_parameter[k], lane);
         if lane == 0u && group < groups {
             results[first + (k + 1u) * groups + group] = derivative;

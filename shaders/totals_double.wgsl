@@ -1,8 +1,8 @@
 // The sums of area and volume over all triangles in double precision, as trees of fixed shape.
 
-// Twice the area and six times the volume, for each group, and then the derivatives of the energy with
-// respect to area and volume.
-@group(0) @binding(12) var<storage, read_write> totals: array<vec2<f64>>;
+// `totals` holds twice the area and six times the volume, for each group, and then the derivatives of the energy
+// with respect to area and volume.
+alias total = vec2<f64>;
 
 var<workgroup> total_shares: array<vec2<f64>, GROUP_SIZE>;
 

@@ -5,9 +5,9 @@
 // number, and so it is summed without any error; twice the area of a triangle is rounded to a share of 1e-9.
 // Whole numbers have no order of summation either, and compilers do not rearrange them.
 
-// Limbs from the lowest on, two's complement. For each group twice the area and six times the volume, then
-// as bits of floats the derivatives of the energy with respect to area and volume.
-@group(0) @binding(12) var<storage, read_write> totals: array<vec4<u32>>;
+// Limbs from the lowest on, two's complement. `totals` holds for each group twice the area and six times the volume,
+// then as bits of floats the derivatives of the energy with respect to area and volume.
+alias total = vec4<u32>;
 
 // a b, low and high half.
 fn product(a: u32, b: u32) -> vec2<u32> {

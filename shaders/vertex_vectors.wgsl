@@ -20,12 +20,12 @@ fn add_corner(vertex: ptr<function, VertexGeometry>, triangle: TriangleGeometry,
 }
 
 fn vector_slope(vertex: u32, which: u32) -> vec3r {
-    let first = 9u * vertex + 3u * which;
+    let first = SLOPES_PER_VERTEX * vertex + 3u * which;
     return vec3r(vector_slopes[first], vector_slopes[first + 1u], vector_slopes[first + 2u]);
 }
 
 fn store_vector_slope(vertex: u32, which: u32, slope: vec3r) {
-    let first = 9u * vertex + 3u * which;
+    let first = SLOPES_PER_VERTEX * vertex + 3u * which;
     vector_slopes[first] = slope.x;
     vector_slopes[first + 1u] = slope.y;
     vector_slopes[first + 2u] = slope.z;

@@ -73,6 +73,12 @@ pub enum Error {
     #[error("triangle {triangle} ({}, {}, {}) has grown beyond all numbers: the simulation has blown up; use a smaller time step or a better relaxed start", .corners[0], .corners[1], .corners[2])]
     OverflownTriangle { triangle: usize, corners: [u32; 3] },
 
+    /// The surface of a potential that needs an outside is turned inside out.
+    #[error(
+        "the triangles run clockwise seen from outside, so that the enclosed volume is below zero ({volume} nm^3); swap two corners of each triangle, or let openmmhelfrich.Mesh(vertices, triangles) turn them"
+    )]
+    InsideOut { force: &'static str, volume: f64 },
+
     /// A term has no finite energy on a mesh whose geometry is finite.
     #[error(
         "the energy of {force} is not finite ({energy} kJ/mol) although every position is: the mesh is folded or collapsed, or a Voronoi area is zero; use a smaller time step or a better relaxed start"
@@ -131,6 +137,15 @@ pub enum Error {
 }
 
 impl Error {
+    /// The class at fault, where that is known better here than by who reports the error: forces that are evaluated
+    /// together report in the name of one of them.
+    pub fn class(&self) -> Option<&'static str> {
+        match self {
+            Self::InsideOut { force, .. } => Some(force),
+            _ => None,
+        }
+    }
+
     /// Whether the GPU is at fault, so that the processor could do what the GPU could not.
     pub fn is_of_device(&self) -> bool {
         matches!(

@@ -12,12 +12,15 @@ mod mesh;
 mod moves;
 mod plugin;
 mod potentials;
+mod records;
 
 pub use membrane::*;
 pub use mesh::*;
 pub use moves::*;
+pub use plugin::Helfrich_register;
 pub use plugin::*;
 pub use potentials::*;
+pub use records::*;
 
 use crate::error::Result;
 use std::cell::RefCell;
@@ -38,7 +41,7 @@ pub(crate) fn set_last_error(message: String) {
 pub(crate) fn guarded(subject: &str, body: impl FnOnce() -> Result<()>) -> c_int {
     let message = match catch_unwind(AssertUnwindSafe(body)) {
         Ok(Ok(())) => return 0,
-        Ok(Err(error)) => format!("{subject}: {error}"),
+        Ok(Err(error)) => format!("{}: {error}", error.class().unwrap_or(subject)),
         Err(panic) => {
             let text = panic
                 .downcast_ref::<String>()

@@ -4,6 +4,7 @@ use crate::backend::Choice;
 use crate::error::{Error, Result};
 use crate::evaluator::{ChosenEvaluator, Present, culprit};
 use crate::mesh::numbering::breadth_first;
+use crate::mesh::orientation::is_inside_out;
 use crate::mesh::{Topology, Triangulation};
 use crate::moves::local::LocalEnergy;
 use crate::moves::{FlipRules, FlipState, flips};
@@ -28,6 +29,8 @@ pub struct Membrane {
     evaluator: ChosenEvaluator,
     local: LocalEnergy,
     num_particles: usize,
+    /// Whether the surface has been looked at and is not inside out.
+    has_outside: bool,
 }
 
 /// What decides the bits of evaluations beside positions: the connectivity, and in which order sums are formed.
@@ -51,7 +54,15 @@ impl Membrane {
         let order = breadth_first(&mesh);
         let (evaluator, local) = (ChosenEvaluator::new(), LocalEnergy::default());
         ALIVE.fetch_add(1, Ordering::Relaxed);
-        Ok(Self { mesh, order, flips_of_order: 0, evaluator, local, num_particles })
+        Ok(Self {
+            mesh,
+            order,
+            flips_of_order: 0,
+            evaluator,
+            local,
+            num_particles,
+            has_outside: false,
+        })
     }
 
     /// Let so many threads share evaluations, where that turns out faster; 0 for as many as there are.
@@ -161,7 +172,8 @@ impl Membrane {
     /// System, x y z of one after the other; forces are added. Without contributions no energies are summed.
     ///
     /// # Errors
-    /// Those of [`ChosenEvaluator::evaluate`], and a parameter outside its domain, as a Context parameter
+    /// Those of [`ChosenEvaluator::evaluate`], triangles that are turned inside out where a term needs an outside, and
+    /// a parameter outside its domain, as a Context parameter
     /// can come to be.
     pub fn evaluate(
         &mut self,
@@ -182,8 +194,31 @@ impl Membrane {
         for term in terms {
             self.check(term)?;
         }
+        if !self.has_outside {
+            self.look_for_outside(terms, positions)?;
+        }
         let present = Present { mesh: &self.mesh, order: &self.order };
         self.evaluator.evaluate(present, terms, positions, contributions, forces)
+    }
+
+    /// Refuse triangles that all run clockwise, as a slip in a mesh has them, before a volume below zero becomes a
+    /// pressure that blows the membrane up. That is settled by the first positions that a term asks about, for good:
+    /// a shape that turns inside out later, or crosses itself, follows the formula, whose volume has a sign.
+    fn look_for_outside(&mut self, terms: &[Term], positions: &[f64]) -> Result<()> {
+        let Some(term) = terms.iter().find(|term| term.potential.needs_outside()) else {
+            return Ok(());
+        };
+        match is_inside_out(&self.mesh, positions) {
+            Some((true, totals)) => {
+                let (force, volume) = (term.potential.name(), totals.volume);
+                Err(Error::InsideOut { force, volume })
+            }
+            found => {
+                // Of positions that are not finite the evaluator names the culprit.
+                self.has_outside = found.is_some();
+                Ok(())
+            }
+        }
     }
 
     /// Refuse a term with values outside their domains, or with more or fewer values for single

@@ -217,17 +217,3 @@ def mean_and_error(values):
     if len(values) < 2:
         return values.mean(axis=0), np.full(values.shape[1:], np.nan)
     return values.mean(axis=0), values.std(axis=0, ddof=1) / np.sqrt(len(values))
-
-
-def fastest_platform():
-    """Name of the platform for meshes of a few thousand vertices: no GPU pays off there.
-
-    It is no parameter of the runs, because their averages must not depend on it.
-    """
-    import openmm
-
-    names = [
-        openmm.Platform.getPlatform(index).getName()
-        for index in range(openmm.Platform.getNumPlatforms())
-    ]
-    return "Helfrich" if "Helfrich" in names else "Reference"

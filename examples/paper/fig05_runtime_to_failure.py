@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import matplotlib.pyplot as plt
 import numpy as np
-from _paper import SCHEMES, Figure, fastest_platform
+from _paper import SCHEMES, Figure
 from openmmhelfrich.sweep import grid
 
 SOFTNESSES = (0.59, 0.037)
@@ -48,7 +48,7 @@ def runtime(scheme, softness, fraction, subdivision, duration, seed):
         mesh, softness=softness, scheme=getattr(helfrich.BendingForce, scheme)
     )
     time_step = fraction * np.sqrt(softness) * vesicle.tau_fastest
-    simulation = vesicle.simulation(openmm.VerletIntegrator(time_step), fastest_platform())
+    simulation = vesicle.simulation(openmm.VerletIntegrator(time_step))
     simulation.context.setVelocitiesToTemperature(300, seed)
     # Looked at every half percent of τ_2, so that a heated run is not taken for a living one.
     interval = max(1, round(0.005 * vesicle.tau_2 / time_step))

@@ -9,7 +9,7 @@ energy of the heights ⟨U_h⟩ rises.
 import matplotlib.pyplot as plt
 import numpy as np
 import openmmhelfrich as helfrich
-from _paper import Figure, fastest_platform
+from _paper import Figure
 from _snapshots import along_axes, draw_meshes
 from openmmhelfrich.analysis import mean_with_error
 from openmmhelfrich.sweep import grid
@@ -53,7 +53,7 @@ def oblate_run(reduced_volume, softness, duration, time_step, subdivision, seed)
     )
     integrator = openmm.LangevinMiddleIntegrator(300, 0.01, time_step)
     integrator.setRandomNumberSeed(seed)
-    simulation = vesicle.simulation(integrator, fastest_platform())
+    simulation = vesicle.simulation(integrator)
     if vesicle.energies(simulation.context)["heights"] > vesicle.epsilon * mesh.num_vertices:
         # The flattest starts have triangles of nearly no height at their rim.
         simulation.minimizeEnergy(maxIterations=200)

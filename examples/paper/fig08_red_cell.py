@@ -17,7 +17,7 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 import openmmhelfrich as helfrich
-from _paper import MISSING, Figure, fastest_platform
+from _paper import MISSING, Figure
 from _snapshots import along_axes, draw_meshes
 from openmmhelfrich.analysis import mean_with_error
 
@@ -66,7 +66,7 @@ def red_cell(file, contents, duration, seed, compatible=False):
     from openmmhelfrich.analysis.theory import BOLTZMANN
 
     config = helfrich.vcm.read(file, compatible, seed=seed)
-    simulation = config.simulation(fastest_platform())
+    simulation = config.simulation()
     start = config.energies(simulation.context)
     fluid = config.membranes[0]
     steps = round(duration / config.step_size / SAMPLES)

@@ -5,7 +5,7 @@ bending energies, means over several seeds, settle in less than the period τ_2 
 """
 
 import numpy as np
-from _paper import Figure, fastest_platform, mean_and_error
+from _paper import Figure, mean_and_error
 from openmmhelfrich.sweep import grid
 
 # Energies have relaxed that differ from the plateau by less than this share of their largest
@@ -46,7 +46,7 @@ def relaxation(shape, reduced_volume, softness, subdivision, duration, samples, 
     vesicle = helfrich.Vesicle(mesh, softness=softness)
     integrator = openmm.LangevinMiddleIntegrator(300, 0.01, time_step)
     integrator.setRandomNumberSeed(seed)
-    simulation = vesicle.simulation(integrator, fastest_platform())
+    simulation = vesicle.simulation(integrator)
     simulation.context.setVelocitiesToTemperature(300, seed)
     # τ_2 of the sphere of equal area.
     steps = round(duration * vesicle.tau_2 / samples / time_step)

@@ -7,7 +7,6 @@ the scripts share runs too: what Fig. 6 has simulated, SM 5 and SM 7 find in the
 
 import numpy as np
 import openmm
-from _paper import fastest_platform
 from displacements import Displacements
 from openmm import unit
 from openmmhelfrich.analysis import mode_amplitudes, triangle_areas
@@ -128,7 +127,7 @@ def fluctuate(
     # not get any slower: of four runs at 10 kBT with 1.1 ps, one blew up.
     time_step = TIME_STEP * vesicle.max_time_step * min(1, rigidity / RIGIDITY) ** 0.5
     integrator = integrator_of("langevin", 2 * np.pi / vesicle.tau_2, time_step, seed)
-    context = vesicle.simulation(integrator, fastest_platform()).context
+    context = vesicle.simulation(integrator).context
     context.setVelocitiesToTemperature(TEMPERATURE, seed)
     integrator.step(round(settle_periods * vesicle.tau_2 / time_step))
     stride = max(1, round(vesicle.tau_2 / frames_per_period / time_step))
@@ -186,12 +185,12 @@ def relax(num_vertices, integrator, friction, lmax, periods, interval, time_step
     vesicle = vesicle_of(num_vertices, RIGIDITY, RADIUS, SOFTNESS[0], "Julicher")
     settling_step = TIME_STEP * vesicle.max_time_step
     settling = integrator_of("langevin", 2 * np.pi / vesicle.tau_2, settling_step, seed)
-    simulation = vesicle.simulation(settling, fastest_platform())
+    simulation = vesicle.simulation(settling)
     simulation.context.setVelocitiesToTemperature(TEMPERATURE, seed)
     settling.step(round(3 * vesicle.tau_2 / settling_step))
     state = simulation.context.getState(getPositions=True, getVelocities=True)
     last = integrator_of(integrator, friction, time_step, seed + 1000)
-    context = vesicle.simulation(last, fastest_platform()).context
+    context = vesicle.simulation(last).context
     context.setPositions(state.getPositions())
     context.setVelocities(state.getVelocities())
     stride = max(1, round(interval / time_step))

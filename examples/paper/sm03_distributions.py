@@ -42,7 +42,7 @@ def distributions(softness, subdivision, time_step, times, seed):
 
     mesh = helfrich.Mesh.icosphere(subdivision, 1000.0)
     vesicle = helfrich.Vesicle(mesh, rigidity=0, softness=softness)
-    simulation = vesicle.simulation(openmm.VerletIntegrator(time_step), "Reference")
+    simulation = vesicle.simulation(openmm.VerletIntegrator(time_step))
     simulation.context.setVelocitiesToTemperature(300, seed)
     areas, lengths, temperatures = [], [], []
     for time in times:

@@ -19,7 +19,7 @@ from . import _plugin
 
 _plugin.load()
 
-from . import analysis, backend, config, vcm  # noqa: E402
+from . import analysis, backend, config, platforms, vcm  # noqa: E402
 from ._paths import cmake_path, include_path, library_path  # noqa: E402
 from .backend import adapters, get_backend, set_backend  # noqa: E402
 from .errors import MeshError  # noqa: E402
@@ -49,6 +49,7 @@ __all__ = [
     "include_path",
     "library_path",
     "load_state",
+    "platforms",
     "save_state",
     "set_backend",
     "vcm",

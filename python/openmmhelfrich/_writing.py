@@ -10,12 +10,13 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
+import resource
 import shutil
 import stat
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
-__all__ = ["describe", "naming", "replace", "write_whole"]
+__all__ = ["describe", "in_memory", "naming", "replace", "write_whole"]
 
 _ADVICE = {
     errno.ENOSPC: "free some space there",
@@ -137,6 +138,33 @@ def write_whole(path, data: bytes) -> None:
             raise OSError(reason.errno, reason.strerror, os.fspath(path)) from None
 
 
+def in_memory(write: Callable[[str], object]) -> bytes:
+    """What a function writes to the file whose name it is given.
+
+    For libraries that take names only, and say little or nothing if the disk is full.
+
+    Raises
+    ------
+    OSError
+        If it is more than the limit on the size of a file, which holds in memory too.
+    """
+    handle = os.memfd_create("openmm-helfrich")
+    try:
+        failed = None
+        try:
+            write(f"/proc/self/fd/{handle}")
+        except OSError as reason:
+            failed = reason
+        size, limit = os.fstat(handle).st_size, resource.getrlimit(resource.RLIMIT_FSIZE)[0]
+        if limit != resource.RLIM_INFINITY and size >= limit:
+            raise OSError(errno.EFBIG, os.strerror(errno.EFBIG))
+        if failed is not None:
+            raise failed
+        return os.pread(handle, size, 0)
+    finally:
+        os.close(handle)
+
+
 def _write(path: Path, data: bytes) -> None:
     with path.open("wb") as file:
         file.write(data)
@@ -152,12 +180,17 @@ def _keep(path: Path, previous: Path) -> None:
     fresh = previous.with_name(previous.name + ".new")
     fresh.unlink(missing_ok=True)
     try:
-        # Takes no space, and leaves the file where it is.
-        os.link(path, fresh)
+        try:
+            # Takes no space, and leaves the file where it is.
+            os.link(path, fresh)
+        except OSError:
+            # File systems without links, such as FAT.
+            shutil.copyfile(path, fresh)
+        os.replace(fresh, previous)
     except OSError:
-        # File systems without links, such as FAT.
-        shutil.copyfile(path, fresh)
-    os.replace(fresh, previous)
+        with contextlib.suppress(OSError):
+            fresh.unlink()
+        raise
 
 
 def _sync_folder(folder: Path) -> None:

@@ -68,18 +68,29 @@ class Mesh:
         raise AttributeError(f"Mesh: cannot set {name}, a mesh is immutable; make a new one")
 
     @classmethod
-    def read(cls, path) -> Mesh:
-        """Read a mesh from a PLY, OBJ, STL, OFF, VTK, VTU or Gmsh (``.msh``) file.
+    def read(cls, path, *, triangulate=False, merge=None, drop_unused=False) -> Mesh:
+        """Read a mesh from a PLY, OBJ, STL, OFF, VTK, VTP, VTU or Gmsh (``.msh``) file.
 
-        Numbers are taken as nm; use `scaled` for other units. Digits of ASCII files are kept to
+        Numbers are taken as nm; use `scaled` for other units. Digits of text files are kept to
         double precision, whatever type a PLY header declares. The repeated corners of an STL file
-        become one vertex if their coordinates are equal. Points and lines of a Gmsh model are
-        ignored. Further formats that meshio or trimesh can read are handed to them.
+        become one vertex if their coordinates are equal. Points and lines of VTK's files and of a
+        Gmsh model are ignored. A byte-order mark is skipped, and lines may end in any way. Further
+        formats that meshio or trimesh can read are handed to them.
 
         Parameters
         ----------
         path : str or Path
             The extension gives the format.
+        triangulate : bool
+            Split faces of more than three corners: quadrilaterals along the shorter diagonal,
+            larger ones by cutting off corners along the shortest diagonals inside; of equal ones,
+            along that at the earliest corner. Default: such faces are refused.
+        merge : float or Quantity, optional
+            Join vertices at most so far apart, nm, in the numbers of the file; the first one stays
+            where it is. 0 joins vertices in the same place. Default: none but the equal corners of
+            an STL file.
+        drop_unused : bool
+            Leave out vertices that belong to no triangle. Default: they are refused.
 
         Raises
         ------
@@ -87,36 +98,54 @@ class Mesh:
             If there is no such file.
         MeshError
             If the extension is unknown; if the file is broken or truncated, naming the line (the
-            number of bytes, for binary files); if it has other faces than triangles; or if its mesh
-            is not valid, see `Mesh`.
+            number of bytes, for binary files); if it has faces that cannot be split, or other than
+            triangles without `triangulate`; if `merge` would join two corners of a triangle; or if
+            its mesh is not valid, see `Mesh`. The message names what would mend it.
         """
-        vertices, triangles = files.read(path)
+        if merge is not None:
+            merge = inputs.not_negative(length(merge, "Mesh.read", "merge"), "Mesh.read", "merge")
+        vertices, triangles = files.read(path, triangulate, merge, drop_unused)
         try:
             return cls(vertices, triangles)
         except MeshError as reason:
-            text = str(reason)
-            text = text[len("Mesh: ") :] if text.startswith("Mesh: ") else text
-            raise MeshError(f"Mesh.read: {path}: {text}") from None
+            raise files.explained(path, reason, vertices, triangles) from None
 
-    def write(self, path) -> None:
+    def write(self, path, *, point_data=None, binary=None) -> None:
         """Write a PLY, OBJ, STL, OFF, VTK, VTU or Gmsh (``.msh``) file, coordinates in nm.
 
-        PLY, OBJ, OFF and STL are ASCII, the others binary; all carry full double precision. STL
-        stores no vertex numbers: after reading, vertices are in the order of first appearance.
+        PLY, OBJ, OFF, STL and VTK are text by default, the others binary; all carry full double
+        precision. VTK is legacy POLYDATA, which OVITO reads as text. STL stores no vertex numbers:
+        after reading, vertices are in the order of first appearance.
 
         Parameters
         ----------
         path : str or Path
             The extension gives the format. An existing file is overwritten.
+        point_data : mapping of str to array_like, optional
+            Values of the vertices by name, shape (num_vertices,) or (num_vertices, 3), such as
+            curvatures: vertex properties in PLY, point data in VTK, VTU and Gmsh. `read` skips
+            them.
+        binary : bool, optional
+            Write PLY or VTK as binary, which the others are always or never.
 
         Raises
         ------
         MeshError
-            If the extension is unknown.
+            If the extension is unknown, or the format has no room for values or no binary form; if
+            values have another shape, or a name has spaces.
         OSError
             If the file cannot be written.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from openmmhelfrich.analysis import mean_curvature
+        >>> mesh = Mesh.icosphere(3, radius=10)
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     curvature = mean_curvature(mesh.vertices, mesh.triangles)
+        ...     mesh.write(f"{folder}/ball.vtk", point_data={"mean_curvature": curvature})
         """
-        files.write(path, self._vertices, self._triangles)
+        files.write(path, self._vertices, self._triangles, point_data, binary)
 
     @classmethod
     def from_context(cls, context, force) -> Mesh:

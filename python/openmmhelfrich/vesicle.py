@@ -12,6 +12,7 @@ import numpy as np
 import openmm
 from openmm import app, unit
 
+from . import platforms
 from ._quantities import checked_field, checked_number
 from .analysis import theory, triangle_areas
 from .forces import (
@@ -303,15 +304,18 @@ class Vesicle:
         ----------
         integrator : openmm.Integrator
         platform : openmm.Platform or str, optional
-            Default: the one that OpenMM prefers.
+            Default: the fastest one for it, see `platforms.choose`: mostly ``Helfrich``.
 
         Returns
         -------
         openmm.app.Simulation
         """
+        system = self.system()
+        if platform is None:
+            platform = platforms.choose(system, integrator).name
         if isinstance(platform, str):
             platform = openmm.Platform.getPlatformByName(platform)
-        simulation = app.Simulation(self._mesh.topology(), self.system(), integrator, platform)
+        simulation = app.Simulation(self._mesh.topology(), system, integrator, platform)
         simulation.context.setPositions(self._mesh.vertices)
         return simulation
 

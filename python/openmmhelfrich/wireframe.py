@@ -3,9 +3,9 @@
 A PDB file will not do: its columns overflow at 10 000 Å, the size of one vesicle.
 """
 
-import os
-
 from openmm import unit
+
+from ._writing import write_whole
 
 # Readers of PSF expect these too.
 _EMPTY_PSF_SECTIONS = (
@@ -115,5 +115,4 @@ def _contents(caller, topology, system):
 
 
 def _write(path, lines):
-    with open(os.fspath(path), "w", encoding="ascii") as file:
-        file.write("\n".join(lines) + "\n")
+    write_whole(path, ("\n".join(lines) + "\n").encode("ascii"))

@@ -1,15 +1,6 @@
 // Curvature elasticity: ½ κ [ c² / a − 2 C₀ c + C₀² a ] for each vertex, with the integrated curvature c and the
 // area a of the scheme.
 
-// The schemes, in the order of src/potentials/bending.rs.
-const GOMPPER_KROLL = 1u;
-const GOMPPER_KROLL_BARYCENTRIC = 2u;
-const JULICHER_VORONOI = 3u;
-const ESPRIU = 4u;
-
-// The switch for |c| in the place of n·c.
-const UNSIGNED = 1u;
-
 fn bending_vertex(
     term: u32,
     element: u32,
@@ -18,9 +9,9 @@ fn bending_vertex(
 ) -> Contribution {
     let scheme = frame.terms[term].form;
     let is_unsigned = (frame.terms[term].switches & UNSIGNED) != 0u;
-    let voronoi = scheme == GOMPPER_KROLL || scheme == JULICHER_VORONOI;
-    let umbrella = scheme == ESPRIU;
-    let is_vector = umbrella || scheme == GOMPPER_KROLL || scheme == GOMPPER_KROLL_BARYCENTRIC;
+    let voronoi = scheme == SCHEME_GOMPPER_KROLL || scheme == SCHEME_JULICHER_VORONOI;
+    let umbrella = scheme == SCHEME_ESPRIU;
+    let is_vector = umbrella || scheme == SCHEME_GOMPPER_KROLL || scheme == SCHEME_GOMPPER_KROLL_BARYCENTRIC;
 
     let area = select(vertex.area, vertex.voronoi_area, voronoi);
     let vector = select(vertex.cotangent, vertex.umbrella, umbrella);

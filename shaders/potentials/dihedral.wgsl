@@ -10,31 +10,28 @@ fn dihedral_edge(term: u32, element: u32, edge: EdgeGeometry, slope: ptr<functio
     var f = c;
     var by_angle = sine;
     switch frame.terms[term].form {
-        // Quartic
-        case 0u: {
+        case FORM_QUARTIC: {
             f = c * c;
             by_angle = real(2.0) * c * sine;
         }
-        // Cosine
-        case 1u: {}
-        // Exp
-        case 2u: {
+        // As it is.
+        case FORM_COSINE: {}
+        case FORM_EXP: {
             let growth = exp_minus_one(real(2.0) * c);
             f = real(0.5) * growth;
             by_angle = (growth + real(1.0)) * sine;
         }
-        // SmoothExp
-        case 3u: {
+        case FORM_SMOOTH_EXP: {
             let growth = exp_minus_one(real(10.0) * c);
             f = real(0.04) * growth;
             by_angle = real(0.4) * (growth + real(1.0)) * sine;
         }
-        // SmoothExp46
-        default: {
+        case FORM_SMOOTH_EXP46: {
             let growth = exp_minus_one(real(2.0) * c);
             f = real(0.5) * (growth - angle * angle);
             by_angle = (growth + real(1.0)) * sine - angle;
         }
+        default: {}
     }
     *slope += stiffness * by_angle;
     return Contribution(stiffness * f, vec4r(f, real(0.0), real(0.0), real(0.0)));

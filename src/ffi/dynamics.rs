@@ -1,7 +1,7 @@
 //! The C interface of the platform: teams of threads, time steps and random numbers.
 //! `wrappers/src/HelfrichDynamics.h` declares these functions for C++; the two change together.
 
-use super::{guarded, slice};
+use super::{ParticleArrays, guarded, slice};
 use crate::dynamics::integrate::{self, Dynamics, PARALLEL_FROM, Particles};
 use crate::dynamics::random::{self, Stream};
 use crate::error::Error;
@@ -78,15 +78,6 @@ pub unsafe extern "C" fn Helfrich_Dynamics_destroy(dynamics: *mut Dynamics) {
     if !dynamics.is_null() {
         drop(unsafe { Box::from_raw(dynamics) });
     }
-}
-
-/// The arrays of a time step; three values for each particle.
-#[repr(C)]
-pub struct ParticleArrays {
-    num_particles: i64,
-    positions: *mut f64,
-    velocities: *mut f64,
-    forces: *const f64,
 }
 
 impl ParticleArrays {

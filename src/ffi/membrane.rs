@@ -1,8 +1,8 @@
 //! The C interface to [`crate::membrane`]: meshes of particles, and evaluations of terms on them.
 
-use super::{guarded, slice, text};
+use super::{TermInput, guarded, slice, text};
 use crate::membrane::{self, Membrane};
-use crate::potentials::{Contribution, MAX_PARAMETERS, REGISTRY, Term};
+use crate::potentials::{Contribution, REGISTRY, Term};
 use std::ffi::{c_char, c_int};
 use std::slice as slices;
 
@@ -66,19 +66,6 @@ pub unsafe extern "C" fn Helfrich_Membrane_edges(membrane: *const Membrane, part
     for (slot, vertex) in out.iter_mut().zip(ends) {
         *slot = mesh.particles()[vertex as usize] as c_int;
     }
-}
-
-/// One term of an evaluation, as C++ hands it over.
-#[repr(C)]
-pub struct TermInput {
-    pub(super) potential: c_int,
-    pub(super) form: c_int,
-    pub(super) switches: u32,
-    pub(super) wants_derivatives: c_int,
-    pub(super) values: [f64; MAX_PARAMETERS],
-    /// Values of single elements, null where there are none.
-    pub(super) fields: [*const f64; MAX_PARAMETERS],
-    pub(super) field_lengths: [i64; MAX_PARAMETERS],
 }
 
 impl TermInput {

@@ -1,7 +1,6 @@
 //! The C interface to moves of a membrane's connectivity, and to the connectivity itself.
 
-use super::membrane::TermInput;
-use super::{guarded, slice, text};
+use super::{TermInput, guarded, slice, text};
 use crate::membrane::{Connectivity, Membrane};
 use crate::moves::{FlipRules, FlipState};
 use crate::potentials::Term;

@@ -18,6 +18,7 @@ unsafe extern "C" {
     fn helfrich_shim_registerSerialization() -> c_int;
     fn helfrich_shim_registerPlatform();
     fn helfrich_shim_adoptKernels();
+    fn helfrich_shim_checkPlatform(system: *const c_void, integrator: *const c_void) -> c_int;
     fn helfrich_shim_createImpl(force: *const c_void) -> *mut c_void;
 }
 
@@ -38,6 +39,26 @@ pub extern "C" fn registerKernelFactories() {
             helfrich_shim_adoptKernels();
         }
     }
+}
+
+/// Do what OpenMM does when it loads the library as a plugin: for programs that are linked to it.
+#[unsafe(no_mangle)]
+pub extern "C" fn Helfrich_register() {
+    registerPlatforms();
+    registerKernelFactories();
+}
+
+/// Whether a System under an integrator is one for the platform `Helfrich`: 0, or else 1 and the last error says why
+/// not.
+///
+/// # Safety
+/// `system` must be an `OpenMM::System` and `integrator` an `OpenMM::Integrator` that are alive.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Platform_check(
+    system: *const c_void,
+    integrator: *const c_void,
+) -> c_int {
+    unsafe { helfrich_shim_checkPlatform(system, integrator) }
 }
 
 /// Make the implementation of a force. The force classes are compiled into several libraries (this one,

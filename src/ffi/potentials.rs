@@ -1,21 +1,9 @@
 //! The C interface to [`crate::potentials`]: names, units, defaults and domains, which C++ and Python ask for.
 
-use super::{guarded, text};
+use super::{ParameterInfo, guarded, text};
 use crate::error::Error;
 use crate::potentials::{self, Element, REGISTRY};
 use std::ffi::{c_char, c_int};
-
-/// A scalar of a potential, for C++ and Python: `name` lives as long as the library, the unit is
-/// (kJ/mol)^`energy` nm^`length`, and a default of NaN says that the user must give a value.
-#[repr(C)]
-pub struct ParameterInfo {
-    name: *const c_char,
-    energy: c_int,
-    length: c_int,
-    default_value: f64,
-    /// 0: only as a scalar; 1: also for each vertex; 2: also for each triangle.
-    per: c_int,
-}
 
 /// Describe the parameter `index` of a potential; fails if there is none.
 ///

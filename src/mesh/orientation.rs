@@ -1,5 +1,8 @@
-//! Mending the orientation of a surface: every triangle counter-clockwise seen from outside.
+//! The orientation of a surface, every triangle counter-clockwise seen from outside: mending it, and telling where it
+//! is the opposite.
 
+use super::Triangulation;
+use super::geometry::Totals;
 use super::topology::{Topology, checked_indices, neighbours};
 use crate::error::{Error, Result};
 use nalgebra::Vector3;
@@ -59,6 +62,29 @@ pub fn oriented(vertices: &[[f64; 3]], triangles: &[[i64; 3]]) -> Result<Vec<[i6
     }
     Topology::new(&result, vertices.len())?;
     Ok(result)
+}
+
+/// A surface encloses nothing, flat or crumpled, if its volume is below this share of a sphere's of the same area. That
+/// is less than what 10⁵ equal spheres have together, or a tube 10⁵ times as long as wide.
+const NOTHING: f64 = 1e-3;
+
+/// Whether a surface is turned inside out at the positions of all particles, and its area and volume: the volume is
+/// below zero, and not only as that of a flat sheet may be. `None` if positions are not finite.
+pub fn is_inside_out(mesh: &Triangulation, positions: &[f64]) -> Option<(bool, Totals)> {
+    let position =
+        |particle: u32| Vector3::from_column_slice(&positions[3 * particle as usize..][..3]);
+    let origin = position(mesh.particles()[0]);
+    let (mut twice_area, mut six_volumes) = (0.0, 0.0);
+    for triangle in 0..mesh.triangles().len() {
+        let [a, b, c] = mesh.particles_of(triangle).map(|p| position(p) - origin);
+        let normal = (b - a).cross(&(c - a));
+        twice_area += normal.norm();
+        six_volumes += a.dot(&normal);
+    }
+    let totals = Totals { area: 0.5 * twice_area, volume: six_volumes / 6.0 };
+    // π d³ / 6 of a sphere of area π d².
+    let sphere = totals.area.powf(1.5) / (36.0 * std::f64::consts::PI).sqrt();
+    sphere.is_finite().then_some((totals.volume < -NOTHING * sphere, totals))
 }
 
 /// Visit the component of `seed` and note which of its triangles must be flipped to agree with it.
@@ -157,6 +183,30 @@ mod tests {
         let vertices: Vec<_> =
             (0..6).map(|k| [f64::from(k), f64::from(k * k), f64::from(k * k * k)]).collect();
         assert!(matches!(oriented(&vertices, &triangles), Err(Error::NonOrientable { .. })));
+    }
+
+    #[test]
+    fn a_surface_is_inside_out_where_its_volume_says_so() {
+        let (vertices, good) = octahedron();
+        let swapped: Vec<_> = good.iter().map(|t| [t[0], t[2], t[1]]).collect();
+        let [outward, inward] =
+            [good, swapped].map(|t| Triangulation::new(&Topology::new(&t, 6).unwrap()));
+        for (shift, stretch) in [(0.0, 1.0), (1e3, 0.01), (-50.0, 100.0)] {
+            let place = |z: f64, [x, y, w]: [f64; 3]| [x, y, z * w].map(|x| x * stretch + shift);
+            let placed = |z: f64| vertices.iter().flat_map(|v| place(z, *v)).collect::<Vec<_>>();
+            let (is, totals) = is_inside_out(&inward, &placed(1.0)).unwrap();
+            assert!(is && (totals.volume / stretch.powi(3) + 4.0 / 3.0).abs() < 1e-6);
+            assert!((totals.area / (stretch * stretch) - 12f64.sqrt() * 2.0).abs() < 1e-6);
+            assert!(!is_inside_out(&outward, &placed(1.0)).unwrap().0);
+            // Mirrored, and as flat as a sheet.
+            assert!(is_inside_out(&outward, &placed(-1.0)).unwrap().0);
+            for (z, flat) in [(0.0, true), (1e-6, true), (0.1, false)] {
+                assert_eq!(is_inside_out(&inward, &placed(z)).unwrap().0, !flat);
+            }
+        }
+        let mut lost = vertices.as_flattened().to_vec();
+        lost[4] = f64::NAN;
+        assert!(is_inside_out(&inward, &lost).is_none());
     }
 
     #[test]

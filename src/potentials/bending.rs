@@ -15,6 +15,7 @@
 //! (|J|) if the spontaneous curvature is switched to unsigned, as in VCM. The Voronoi area goes through
 //! zero on obtuse meshes; the energy is then large, of either sign, as the formula says.
 
+use super::codes::{BENDING_SWITCHES, Scheme, UNSIGNED};
 use super::{
     Contribution, Domain, Element, Needs, Parameter, Place, Potential, Sums, Term, Vertex,
     VertexFormula, Vertices,
@@ -40,18 +41,19 @@ enum Area {
     Voronoi,
 }
 
-/// In the order of the names.
-const SCHEMES: [(Numerator, Area); 5] = [
-    (Numerator::Julicher, Area::Barycentric),
-    (Numerator::Cotangent, Area::Voronoi),
-    (Numerator::Cotangent, Area::Barycentric),
-    (Numerator::Julicher, Area::Voronoi),
-    (Numerator::Umbrella, Area::Barycentric),
-];
+/// What the scheme of a term is made of.
+fn parts(term: &Term) -> (Numerator, Area) {
+    match Scheme::ALL[term.form] {
+        Scheme::Julicher => (Numerator::Julicher, Area::Barycentric),
+        Scheme::GompperKroll => (Numerator::Cotangent, Area::Voronoi),
+        Scheme::GompperKrollBarycentric => (Numerator::Cotangent, Area::Barycentric),
+        Scheme::JulicherVoronoi => (Numerator::Julicher, Area::Voronoi),
+        Scheme::Espriu => (Numerator::Umbrella, Area::Barycentric),
+    }
+}
 
 const RIGIDITY: usize = 0;
 const SPONTANEOUS: usize = 1;
-const UNSIGNED: u32 = 1;
 
 impl Potential for Bending {
     fn name(&self) -> &'static str {
@@ -70,22 +72,15 @@ impl Potential for Bending {
     }
 
     fn forms(&self) -> Option<(&'static CStr, &'static [&'static CStr])> {
-        const NAMES: &[&CStr] = &[
-            c"Julicher",
-            c"GompperKroll",
-            c"GompperKrollBarycentric",
-            c"JulicherVoronoi",
-            c"Espriu",
-        ];
-        Some((c"scheme", NAMES))
+        Some((c"scheme", Scheme::NAMES))
     }
 
     fn switches(&self) -> &'static [&'static CStr] {
-        &[c"unsignedSpontaneousCurvature"]
+        BENDING_SWITCHES
     }
 
     fn needs(&self, term: &Term) -> Needs {
-        let (numerator, area) = SCHEMES[term.form];
+        let (numerator, area) = parts(term);
         let mut needs = Needs::VERTICES;
         if numerator == Numerator::Julicher {
             needs |= Needs::CURVATURES;
@@ -111,7 +106,7 @@ impl Potential for Bending {
         const J: u8 = Numerator::Julicher as u8;
         const S: u8 = Numerator::Cotangent as u8;
         const U: u8 = Numerator::Umbrella as u8;
-        let (numerator, area) = SCHEMES[term.form];
+        let (numerator, area) = parts(term);
         let unsigned = term.switches & UNSIGNED != 0;
         let linear = !term.vanishes(SPONTANEOUS) || term.wants_derivatives;
         match (numerator, area) {

@@ -11,6 +11,7 @@
 //!
 //! (B5): doi:10.1103/PhysRevE.108.015301.
 
+use super::codes::Form;
 use super::{Contribution, Domain, EdgeFormula, Edges, Needs, Parameter, Potential, Sums, Term};
 use std::ffi::CStr;
 
@@ -18,7 +19,7 @@ use std::ffi::CStr;
 pub struct Dihedral;
 
 /// f and f′ as functions of φ.
-type Form = fn(f64) -> (f64, f64);
+type Function = fn(f64) -> (f64, f64);
 
 /// 1 − cos φ, without cancellation, and sin φ.
 #[inline]
@@ -54,7 +55,15 @@ fn smooth_exp46(angle: f64) -> (f64, f64) {
     (0.5 * (growth - angle * angle), (growth + 1.0) * sine - angle)
 }
 
-const FORMS: [Form; 5] = [quartic, cosine, exp, smooth_exp, smooth_exp46];
+fn function(form: Form) -> Function {
+    match form {
+        Form::Quartic => quartic,
+        Form::Cosine => cosine,
+        Form::Exp => exp,
+        Form::SmoothExp => smooth_exp,
+        Form::SmoothExp46 => smooth_exp46,
+    }
+}
 
 impl Potential for Dihedral {
     fn name(&self) -> &'static str {
@@ -66,7 +75,7 @@ impl Potential for Dihedral {
     }
 
     fn forms(&self) -> Option<(&'static CStr, &'static [&'static CStr])> {
-        Some((c"form", &[c"Quartic", c"Cosine", c"Exp", c"SmoothExp", c"SmoothExp46"]))
+        Some((c"form", Form::NAMES))
     }
 
     fn needs(&self, _: &Term) -> Needs {
@@ -74,18 +83,18 @@ impl Potential for Dihedral {
     }
 
     fn edges(&self, term: &Term, run: Edges) -> Contribution {
-        run.apply(&Hinge { stiffness: term.values[0], form: FORMS[term.form] })
+        run.apply(&Hinge { stiffness: term.values[0], function: function(Form::ALL[term.form]) })
     }
 }
 
 struct Hinge {
     stiffness: f64,
-    form: Form,
+    function: Function,
 }
 
 impl EdgeFormula for Hinge {
     fn apply(&self, angle: f64) -> (Sums<f64>, f64) {
-        let (value, slope) = (self.form)(angle);
+        let (value, slope) = (self.function)(angle);
         let sums = Sums { energy: self.stiffness * value, by_parameter: [value, 0.0] };
         (sums, self.stiffness * slope)
     }
@@ -104,8 +113,9 @@ mod tests {
             |x| 0.04 * ((10.0 * (1.0 - x.cos())).exp() - 1.0),
             |x| 0.5 * ((2.0 * (1.0 - x.cos())).exp() - 1.0 - x * x),
         ];
-        for (form, expected) in FORMS.iter().zip(expected) {
+        for (form, expected) in Form::ALL.iter().zip(expected) {
             for angle in [-2.9, -1.0, -0.2, 0.3, 0.9, 2.0] {
+                let form = function(*form);
                 let (value, slope) = form(angle);
                 assert!((value - expected(angle)).abs() <= 1e-12 * expected(angle).abs());
                 let h = 1e-6;

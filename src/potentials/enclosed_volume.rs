@@ -24,6 +24,10 @@ impl Potential for EnclosedVolume {
         Needs::TOTALS
     }
 
+    fn needs_outside(&self) -> bool {
+        true
+    }
+
     fn totals(
         &self,
         &Term { values: [modulus, target, ..], .. }: &Term,

@@ -5,6 +5,7 @@
 //! here, and one line in [`REGISTRY`].
 
 mod bending;
+pub mod codes;
 mod dihedral;
 mod elements;
 mod enclosed_volume;
@@ -17,7 +18,7 @@ mod triangle_height;
 use crate::error::{Error, Result};
 use crate::mesh::geometry::{TotalPartials, Totals};
 use crate::real::Real;
-use bitflags::bitflags;
+pub use codes::{Contribution, MAX_PARAMETERS, Needs};
 pub use elements::*;
 use std::ffi::CStr;
 
@@ -32,33 +33,6 @@ pub static REGISTRY: [&dyn Potential; 8] = [
     &plaquette_area::PlaquetteArea,
     &triangle_area_repulsion::TriangleAreaRepulsion,
 ];
-
-/// The most scalars that a potential can have.
-pub const MAX_PARAMETERS: usize = 4;
-
-bitflags! {
-    /// On which elements of the mesh a potential adds energy, and what it wants to know of them
-    /// beyond areas, lengths and volume.
-    #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-    pub struct Needs: u8 {
-        /// Adds energy of the total area and volume.
-        const TOTALS = 1;
-        /// Adds energy of each triangle's area and sides.
-        const TRIANGLES = 2;
-        /// Adds energy of each edge's dihedral angle.
-        const EDGES = 4;
-        /// Adds energy of each vertex' area and curvature.
-        const VERTICES = 8;
-        /// Wants Jülicher's curvature of the vertices.
-        const CURVATURES = 16;
-        /// Wants the Voronoi areas of the vertices.
-        const VECTORS = 32;
-        /// Wants the normals of the vertices, too.
-        const NORMALS = 64;
-        /// Wants the curvature vectors of the vertices, too.
-        const CURVATURE_VECTORS = 128;
-    }
-}
 
 /// What a scalar may be given for one by one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -127,16 +101,6 @@ impl Parameter {
     }
 }
 
-/// An energy and its derivatives with respect to the potential's scalars. The C++ shim reads it.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Contribution {
-    /// kJ/mol.
-    pub energy: f64,
-    /// ∂E/∂(parameter), in the order of [`Potential::parameters`].
-    pub by_parameter: [f64; MAX_PARAMETERS],
-}
-
 impl std::ops::AddAssign for Contribution {
     fn add_assign(&mut self, other: Self) {
         self.energy += other.energy;
@@ -170,6 +134,12 @@ pub trait Potential: Sync {
 
     /// Where energy is added, and from what.
     fn needs(&self, term: &Term) -> Needs;
+
+    /// Whether the energy makes no sense on a surface that is turned inside out. Such a surface is refused when it is
+    /// first evaluated; what a shape becomes later is not.
+    fn needs_outside(&self) -> bool {
+        false
+    }
 
     /// Energy of the total area and volume.
     fn totals(&self, _: &Term, _: &Totals, _: &mut TotalPartials) -> Contribution {

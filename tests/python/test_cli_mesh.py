@@ -1,6 +1,7 @@
 """The command `mesh`: its files read back and compared with what Mesh does."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -166,3 +167,35 @@ def test_force_overwrites(ball):
     scaled = Mesh.read(ball).scaled(2)
     done("transform", ball, ball, "--scale", 2, "--force")
     assert close(Mesh.read(ball), scaled)
+
+
+CUBE = "".join(f"v {x} {y} {z}\n" for z in (0, 1) for y in (0, 1) for x in (0, 1))
+SQUARES = "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n"
+# The fourth square, on vertices of its own, 1e-7 away.
+TORN = "".join(f"v {x} 1.0000001 {z}\n" for z in (0, 1) for x in (0, 1)) + SQUARES.replace(
+    "f 3 7 8 4", "f 9 11 12 10"
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "message", "options"),
+    [
+        (CUBE + SQUARES, "face 1 has 4 vertices, not 3; .*--triangulate", []),
+        (CUBE + "v 5 5 5\n" + SQUARES, "--drop-unused", ["--drop-unused"]),
+        (CUBE + TORN, r"4 pair\(s\) of vertices nearly coincide.*--merge 2e-07", ["--merge", 2e-7]),
+    ],
+)
+def test_what_a_refusal_names_mends_it(tmp_path, text, message, options):
+    source, path = tmp_path / "cube.obj", tmp_path / "new.ply"
+    source.write_text(text)
+    split = ["--triangulate"] if options else []
+    result = invoke("convert", source, path, *split)
+    assert result.exit_code == 1
+    assert re.search(message, result.output)
+    assert not path.exists()
+    options = ["--triangulate", *options]
+    assert "8 vertices, 12 triangles, area 6 nm²" in done("convert", source, path, *options)
+    assert Mesh.read(path).volume == pytest.approx(1, rel=1e-6)
+    assert json.loads(done("info", source, "--json", *options))["vertices"] == 8
+    done("transform", source, path, "--scale", 2, "--force", *options)
+    assert Mesh.read(path).volume == pytest.approx(8, rel=1e-6)

@@ -215,6 +215,14 @@ MISTAKES = [
     ("scale = [1, 1.1, 0.9]", "scale = [1, 2]", "vesicle[0].mesh.scale: expected three numbers"),
     ('file = "ball.ply"', 'file = "bell.ply"',
      "vesicle[1].mesh.file: Mesh.read: there is no file"),
+    ("random = 40", "random = 40\ntriangulate = true",
+     "vesicle[0].mesh.triangulate: it says how to read a file, and this mesh is made"),
+    ('file = "ball.ply"', 'file = "ball.ply"\nmerge = -1',
+     "vesicle[1].mesh.merge: must be 0 or more, got -1"),
+    ('file = "ball.ply"', 'file = "ball.ply"\nmerge = 30',
+     "vesicle[1].mesh.file: Mesh.read: "),
+    ("ply = true", "ply = true\nframes = \"vtk\"", "output.ply: give either frames or ply"),
+    ("ply = true", 'frames = "vtp"', "output.frames: there is no 'vtp'; did you mean vtk?"),
     ('file = "ball.ply"', 'file = "ball.ply"\nradius = 3',
      "vesicle[1].mesh.radius: a mesh from a file has its own size; use scale"),
     ('file = "ball.ply"', 'file = "ball.ply"\nseed = 3', "vesicle[1].mesh.seed: only a random"),
@@ -388,7 +396,7 @@ class TestRun:
 
     def test_name_and_seed_of_their_own(self, write, tmp_path):
         result = invoke("run", write(SMALL), "--out", tmp_path / "out", "--steps", 0, "--seed", 9)
-        assert "own: 1 membrane(s), 42 vertices, platform Reference, seed 9" in result.output
+        assert "own: 1 membrane(s), 42 vertices, platform Helfrich, seed 9" in result.output
 
 
 class TestDocuments:

@@ -63,7 +63,9 @@ def run(command, **options) -> str:
 
 
 def check(output: str, expected) -> None:
-    rows = [tuple(float(word) for word in line.split()) for line in output.splitlines()]
+    platform, *lines = output.splitlines()
+    assert platform == "# platform Helfrich"
+    rows = [tuple(float(word) for word in line.split()) for line in lines]
     assert len(rows) == 3
     assert abs(rows[2][1] - rows[0][1]) > 0.1, "the vesicle has not moved"
     for row, wanted in zip(rows, expected, strict=True):

@@ -271,7 +271,12 @@ BROKEN = [
     ("ply", PLY.replace("3 1 2 3", "3 1 2 7"), 17, "face 2 names vertex 7, but .* 4 vertices"),
     ("ply", PLY.replace("3 1 2 3", "3 1 2 -3"), 17, "face 2 names vertex -3"),
     ("ply", PLY.replace("3 1 2 3", "3 1 2 x"), 17, "a vertex index of face 2 must be an integer"),
-    ("ply", PLY.replace("3 1 2 3", "4 1 2 3 0"), 17, "face 2 has 4 vertices, not 3; triangulate"),
+    (
+        "ply",
+        PLY.replace("3 1 2 3", "4 1 2 3 0"),
+        17,
+        "face 2 has 4 vertices, not 3; read it with triangulate=True",
+    ),
     ("ply", PLY.replace("vertex 4", "vertex 5"), 15, "vertex 4 needs 3 numbers"),
     ("ply", PLY.replace("face 4", "face 3"), 18, "expected the end of the file, got '3 2 0 3'"),
     ("ply", PLY.replace("face 4", "face four"), 8, "'face' must be an integer, got 'four'"),
@@ -284,8 +289,13 @@ BROKEN = [
     ("ply", PLY.replace("ascii", "utf8"), 2, "expected 'format ascii 1.0'"),
     ("ply", OFF, 1, "starts with a line 'ply'"),
     ("ply", "", 1, "starts with a line 'ply'"),
-    ("obj", lines(OBJ, 5) + "f 1 3\n", 6, "face 1 has 2 vertices, not 3"),
-    ("obj", OBJ.replace("f 1 2 4", "f 1 2 4 3"), 7, "face 2 has 4 vertices, not 3; triangulate"),
+    ("obj", lines(OBJ, 5) + "f 1 3\n", 6, "face 1 has 2 vertices; a face needs 3"),
+    (
+        "obj",
+        OBJ.replace("f 1 2 4", "f 1 2 4 3"),
+        7,
+        "face 2 has 4 vertices, not 3; read it with triangulate=True",
+    ),
     ("obj", OBJ.replace("f 1 2 4", "f 1 2 5"), 7, "face 2 names vertex 5, .*counted from 1"),
     ("obj", OBJ.replace("f 1 2 4", "f 0 2 4"), 7, "face 2 names vertex 0"),
     ("obj", OBJ.replace("f 1 2 4", "f a 2 4"), 7, "a vertex index of face 2 must be an integer"),
@@ -306,10 +316,11 @@ BROKEN = [
     ("stl", lines(STL, 22), 22, "ends here without 'endsolid'"),
     ("stl", lines(STL, 20), 20, "ends here, where the rest of facet 2"),
     ("stl", STL.replace("vertex 1 0 0", "vertex 1 0", 1), 6, "a vertex of facet 0 needs 3"),
-    ("stl", STL.replace("vertex 1 0 0\n", "", 1), 6, "face 0 has 2 vertices, not 3"),
+    ("stl", STL.replace("vertex 1 0 0\n", "", 1), 6, "face 0 has 2 vertices; a face needs 3"),
     ("stl", STL.replace("endfacet", "end", 1), 8, "expected 'endfacet', got 'end'"),
     ("stl", STL.replace("facet normal", "face normal", 1), 2, "expected 'facet' or 'endsolid'"),
-    ("stl", "not a solid", 1, "not an STL file.*has 11 bytes"),
+    ("stl", "not a solid", 1, "an ASCII STL file starts with 'solid', got 'not a solid'"),
+    ("stl", "not\0a solid", 1, "not an STL file.*has 11 bytes"),
 ]
 
 
@@ -380,8 +391,11 @@ def test_truncated_binary_stl_says_how_many_bytes_were_expected(tmp_path, lumpy)
 @pytest.mark.parametrize(
     ("cells", "message"),
     [
-        ([("quad", [[0, 1, 2, 3]])], r"cell of type 'quad' on vertices \[0, 1, 2, 3\]"),
-        ([("tetra", [[0, 1, 2, 3]])], "cell of type 'tetra'.*extract the surface"),
+        ([("quad", [[0, 1, 2, 3]])], "face 0 has 4 vertices, not 3; .*--triangulate"),
+        (
+            [("tetra", [[0, 1, 2, 3]])],
+            r"cell of type 'tetrahedron' on vertices \[0, 1, 2, 3\].*extract the surface",
+        ),
         ([("vertex", [[0]])], "no triangles"),
     ],
 )
@@ -408,7 +422,11 @@ def test_missing_files_and_unknown_formats(tmp_path, lumpy):
         Mesh.read(tmp_path)
     path = tmp_path / "mesh.doc"
     path.write_text(PLY)
-    with pytest.raises(MeshError, match=r"unknown extension '.doc'; known are .*\.obj, .*\.ply"):
+    with pytest.raises(
+        MeshError,
+        match=r"known are .ply, .obj, .stl, .off, .vtk, .vtp, .vtu, .msh, "
+        "and what else meshio and trimesh read$",
+    ):
         Mesh.read(path)
     with pytest.raises(MeshError, match=r"^Mesh.write: .*'.doc'; known are .*\.msh, .*\.vtu"):
         lumpy.write(path)

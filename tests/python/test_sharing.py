@@ -10,6 +10,7 @@ import openmm
 import openmmhelfrich as helfrich
 import pytest
 from openmmhelfrich import _core
+from platforms import ON_OPENCL, ON_PROCESSOR
 
 
 def membranes() -> int:
@@ -104,12 +105,33 @@ def test_any_mask_of_groups_is_the_sum_of_its_forces(mesh, seed: int):
     np.testing.assert_allclose(force, expected, rtol=0, atol=1e-13 * scale)
 
 
-def test_groups_that_change_later_are_followed(mesh):
-    """On the processor OpenMM's own forces look up their group at each evaluation; so do these."""
+@pytest.mark.parametrize("target", [*ON_PROCESSOR, ON_OPENCL[0]], ids=str)
+def test_groups_that_change_later_wait_for_reinitialize(mesh, target):
+    """As those of OpenMM's own forces do, of which a bond stands beside."""
     forces = forces_on(mesh)
-    context = context_of(forces, mesh.num_vertices)
+    bond = openmm.HarmonicBondForce()
+    bond.addBond(0, 1, 0.0, 3.0)
+    system = openmm.System()
+    for _ in range(mesh.num_vertices):
+        system.addParticle(50)
+    for group, force in enumerate([*forces, bond]):
+        force.setForceGroup(group)
+        system.addForce(force)
+    context = target.context(system)
     context.setPositions(mesh.vertices)
-    energy = context.getState(energy=True, groups={0}).getPotentialEnergy()
-    context.getSystem().getForce(0).setForceGroup(20)
-    assert context.getState(energy=True, groups={0}).getPotentialEnergy()._value == 0
-    assert context.getState(energy=True, groups={20}).getPotentialEnergy() == energy
+
+    def energies(groups) -> list[float]:
+        states = (context.getState(energy=True, groups={group}) for group in groups)
+        return [state.getPotentialEnergy()._value for state in states]
+
+    bonds = len(forces)
+    before = energies(range(bonds + 1))
+    assert before[0] and before[bonds]
+    system = context.getSystem()
+    system.getForce(0).setForceGroup(20)
+    system.getForce(bonds).setForceGroup(21)
+    assert energies(range(bonds + 1)) == before
+    assert energies([20, 21]) == [0, 0]
+    context.reinitialize(preserveState=True)
+    assert energies([20, *range(1, bonds), 21]) == before
+    assert energies([0, bonds]) == [0, 0]

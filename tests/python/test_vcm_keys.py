@@ -265,7 +265,7 @@ class TestStart:
         triangles[::3] = triangles[::3, ::-1]
         # Turning the corners round does not turn the triangle over.
         triangles[1] = np.roll(triangles[1], 1)
-        (folder.path / "mesh.ply").write_text(ply.write(lumpy.vertices, triangles))
+        (folder.path / "mesh.ply").write_bytes(ply.write(lumpy.vertices, triangles))
         cfg = folder.read()
         assert cfg.meshes[0].volume == pytest.approx(lumpy.volume, rel=1e-14)
         assert cfg.membranes[0].num_reversed == len(triangles[::3])

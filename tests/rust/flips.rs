@@ -92,7 +92,7 @@ fn difference_is_that_of_two_evaluations(terms: &[Term], flips: usize, seed: u64
 
 #[test]
 fn the_energy_of_a_flip_is_that_of_two_evaluations_for_each_term() {
-    for (index, term) in all_terms().iter().enumerate() {
+    for (index, term) in all_terms(false).iter().enumerate() {
         for wants_derivatives in [false, true] {
             let term = Term { wants_derivatives, ..*term };
             difference_is_that_of_two_evaluations(&[term], 40, 100 + index as u64);
@@ -102,7 +102,7 @@ fn the_energy_of_a_flip_is_that_of_two_evaluations_for_each_term() {
 
 #[test]
 fn the_energy_of_a_flip_is_that_of_two_evaluations_for_all_terms_together() {
-    let mut terms = all_terms();
+    let mut terms = all_terms(true);
     difference_is_that_of_two_evaluations(&terms, 60, 3);
     terms.reverse();
     difference_is_that_of_two_evaluations(&terms, 60, 4);
@@ -134,7 +134,7 @@ fn many_flips_leave_a_valid_surface_and_current_evaluators() {
     let mut noise = random(21);
     let (positions, triangles) = spheroid(6, 9, &mut noise);
     let count = positions.len() / 3;
-    let terms = all_terms();
+    let terms = all_terms(true);
     let mut membrane = Membrane::new(&triangles, count).unwrap();
     let mut state = seeded(5);
     let hot = FlipRules { temperature: 1e6, ..ANY };
@@ -176,7 +176,7 @@ fn many_flips_leave_a_valid_surface_and_current_evaluators() {
 fn what_was_saved_goes_on_with_the_same_bits() {
     let (positions, triangles) = spheroid(8, 11, &mut random(2));
     let count = positions.len() / 3;
-    let terms = all_terms();
+    let terms = all_terms(true);
     let run = |membrane: &mut Membrane, state: &mut FlipState| {
         membrane
             .flip(&terms, &positions, &FlipRules { temperature: 50.0, ..ANY }, 2000, state)
@@ -202,7 +202,7 @@ fn what_was_saved_goes_on_with_the_same_bits() {
 #[test]
 fn a_demon_keeps_the_energy() {
     let (positions, triangles) = spheroid(6, 9, &mut random(31));
-    let terms = all_terms();
+    let terms = all_terms(true);
     let mut membrane = Membrane::new(&triangles, positions.len() / 3).unwrap();
     let mut state = FlipState { demon_energy: 40.0, ..seeded(3) };
     let total = |membrane: &Membrane| -> f64 {
@@ -406,7 +406,7 @@ fn small_terms() -> Vec<Term<'static>> {
 
 #[test]
 fn visited_frequencies_are_boltzmann_weights_for_each_term() {
-    for (n, term) in small_terms().iter().enumerate() {
+    for (n, term) in small_terms(false).iter().enumerate() {
         visits_are_boltzmann(5, &[*term], 20_000, 60, 0.5, 10 + n as u32);
         visits_are_boltzmann(6, &[*term], 20_000, 100, 0.5, 30 + n as u32);
     }

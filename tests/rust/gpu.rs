@@ -68,6 +68,7 @@ fn errors(found: &Found, expected: &Found) -> [f64; 3] {
     for (a, b) in found.0.iter().zip(&expected.0) {
         errors[0] = f64::max(errors[0], (a.energy / b.energy - 1.0).abs());
         for (a, b) in a.by_parameter.iter().zip(&b.by_parameter) {
+            // A derivative that is zero by definition, or that nobody wants.
             if *b != 0.0 {
                 errors[2] = f64::max(errors[2], (a / b - 1.0).abs());
             } else {
@@ -86,7 +87,7 @@ fn every_potential_is_that_of_the_processor() {
     for (adapter, precision) in targets() {
         let mesh = spheroid(6, 9, &mut random(1));
         let mut evaluator = GpuEvaluator::new(topology(&mesh), Some(adapter), precision).unwrap();
-        for term in all_terms() {
+        for term in all_terms(true) {
             let found = on_device(&mut evaluator, &mesh, &[term]);
             let expected = on_processor(&mesh, &[term]);
             let errors = errors(&found, &expected);
@@ -106,7 +107,7 @@ fn terms_together_are_those_alone() {
     for (adapter, precision) in targets() {
         let mesh = spheroid(7, 8, &mut random(2));
         let mut evaluator = GpuEvaluator::new(topology(&mesh), Some(adapter), precision).unwrap();
-        let terms = all_terms();
+        let terms = all_terms(true);
         let found = on_device(&mut evaluator, &mesh, &terms);
         let errors = errors(&found, &on_processor(&mesh, &terms));
         assert!(errors.into_iter().all(|error| error < tolerance(precision)), "{errors:?}");
@@ -116,6 +117,93 @@ fn terms_together_are_those_alone() {
         let mut energies = vec![Contribution::default(); terms.len()];
         assert_eq!(evaluator.evaluate(&terms, &mesh.0, &mut energies, None), Ok(true));
         assert_eq!(energies, found.0);
+    }
+}
+
+/// A term with what the processor finds for it alone; derivatives only if they are wanted.
+struct Alone {
+    term: Term<'static>,
+    found: Found,
+}
+
+fn alone(mesh: &Mesh, term: Term<'static>) -> Alone {
+    let mut found = on_processor(mesh, &[term]);
+    if !term.wants_derivatives {
+        found.0[0].by_parameter = Default::default();
+    }
+    Alone { term, found }
+}
+
+/// Evaluate some terms on the device, pairs without forces, too, and compare with what the processor finds for each of
+/// them alone: terms add up, whatever their order.
+fn check_together(evaluator: &mut GpuEvaluator, mesh: &Mesh, some: &[&Alone], tolerance: f64) {
+    let terms: Vec<_> = some.iter().map(|alone| alone.term).collect();
+    let contributions: Vec<_> = some.iter().map(|alone| alone.found.0[0]).collect();
+    let mut forces = vec![0.0; mesh.0.len()];
+    for alone in some {
+        forces.iter_mut().zip(&alone.found.1).for_each(|(sum, force)| *sum += force);
+    }
+    let found = on_device(evaluator, mesh, &terms);
+    let worst = errors(&found, &(contributions, forces));
+    let names = || {
+        let name = |term: &Term| {
+            let (name, derivatives) = (term.potential.name(), term.wants_derivatives);
+            format!("{name} {} {:?} {derivatives}", term.form, term.values)
+        };
+        terms.iter().map(name).collect::<Vec<_>>().join(", ")
+    };
+    assert!(worst.into_iter().all(|error| error < tolerance), "{}: {worst:?}", names());
+    if some.len() == 2 {
+        let mut energies = vec![Contribution::default(); terms.len()];
+        assert_eq!(evaluator.evaluate(&terms, &mesh.0, &mut energies, None), Ok(true));
+        assert_eq!(energies, found.0, "{}", names());
+    }
+}
+
+/// All pairs in both orders, each term with and without its derivatives, and beside itself.
+#[test]
+fn pairs_in_every_order_are_those_of_the_processor() {
+    let mesh = spheroid(6, 9, &mut random(5));
+    let terms = [true, false].into_iter().flat_map(all_terms);
+    // Signs have passed their own test; they change no order.
+    let differs = |term: &Term| term.values[1] >= 0.0 && term.switches == 0;
+    let all: Vec<_> = terms.filter(differs).map(|term| alone(&mesh, term)).collect();
+    assert_eq!(all.len(), 42);
+    for (adapter, precision) in targets() {
+        let mut evaluator = GpuEvaluator::new(topology(&mesh), Some(adapter), precision).unwrap();
+        for one in &all {
+            for other in &all {
+                check_together(&mut evaluator, &mesh, &[one, other], tolerance(precision));
+            }
+        }
+    }
+}
+
+/// All triples of potentials in every order, bending in every scheme, with and without derivatives.
+#[test]
+fn triples_in_every_order_are_those_of_the_processor() {
+    let mesh = spheroid(6, 9, &mut random(6));
+    let differs = |term: &Term| match term.potential.name() {
+        "BendingForce" => term.values[1] > 0.0 && term.switches == 0,
+        "DihedralForce" => term.form == 0,
+        _ => true,
+    };
+    for wants_derivatives in [true, false] {
+        let terms = all_terms(wants_derivatives).into_iter().filter(differs);
+        let all: Vec<_> = terms.map(|term| alone(&mesh, term)).collect();
+        assert_eq!(all.len(), 12);
+        for (adapter, precision) in targets() {
+            let mut evaluator =
+                GpuEvaluator::new(topology(&mesh), Some(adapter), precision).unwrap();
+            for (i, one) in all.iter().enumerate() {
+                for (j, two) in all.iter().enumerate().filter(|(j, _)| *j != i) {
+                    for (_, three) in all.iter().enumerate().filter(|(k, _)| ![i, j].contains(k)) {
+                        let some = [one, two, three];
+                        check_together(&mut evaluator, &mesh, &some, tolerance(precision));
+                    }
+                }
+            }
+        }
     }
 }
 
@@ -151,7 +239,7 @@ fn what_the_device_cannot_say_is_left_to_the_processor() {
     for (adapter, precision) in targets() {
         let mesh = spheroid(5, 7, &mut random(7));
         let mut evaluator = GpuEvaluator::new(topology(&mesh), Some(adapter), precision).unwrap();
-        let terms = all_terms();
+        let terms = all_terms(true);
         let mut found = vec![Contribution::default(); terms.len()];
         let mut lost = mesh.0.clone();
         lost[3 * 11 + 1] = f64::INFINITY;

@@ -49,8 +49,9 @@ pub fn random(seed: u64) -> impl FnMut() -> f64 {
     }
 }
 
-/// Every potential in every variant, with values that make it act on the meshes of these tests.
-pub fn all_terms() -> Vec<Term<'static>> {
+/// Every potential in every variant, with values that make it act on the meshes of these tests; all with or all
+/// without the derivatives with respect to their scalars.
+pub fn all_terms(wants_derivatives: bool) -> Vec<Term<'static>> {
     let mut terms = Vec::new();
     let mut add = |name, form, values: &[f64]| terms.push(Term::new(name, form, values).unwrap());
     for form in 0..5 {
@@ -73,7 +74,7 @@ pub fn all_terms() -> Vec<Term<'static>> {
         }
     }
     for term in &mut terms {
-        term.wants_derivatives = true;
+        term.wants_derivatives = wants_derivatives;
     }
     terms
 }

@@ -24,6 +24,12 @@ extern int64_t Helfrich_lastError(char* buffer, int64_t size);
 /** The version of OpenMM that the plugin was built for. */
 extern const char* Helfrich_openmmVersion(void);
 
+/**
+ * Register the platform Helfrich, which OpenMM then chooses for membranes where no other is named, and the readers
+ * of XML. OpenMM does so itself where it loads the library as a plugin.
+ */
+extern void Helfrich_register(void);
+
 /* For every force. `parameter` is the name of a scalar, such as "rigidity". */
 extern void Helfrich_MembraneForce_destroy(OpenMM_Force* force);
 /** Returns the index of the new triangle, or -1 for failure. */

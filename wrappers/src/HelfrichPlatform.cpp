@@ -1,5 +1,6 @@
 #include "HelfrichPlatform.h"
 #include "HelfrichKernels.h"
+#include "PlatformChoice.h"
 
 #include <openmm/KernelFactory.h>
 #include <openmm/OpenMMException.h>
@@ -77,7 +78,7 @@ const string& HelfrichPlatform::getName() const {
 }
 
 double HelfrichPlatform::getSpeed() const {
-    return 0.5;
+    return PlatformChoice::askSpeed();
 }
 
 const string& HelfrichPlatform::getPropertyValue(const Context& context, const string& property) const {
@@ -91,6 +92,13 @@ const string& HelfrichPlatform::getPropertyValue(const Context& context, const s
 }
 
 void HelfrichPlatform::contextCreated(ContextImpl& context, const map<string, string>& properties) const {
+    if (PlatformChoice::isUnasked(context)) {
+        // OpenMM goes on with its next platform, after the second entry of this one has refused too.
+        string reason = whyNotHelfrich(context.getSystem(), context.getIntegrator());
+        if (!reason.empty())
+            throw OpenMMException("Platform Helfrich: not for this System: " + reason);
+    }
+    PlatformChoice::end();
     auto given = properties.find(THREADS);
     bool isGiven = given != properties.end();
     const string& fallback = getPropertyDefaultValue(THREADS);

@@ -14,9 +14,9 @@ namespace HelfrichPlugin {
 /**
  * OpenMM's Reference platform with fast time steps.
  *
- * Forces and integrators are Reference's, in double precision, but for the kernels in HelfrichKernels.h. It is
- * never chosen unless by name, for its speed is given as less than Reference's: for most systems without
- * membranes, other platforms are faster.
+ * Forces and integrators are Reference's, in double precision, but for the kernels in HelfrichKernels.h. OpenMM
+ * chooses it for Systems whose work is their membranes (PlatformChoice.h), unless another platform is named. For
+ * all others it gives its speed as less than Reference's; it does them if asked to.
  *
  * Property: "Threads", the number of threads of a Context. Its default is OPENMM_CPU_THREADS, if the environment has
  * it, or else the number of processors that the process may use.
@@ -26,6 +26,7 @@ public:
     class PlatformData;
     HelfrichPlatform();
     const std::string& getName() const;
+    /** 1000 while OpenMM chooses a platform for a Context with a membrane, else 0.5. */
     double getSpeed() const;
     const std::string& getPropertyValue(const OpenMM::Context& context, const std::string& property) const;
     void contextCreated(OpenMM::ContextImpl& context, const std::map<std::string, std::string>& properties) const;

@@ -1,4 +1,5 @@
 #include "MembraneForceImpl.h"
+#include "PlatformChoice.h"
 
 #include <openmm/System.h>
 #include <openmm/reference/ReferencePlatform.h>
@@ -12,7 +13,7 @@ using std::string;
 using std::vector;
 
 MembraneForceImpl::MembraneForceImpl(const MembraneForce& owner)
-    : CustomCPPForceImpl(owner), owner(owner), term(), inPlace(false), initialGroup(owner.getForceGroup()) {
+    : CustomCPPForceImpl(owner), owner(owner), term(), inPlace(false), group(owner.getForceGroup()) {
     // OpenMM asks for the default parameters before it initialises the force.
     for (int i = 0; i < owner.getNumParameters(); i++)
         contextParameters.push_back(owner.getContextParameter(owner.getParameterName(i)));
@@ -26,6 +27,7 @@ MembraneForceImpl::~MembraneForceImpl() {
 }
 
 void MembraneForceImpl::initialize(ContextImpl& context) {
+    PlatformChoice::end();
     inPlace = dynamic_cast<const ReferencePlatform*>(&context.getPlatform()) != nullptr;
     if (!inPlace && !derivatives.empty())
         throw OpenMMException(owner.getTypeName() +
@@ -70,12 +72,13 @@ void MembraneForceImpl::copyValues() {
 }
 
 vector<string> MembraneForceImpl::getKernelNames() {
+    // OpenMM asks for this before it chooses a platform.
+    PlatformChoice::begin(*this);
     // On Reference and CPU the kernel is not used, but both have it.
     return CustomCPPForceImpl::getKernelNames();
 }
 
 bool MembraneForceImpl::isInGroups(int groups) const {
-    int group = inPlace ? owner.getForceGroup() : initialGroup;
     return (groups & (1 << group)) != 0;
 }
 

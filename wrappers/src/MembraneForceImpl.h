@@ -66,8 +66,8 @@ private:
     std::vector<std::string> derivatives;
     /** Whether positions and forces are OpenMM's own arrays of doubles. */
     bool inPlace;
-    /** The group in which OpenMM's GPU platforms have placed the force for good. */
-    int initialGroup;
+    /** The force's group when the Context was made, as OpenMM's own forces have it: a change needs reinitialize. */
+    const int group;
 };
 
 } // namespace HelfrichPlugin

@@ -4,6 +4,7 @@
 #include "MembraneForceProxy.h"
 #include "MonteCarloBondFlipImpl.h"
 #include "MonteCarloBondFlipProxy.h"
+#include "PlatformChoice.h"
 
 #include <openmm/Platform.h>
 
@@ -55,7 +56,10 @@ void helfrich_shim_registerPlatform() {
     if (!isRightVersion() || findPlatform() != nullptr)
         return;
     try {
-        OpenMM::Platform::registerPlatform(new HelfrichPlatform());
+        // Twice: see PlatformChoice.h. It is one object, of which OpenMM's list has two entries.
+        auto* platform = new HelfrichPlatform();
+        OpenMM::Platform::registerPlatform(platform);
+        OpenMM::Platform::registerPlatform(platform);
     } catch (const std::exception& error) {
         std::cerr << "openmm-helfrich: platform Helfrich is not available: " << error.what() << "\n";
     }
@@ -68,6 +72,18 @@ void helfrich_shim_adoptKernels() {
     } catch (const std::exception& error) {
         std::cerr << "openmm-helfrich: platform Helfrich lacks kernels of other plugins: " << error.what() << "\n";
     }
+}
+
+int helfrich_shim_checkPlatform(const void* system, const void* integrator) {
+    std::string reason;
+    try {
+        reason = whyNotHelfrich(*static_cast<const OpenMM::System*>(system),
+                                *static_cast<const OpenMM::Integrator*>(integrator));
+    } catch (const std::exception& error) {
+        reason = error.what();
+    }
+    helfrich_setLastError(reason.c_str());
+    return reason.empty() ? 0 : 1;
 }
 
 void* helfrich_shim_createImpl(const void* force) {

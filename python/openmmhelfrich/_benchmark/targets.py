@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 import openmm
 
+from .. import platforms
 from ..mesh import Mesh
 
 __all__ = ["INTEGRATORS", "TIME_STEP", "Target", "empty_system", "sphere", "start", "targets"]
@@ -52,8 +53,7 @@ def targets(names: Sequence[str] | None = None) -> tuple[list[Target], dict[str,
     dict of str
         For each of the others what it said.
     """
-    count = openmm.Platform.getNumPlatforms()
-    present = [openmm.Platform.getPlatform(i).getName() for i in range(count)]
+    present = platforms.names()
     found, failed = [], {}
     for name in present if names is None else names:
         if name not in present:

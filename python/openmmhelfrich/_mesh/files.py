@@ -6,23 +6,39 @@ from pathlib import Path
 
 import numpy as np
 
+from .._writing import write_whole
 from ..errors import MeshError
-from . import obj, off, other, ply, stl
+from . import obj, off, other, ply, repair, stl, vtk_legacy, vtk_xml
 from .source import Source
 
-__all__ = ["read", "write"]
+__all__ = ["explained", "read", "write"]
 
-_OWN = {".ply": ply, ".obj": obj, ".off": off, ".stl": stl}
-_MESHIO_WRITES = (".vtk", ".vtu", ".msh")
+_READERS = {
+    ".ply": ply.read,
+    ".obj": obj.read,
+    ".stl": stl.read,
+    ".off": off.read,
+    ".vtk": vtk_legacy.read,
+    ".vtp": vtk_xml.read,
+    ".vtu": vtk_xml.read,
+}
+# What has room for values of the vertices, text or binary; what is binary only; what is text only.
+_EITHER = {".ply": ply.write, ".vtk": vtk_legacy.write}
+_BINARY_ONLY = (".vtu", ".msh")
+_TEXT_ONLY = {".obj": obj.write, ".off": off.write, ".stl": stl.write}
 
 
-def read(path) -> tuple[np.ndarray, np.ndarray]:
+def read(
+    path, triangulate: bool = False, merge: float | None = None, drop_unused: bool = False
+) -> tuple[np.ndarray, np.ndarray]:
     """Vertices and triangles of a file, not yet validated as a mesh.
 
     Parameters
     ----------
     path : str or Path
         The format follows from the extension, in upper or lower case.
+    triangulate, merge, drop_unused
+        As for `Mesh.read`; `merge` in the numbers of the file.
 
     Returns
     -------
@@ -44,38 +60,90 @@ def read(path) -> tuple[np.ndarray, np.ndarray]:
     if not path.is_file():
         raise MeshError(f"Mesh.read: {path} is not a file")
     extension = path.suffix.lower()
-    if extension in _OWN:
-        return _OWN[extension].read(Source(path, path.read_bytes()))
-    meshio, trimesh = other.meshio_extensions(), other.trimesh_extensions()
-    if extension in meshio:
-        return other.read_meshio(path)
-    if extension in trimesh:
-        return other.read_trimesh(path)
-    raise _unknown("read", path, {*_OWN, *meshio, *trimesh})
+    source = Source(path, path.read_bytes(), triangulate)
+    if extension in _READERS:
+        vertices, triangles = _READERS[extension](source)
+    elif extension in other.meshio_extensions():
+        vertices, triangles = other.read_meshio(source)
+    elif extension in other.trimesh_extensions():
+        vertices, triangles = other.read_trimesh(path)
+    else:
+        known = f"{', '.join([*_READERS, '.msh'])}, and what else meshio and trimesh read"
+        raise _unknown("read", path, known)
+    if merge is not None:
+        try:
+            vertices, triangles = repair.merge(vertices, triangles, merge)
+        except MeshError as reason:
+            raise MeshError(f"Mesh.read: {path}: {reason}") from None
+    if drop_unused:
+        vertices, triangles = repair.drop(vertices, triangles)
+    return vertices, triangles
 
 
-def write(path, vertices: np.ndarray, triangles: np.ndarray) -> None:
-    """Write a mesh in the format of the extension.
+def explained(path, reason: MeshError, vertices: np.ndarray, triangles: np.ndarray) -> MeshError:
+    """The error of a mesh that is not valid, with its file and with what could mend it."""
+    text = str(reason).removeprefix("Mesh: ")
+    return MeshError(f"Mesh.read: {path}: {text}{repair.hints(vertices, triangles)}")
 
-    Raises
-    ------
-    MeshError
-        If the format is unknown.
-    OSError
-        If the file cannot be written.
-    """
+
+def write(
+    path,
+    vertices: np.ndarray,
+    triangles: np.ndarray,
+    point_data: dict[str, np.ndarray] | None = None,
+    binary: bool | None = None,
+) -> None:
+    """Write a mesh in the format of the extension; arguments and errors as for `Mesh.write`."""
     path = Path(path)
     extension = path.suffix.lower()
-    if extension in _OWN:
-        path.write_text(_OWN[extension].write(vertices, triangles), encoding="ascii")
-    elif extension in _MESHIO_WRITES:
-        other.write_meshio(path, vertices, triangles)
+    if extension in _TEXT_ONLY:
+        if binary:
+            raise MeshError(
+                f"Mesh.write: {path}: {extension} is written as text only, with all digits; leave "
+                f"out binary, or write {' or '.join(_EITHER)}"
+            )
+        if point_data:
+            raise MeshError(
+                f"Mesh.write: {path}: {extension} has no room for values of the vertices "
+                f"({', '.join(map(str, point_data))}); leave out point_data, or write "
+                + ", ".join([*_EITHER, *_BINARY_ONLY])
+            )
+        write_whole(path, _TEXT_ONLY[extension](vertices, triangles))
+        return
+    data = _checked(point_data or {}, len(vertices))
+    if extension in _EITHER:
+        write_whole(path, _EITHER[extension](vertices, triangles, data, bool(binary)))
+    elif extension in _BINARY_ONLY:
+        if binary is not None and not binary:
+            raise MeshError(
+                f"Mesh.write: {path}: {extension} is written as binary only; leave out binary, or "
+                f"write {' or '.join(_EITHER)}"
+            )
+        other.write_meshio(path, vertices, triangles, data)
     else:
-        raise _unknown("write", path, {*_OWN, *_MESHIO_WRITES})
+        known = ", ".join(sorted([*_EITHER, *_BINARY_ONLY, *_TEXT_ONLY]))
+        raise _unknown("write", path, known)
 
 
-def _unknown(method: str, path: Path, known: set[str]) -> MeshError:
-    return MeshError(
-        f"Mesh.{method}: {path}: unknown extension '{path.suffix}'; known are "
-        + ", ".join(sorted(known))
-    )
+def _checked(point_data: dict, num_vertices: int) -> dict[str, np.ndarray]:
+    """Values of the vertices as arrays of doubles."""
+    found = {}
+    for name, values in point_data.items():
+        where = f"Mesh.write: point_data {name!r}"
+        if not isinstance(name, str) or not name.isprintable() or len(name.split()) != 1:
+            raise MeshError(f"{where}: a name must be one word, without spaces")
+        try:
+            array = np.array(values, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise MeshError(f"{where} must be numbers without a unit, got {values!r}") from None
+        if array.shape not in ((num_vertices,), (num_vertices, 3)):
+            raise MeshError(
+                f"{where} must have shape ({num_vertices},) or ({num_vertices}, 3), got "
+                f"{array.shape}; give one number or one vector per vertex"
+            )
+        found[name] = array
+    return found
+
+
+def _unknown(method: str, path: Path, known: str) -> MeshError:
+    return MeshError(f"Mesh.{method}: {path}: unknown extension '{path.suffix}'; known are {known}")

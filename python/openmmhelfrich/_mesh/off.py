@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .source import Source, arrays, shorten
+from .source import Source, shorten
 
 __all__ = ["read", "write"]
 
@@ -26,18 +26,19 @@ def read(source: Source) -> tuple[np.ndarray, np.ndarray]:
         )
     num_vertices = source.integer(counts[0], "the number of vertices")
     num_faces = source.integer(counts[1], "the number of faces")
-    vertices, triangles = [], []
+    vertices, faces, lines = [], [], []
     for item in range(num_vertices):
         words = source.need(f"vertex {item} of {num_vertices}", comment=b"#")
         vertices.append(source.point(words, f"vertex {item}"))
     for item in range(num_faces):
         words = source.need(f"face {item} of {num_faces}", comment=b"#")
-        triangles.append(source.triangle(words, item, num_vertices))
+        faces.append(source.face(words, item, num_vertices))
+        lines.append(source.line)
     source.finish(comment=b"#")
-    return arrays(vertices, triangles)
+    return source.mesh(vertices, faces, lines)
 
 
-def write(vertices: np.ndarray, triangles: np.ndarray) -> str:
+def write(vertices: np.ndarray, triangles: np.ndarray) -> bytes:
     """An OFF file of doubles, each with the fewest digits that give it back exactly."""
     lines = [
         "OFF",
@@ -46,4 +47,4 @@ def write(vertices: np.ndarray, triangles: np.ndarray) -> str:
         *(f"{x!r} {y!r} {z!r}" for x, y, z in vertices.tolist()),
         *(f"3 {a} {b} {c}" for a, b, c in triangles.tolist()),
     ]
-    return "\n".join(lines) + "\n"
+    return ("\n".join(lines) + "\n").encode()

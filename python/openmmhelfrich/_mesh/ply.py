@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .source import Source, arrays, shorten
+from ..errors import MeshError
+from .source import Source, shorten
 
 __all__ = ["read", "write"]
 
@@ -62,21 +63,49 @@ def read(source: Source) -> tuple[np.ndarray, np.ndarray]:
     return _read_binary(source, elements, _BYTE_ORDERS[words[1]])
 
 
-def write(vertices: np.ndarray, triangles: np.ndarray) -> str:
-    """An ASCII PLY file of doubles, each with the fewest digits that give it back exactly."""
-    lines = [
+def write(
+    vertices: np.ndarray,
+    triangles: np.ndarray,
+    point_data: dict[str, np.ndarray] | None = None,
+    binary: bool = False,
+) -> bytes:
+    """A PLY file of doubles; as text, each with the fewest digits that give it back exactly.
+
+    Values of the vertices are properties after the coordinates; vectors are three, ``name_x`` and
+    so on.
+    """
+    columns = {axis: vertices[:, k] for k, axis in enumerate("xyz")}
+    for name, values in (point_data or {}).items():
+        parts = [values] if values.ndim == 1 else list(values.T)
+        names = [name] if values.ndim == 1 else [f"{name}_{axis}" for axis in "xyz"]
+        for part, called in zip(parts, names, strict=True):
+            if called in columns:
+                raise MeshError(
+                    f"Mesh.write: point_data {name!r}: PLY has one property {called!r} already; "
+                    "give it another name"
+                )
+            columns[called] = part
+    header = [
         "ply",
-        "format ascii 1.0",
+        f"format {'binary_little_endian' if binary else 'ascii'} 1.0",
         "comment openmm-helfrich mesh, nm",
         f"element vertex {len(vertices)}",
-        *(f"property double {axis}" for axis in "xyz"),
+        *(f"property double {name}" for name in columns),
         f"element face {len(triangles)}",
         "property list uchar int vertex_indices",
         "end_header",
-        *(f"{x!r} {y!r} {z!r}" for x, y, z in vertices.tolist()),
+    ]
+    table = np.column_stack(list(columns.values()))
+    if binary:
+        faces = np.empty(len(triangles), dtype=[("count", "u1"), ("corners", "<i4", 3)])
+        faces["count"], faces["corners"] = 3, triangles
+        return "\n".join([*header, ""]).encode() + table.astype("<f8").tobytes() + faces.tobytes()
+    lines = [
+        *header,
+        *(" ".join(map(repr, row)) for row in table.tolist()),
         *(f"3 {a} {b} {c}" for a, b, c in triangles.tolist()),
     ]
-    return "\n".join(lines) + "\n"
+    return ("\n".join(lines) + "\n").encode()
 
 
 def _read_header(source: Source) -> list[_Element]:
@@ -122,7 +151,7 @@ def _check_elements(source: Source, elements: list[_Element]) -> None:
 
 def _read_ascii(source: Source, elements: list[_Element]) -> tuple[np.ndarray, np.ndarray]:
     num_vertices = next(element.count for element in elements if element.name == "vertex")
-    vertices, triangles = [], []
+    vertices, faces, lines = [], [], []
     for name, count, properties in elements:
         names = [entry.name for entry in properties]
         axes = [names.index(axis) for axis in "xyz"] if name == "vertex" else []
@@ -137,9 +166,10 @@ def _read_ascii(source: Source, elements: list[_Element]) -> tuple[np.ndarray, n
                 vertices.append(source.point([words[axis] for axis in axes], f"vertex {item}"))
             elif name == "face":
                 corners = words[_start_of_corners(source, properties, words, item) :]
-                triangles.append(source.triangle(corners, item, num_vertices))
+                faces.append(source.face(corners, item, num_vertices))
+                lines.append(source.line)
     source.finish()
-    return arrays(vertices, triangles)
+    return source.mesh(vertices, faces, lines)
 
 
 def _start_of_corners(source: Source, properties: list, words: list[str], face: int) -> int:
@@ -161,7 +191,7 @@ def _read_binary(
 ) -> tuple[np.ndarray, np.ndarray]:
     data = source.rest()
     at = 0
-    vertices = triangles = np.empty((0, 3))
+    vertices, faces = np.empty((0, 3)), []
 
     def take(dtype: np.dtype, count: int, what: str) -> np.ndarray:
         nonlocal at
@@ -183,23 +213,30 @@ def _read_binary(
                 vertices = np.stack([values[axis] for axis in "xyz"], axis=1).astype(np.float64)
             continue
         # Lists have any length, so where one row ends is known only after reading it.
-        rows = []
         for item in range(count):
             for entry in properties:
                 length = 1
                 if entry.count is not None:
                     what = f"{entry.name} of {name} {item}"
                     length = int(take(np.dtype(order + entry.count), 1, what)[0])
+                    if length < 0:
+                        raise source.error(f"{what} has the length {length}; is the file damaged?")
                 what = f"{entry.name} of {name} {item}"
                 values = take(np.dtype(order + entry.type), length, what)
                 if name == "face" and entry.name in _CORNERS:
                     source.check_corners(length, item)
-                    rows.append(values)
-        if name == "face":
-            triangles = np.array(rows).reshape(-1, 3)
+                    faces.append(values)
     if at < len(data):
         raise source.error(
             f"the elements take {at} bytes after this line, but {len(data)} follow; do the counts "
             "in the header fit?"
         )
-    return vertices, triangles.astype(np.int64)
+    source.by_line = False
+    for face, corners in enumerate(faces):
+        for corner in corners.tolist():
+            if not 0 <= corner < len(vertices):
+                raise source.error(
+                    f"face {face} names vertex {corner}, but the file has {len(vertices)} "
+                    "vertices, counted from 0"
+                )
+    return source.mesh(vertices, faces)

@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 
 from ..errors import MeshError
+from . import polygons
 
-__all__ = ["Source", "arrays", "merge_repeated", "shorten"]
+__all__ = ["Source", "merge_repeated", "shorten"]
+
+# The name of the option that a refusal of polygons points to, in Python and on the command line.
+_OPTION = "read it with triangulate=True, or --triangulate of 'openmm-helfrich mesh', to split it"
+_UTF8_MARK = b"\xef\xbb\xbf"
+_UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
 
 
 class Source:
     """The bytes of a file, read line by line, with errors that name the file and the line.
+
+    Lines end with a line feed, a carriage return, or both. A byte-order mark of UTF-8 at the
+    beginning is skipped, one of UTF-16 refused.
 
     Parameters
     ----------
@@ -18,35 +29,72 @@ class Source:
         The file's name, for messages only.
     data : bytes
         Its contents.
+    triangulate : bool
+        Whether faces may have more than three corners.
+
+    Attributes
+    ----------
+    raw, data : bytes
+        The contents with and without a byte-order mark.
+    by_line : bool
+        Whether the line that was read last says where an error is.
     """
 
-    def __init__(self, path, data: bytes):
+    def __init__(self, path, data: bytes, triangulate: bool = False):
         self.path = path
-        self.data = data
         self.line = 0
+        self.by_line = True
+        self.triangulate = triangulate
+        self.raw = data
+        self.data = data.removeprefix(_UTF8_MARK)
         self._next = 0
+        first = re.search(rb"\r\n?|\n", self.data)
+        # After a bare carriage return a line feed may be the first byte of binary data.
+        bare = first is not None and first.group() == b"\r"
+        self._end_of_line = re.compile(rb"\r|\n" if bare else rb"\r\n?|\n")
 
     def error(self, reason: str, line: int | None = None) -> MeshError:
         """The exception for a fault in a line, the current one unless another is given."""
+        if line is None and not self.by_line:
+            return MeshError(f"Mesh.read: {self.path}: {reason}")
         return MeshError(f"Mesh.read: {self.path}, line {line or max(self.line, 1)}: {reason}")
+
+    def raw_line(self) -> bytes | None:
+        """The next line without its end; None at the end of the file."""
+        if self._next == 0 and self.data.startswith(_UTF16_MARKS):
+            raise self.error("the file is text in UTF-16; save it as UTF-8 or ASCII")
+        if self._next >= len(self.data):
+            return None
+        end = self._end_of_line.search(self.data, self._next)
+        stop, following = end.span() if end else (len(self.data), len(self.data))
+        raw = self.data[self._next : stop]
+        self._next = following
+        self.line += 1
+        return raw
 
     def words(self, comment: bytes | None = None) -> list[str]:
         """The words of the next line that is not blank; an empty list at the end of the file.
 
         Text from `comment` to the end of a line does not count.
         """
-        while self._next < len(self.data):
-            end = self.data.find(b"\n", self._next)
-            end = len(self.data) if end < 0 else end
-            raw = self.data[self._next : end]
-            self._next = end + 1
-            self.line += 1
+        while (raw := self.raw_line()) is not None:
             if comment is not None:
                 raw = raw.partition(comment)[0]
             words = raw.decode("utf-8", errors="replace").split()
             if words:
                 return words
         return []
+
+    def take(self, size: int, what: str) -> bytes:
+        """So many bytes after the lines that were read."""
+        found = self.data[self._next : self._next + size]
+        if len(found) < size:
+            raise self.error(
+                f"{what} needs {size} bytes after this line, but only {len(found)} follow; is the "
+                "file truncated?"
+            )
+        self._next += size
+        return found
 
     def rest(self) -> bytes:
         """Everything after the lines that were read."""
@@ -84,14 +132,14 @@ class Source:
         except ValueError:
             raise self.error(f"{what} must be an integer, got {word!r}") from None
 
-    def triangle(self, words: list[str], face: int, num_vertices: int) -> list[int]:
+    def face(self, words: list[str], face: int, num_vertices: int) -> list[int]:
         """The corners of a face that is written as a count and as many indices."""
         what = f"face {face}"
         count = self.integer(words[0], f"the number of vertices of {what}")
         self.check_corners(count, face)
-        if len(words) < 4:
-            raise self.error(f"{what} needs 3 vertex indices, got {len(words) - 1}")
-        corners = [self.integer(word, f"a vertex index of {what}") for word in words[1:4]]
+        if len(words) <= count:
+            raise self.error(f"{what} needs {count} vertex indices, got {len(words) - 1}")
+        corners = [self.integer(word, f"a vertex index of {what}") for word in words[1 : count + 1]]
         for corner in corners:
             if not 0 <= corner < num_vertices:
                 raise self.error(
@@ -101,11 +149,40 @@ class Source:
         return corners
 
     def check_corners(self, count: int, face: int) -> None:
-        """Refuse a face that is not a triangle."""
-        if count != 3:
-            raise self.error(
-                f"face {face} has {count} vertices, not 3; triangulate the mesh before reading it"
+        """Refuse a face without area, and one that is not a triangle unless it may be split."""
+        if count < 3:
+            raise self.error(f"face {face} has {count} vertices; a face needs 3 or more; remove it")
+        if count > 3 and not self.triangulate:
+            raise self.error(f"face {face} has {count} vertices, not 3; {_OPTION}")
+
+    def mesh(
+        self, vertices, faces: list, lines: list[int] | None = None, first: int = 0
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Vertices and triangles as arrays; larger faces are split, see `polygons`.
+
+        Parameters
+        ----------
+        vertices : array_like
+            Shape (num_vertices, 3).
+        faces : list of sequence of int
+            The corners of every face, which `check_corners` has seen, in range.
+        lines : list of int, optional
+            The line of every face.
+        first : int
+            The number that messages give the first face.
+        """
+        points = np.array(vertices, dtype=np.float64).reshape(-1, 3)
+        if any(len(face) > 3 for face in faces) and not np.isfinite(points).all():
+            vertex = int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
+            raise MeshError(
+                f"Mesh.read: {self.path}: vertex {vertex} (counted from 0) has a coordinate that "
+                f"is not finite, {points[vertex].tolist()}; correct it"
             )
+
+        def fail(face: int, reason: str) -> MeshError:
+            return self.error(f"face {face + first} {reason}", lines[face] if lines else None)
+
+        return points, polygons.split(points, faces, fail)
 
 
 def shorten(words: list[str]) -> str:
@@ -113,28 +190,21 @@ def shorten(words: list[str]) -> str:
     return repr(text if len(text) <= 40 else text[:37] + "...") if text else ""
 
 
-def arrays(vertices: list, triangles: list) -> tuple[np.ndarray, np.ndarray]:
-    return (
-        np.array(vertices, dtype=np.float64).reshape(-1, 3),
-        np.array(triangles, dtype=np.int64).reshape(-1, 3),
-    )
-
-
 def merge_repeated(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices and triangles of facets that repeat the coordinates of their corners.
+    """The vertices of facets that repeat the coordinates of their corners.
 
     Parameters
     ----------
     corners : ndarray
-        Shape (num_triangles, 3, 3): facet, corner, axis.
+        Positions of all corners, one facet after another, shape (num_corners, 3).
 
     Returns
     -------
     vertices : ndarray
         Each position once, in the order of first appearance, shape (num_vertices, 3). Only corners
         with exactly equal coordinates are merged.
-    triangles : ndarray
-        Shape (num_triangles, 3).
+    numbers : ndarray
+        The vertex of every corner, shape (num_corners,).
     """
     # Adding zero turns −0.0 into 0.0, so that equal positions have equal bytes.
     points = corners.reshape(-1, 3) + 0.0
@@ -142,4 +212,4 @@ def merge_repeated(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     order = np.argsort(first)
     rank = np.empty_like(order)
     rank[order] = np.arange(len(order))
-    return points[first[order]], rank[inverse.ravel()].reshape(-1, 3)
+    return points[first[order]], rank[inverse.ravel()]

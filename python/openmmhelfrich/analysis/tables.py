@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
+import os
 import re
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+
+from .._writing import naming, write_whole
 
 __all__ = ["Modes", "open_table", "read_modes", "read_table"]
 
@@ -176,7 +180,8 @@ class _Csv:
                 found = file.readline()
         # A header without its end was cut off by a kill, before there was any row.
         if not found.endswith("\n") and first.startswith(found):
-            path.write_text(first, encoding="utf-8")
+            with naming(path):
+                path.write_text(first, encoding="utf-8")
         elif next(csv.reader([found])) != header:
             raise ValueError(
                 f"{path}: its columns are {next(csv.reader([found]))}, not {header}; do not append"
@@ -191,9 +196,7 @@ class _Csv:
         ]
         if len(b"".join([lines[0], *kept])) != len(text):
             # The file is replaced as a whole, so that a kill leaves the old one or the new one.
-            new = self.path.with_name(self.path.name + ".new")
-            new.write_bytes(b"".join([lines[0], *kept]))
-            new.replace(self.path)
+            write_whole(self.path, b"".join([lines[0], *kept]))
 
     def _step(self, line, number):
         """The step of a row, its first number."""
@@ -207,8 +210,32 @@ class _Csv:
     def add(self, values):
         # The file is opened for each row, so that one which was moved away is noticed, and none is
         # left open by a reporter that is forgotten.
-        with self.path.open("a", encoding="utf-8") as file:
-            file.write(",".join(repr(value) for value in values) + "\n")
+        row = (",".join(repr(value) for value in values) + "\n").encode()
+        with naming(self.path), self.path.open("ab", buffering=0) as file:
+            length = file.seek(0, os.SEEK_END)
+            try:
+                written = file.write(row)
+                # A disk that takes a part says why with the rest.
+                while written < len(row):
+                    written += file.write(row[written:])
+            except OSError:
+                # The next row, when there is room again, shall not be the end of this one.
+                file.truncate(length)
+                raise
+
+
+@contextlib.contextmanager
+def _named_by_hdf5(path):
+    """Errors of the system, which h5py hides in long messages, as for other files."""
+    try:
+        with naming(path):
+            yield
+    except (OSError, RuntimeError) as reason:
+        number = re.search(r"errno = (\d+)", str(reason))
+        if number is None:
+            raise
+        with naming(path):
+            raise OSError(int(number[1]), os.strerror(int(number[1]))) from None
 
 
 class _Hdf5:
@@ -223,7 +250,7 @@ class _Hdf5:
             if found != names:
                 raise ValueError(f"{path}: its columns are {found}, not {names}; do not append")
             return
-        with self.h5py.File(path, "w") as file:
+        with _named_by_hdf5(path), self.h5py.File(path, "w") as file:
             file.attrs["columns"] = names
             file.attrs["units"] = list(columns.values())
             shape = (0, len(names))
@@ -232,12 +259,12 @@ class _Hdf5:
             )
 
     def cut(self, step):
-        with self.h5py.File(self.path, "r+") as file:
+        with _named_by_hdf5(self.path), self.h5py.File(self.path, "r+") as file:
             rows = file["rows"]
             rows.resize(np.count_nonzero(rows[:, 0] <= step), axis=0)
 
     def add(self, values):
-        with self.h5py.File(self.path, "r+") as file:
+        with _named_by_hdf5(self.path), self.h5py.File(self.path, "r+") as file:
             rows = file["rows"]
             rows.resize(len(rows) + 1, axis=0)
             rows[-1] = values

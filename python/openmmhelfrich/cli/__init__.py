@@ -6,10 +6,15 @@ all, is asked for.
 
 from __future__ import annotations
 
+import errno
 import importlib
 import importlib.util
+import os
+import sys
 
 import click
+
+from .._writing import describe
 
 __all__ = ["main"]
 
@@ -28,6 +33,31 @@ class _Commands(click.Group):
         if name not in self.list_commands(context):
             return None
         return getattr(importlib.import_module(f"{__name__}.{name}"), name)
+
+    def invoke(self, context: click.Context):
+        """Run a command; errors of the system, such as a full disk, become one line."""
+        try:
+            result = super().invoke(context)
+            sys.stdout.flush()
+            return result
+        except OSError as reason:
+            # Click ends quietly where nobody reads on.
+            if reason.errno == errno.EPIPE:
+                raise
+            # All other files are named.
+            unnamed = reason.errno is not None and reason.filename is None
+            if unnamed:
+                _give_up_output()
+            where = "standard output: " if unnamed else ""
+            raise click.ClickException(where + describe(reason)) from None
+
+
+def _give_up_output() -> None:
+    """Leave nothing that Python would try to write, and complain about, once more at its end."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
 
 
 @click.command(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})

@@ -108,25 +108,14 @@ def bench(platforms, integrator, sizes, seconds, repeats):
 
 def _known(platforms) -> list[str] | None:
     """The platforms asked for, as OpenMM calls them; None for all."""
-    import openmm
+    from ..platforms import find
 
     if not platforms:
         return None
-    count = openmm.Platform.getNumPlatforms()
-    by_lower = {name.lower(): name for name in map(_platform_name, range(count))}
-    for name in platforms:
-        if name.lower() not in by_lower:
-            raise click.BadParameter(
-                f"no platform {name!r}; this OpenMM has {', '.join(by_lower.values())}",
-                param_hint="--platform",
-            )
-    return list(dict.fromkeys(by_lower[name.lower()] for name in platforms))
-
-
-def _platform_name(index: int) -> str:
-    import openmm
-
-    return openmm.Platform.getPlatform(index).getName()
+    try:
+        return list(dict.fromkeys(map(find, platforms)))
+    except ValueError as reason:
+        raise click.BadParameter(str(reason), param_hint="--platform") from None
 
 
 def _head(integrator: str, seconds: float, repeats: int) -> list[str]:

@@ -6,6 +6,8 @@ from pathlib import Path
 
 import click
 
+from .._writing import write_whole
+
 __all__ = ["convert"]
 
 _FILE = click.Path(path_type=Path, exists=True, dir_okay=False)
@@ -32,7 +34,14 @@ _FILE = click.Path(path_type=Path, exists=True, dir_okay=False)
     show_default=True,
     help="Of that comparison, relative.",
 )
-def convert(system, output, positions, tolerance):
+@click.option(
+    "--freeze",
+    multiple=True,
+    metavar="NAME",
+    help="A global parameter that may become a number, its default in SYSTEM, or follow another "
+    "one; can be given several times. What is printed names those that would help.",
+)
+def convert(system, output, positions, tolerance, freeze):
     """Replace the Custom forces of a membrane in the serialized System SYSTEM (XML).
 
     Finds the bending energies, area and volume constraints, repulsions and dihedrals that are the
@@ -47,16 +56,13 @@ def convert(system, output, positions, tolerance):
     given = _deserialize(system, openmm.System, "a System")
     where = None if positions is None else _positions(positions)
     try:
-        faster, report = vcm.accelerate(given, where, tolerance)
+        faster, report = vcm.accelerate(given, where, tolerance, freeze)
     except ValueError as reason:
         raise click.ClickException(str(reason)) from None
     click.echo(str(report))
     if not report.replaced:
         raise click.ClickException("nothing to replace, so no file was written")
-    try:
-        output.write_text(openmm.XmlSerializer.serialize(faster), encoding="utf-8")
-    except OSError as reason:
-        raise click.ClickException(f"{output}: {reason.strerror}") from None
+    write_whole(output, openmm.XmlSerializer.serialize(faster).encode())
     click.echo(f"wrote {output}")
 
 

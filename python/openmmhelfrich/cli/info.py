@@ -27,8 +27,9 @@ def info(config, platform, measure, vcm_compatible, ignore_unknown):
     """Say what CONFIG, of VCM or in TOML, would simulate, or describe this machine.
 
     Meshes, potentials with their start energies, time scales, the time step beside what is
-    stable, and the time that the run would take. Without CONFIG: the GPUs with what they can do,
-    and which of processor and GPU computes a membrane, with the timings that decide it.
+    stable, the platform with the reason for it, and the time that the run would take. Without
+    CONFIG: OpenMM's platforms and which would be used, the GPUs with what they can do, and which of
+    processor and GPU computes a membrane, with the timings that decide it.
     """
     if config is None:
         from .machine import machine
@@ -49,9 +50,10 @@ def info(config, platform, measure, vcm_compatible, ignore_unknown):
         click.echo()
         for line in _energies(cfg):
             click.echo(line)
+        name, reason = _platform(cfg, platform)
+        click.echo(f"\nPlatform: {name}, for {reason}")
         if measure:
-            click.echo()
-            click.echo(_duration(cfg, platform))
+            click.echo(_duration(cfg, name))
 
 
 def _general(cfg) -> list[str]:
@@ -157,14 +159,28 @@ def _energies(cfg) -> list[str]:
     return ["Energies at the start, kJ/mol:", *rows]
 
 
-def _duration(cfg, platform: str | None) -> str:
+def _platform(cfg, asked: str | None) -> tuple[str, str]:
+    """What a run would be on, and why."""
+    from ..platforms import choose
+
+    if asked:
+        return asked, "--platform names it"
+    if cfg.platform:
+        return cfg.platform, "the file names it"
+    try:
+        return choose(cfg.system(), cfg.integrator())
+    except ValueError as reason:
+        raise click.ClickException(str(reason)) from None
+
+
+def _duration(cfg, platform: str) -> str:
     """How long the run would take, from a few of its steps."""
     import openmm
 
-    from ..vcm.build import DEFAULT_PLATFORM, prepare, unprepared_simulation
+    from ..vcm.build import prepare, unprepared_simulation
 
     try:
-        simulation = unprepared_simulation(cfg, platform or cfg.platform or DEFAULT_PLATFORM)
+        simulation = unprepared_simulation(cfg, platform)
         prepare(cfg, simulation.context)
         # The first step compiles kernels on a GPU.
         simulation.integrator.step(2)
@@ -179,10 +195,9 @@ def _duration(cfg, platform: str | None) -> str:
             elapsed = time.perf_counter() - start
     except openmm.OpenMMException as reason:
         raise click.ClickException(f"cannot measure the time per step: {reason}") from None
-    name = simulation.context.getPlatform().getName()
     total = elapsed / steps * cfg.num_steps
     return (
-        f"Expected run time: {_clock(total)} on {name} "
+        f"Expected run time: {_clock(total)} on {platform} "
         f"({elapsed / steps * 1e3:.3g} ms a step, without outputs)"
     )
 

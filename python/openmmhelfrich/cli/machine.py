@@ -20,6 +20,7 @@ def machine() -> list[str]:
     found = backend.adapters()
     lines = [
         f"openmm-helfrich {__version__}, OpenMM {openmm.Platform.getOpenMMVersion()}",
+        *_platforms(),
         f"Backend: {backend.get_backend()}",
         "",
     ]
@@ -37,6 +38,30 @@ def machine() -> list[str]:
         reason = "is no GPU" if not found else "is no GPU but in software"
         return [*lines, f"  above, too, for there {reason}"]
     return lines + _timings()
+
+
+def _platforms() -> list[str]:
+    """What OpenMM has, and what simulations get that name none."""
+    import openmm
+
+    from .. import Mesh, Vesicle
+    from ..platforms import LEAST_FOR_GPU, choose, names
+
+    vesicle = Vesicle(Mesh.icosphere(2, 100.0))
+    mixed = vesicle.system()
+    mixed.addForce(openmm.CustomNonbondedForce("1/r"))
+    large = openmm.XmlSerializer.clone(mixed)
+    while large.getNumParticles() < LEAST_FOR_GPU:
+        large.addParticle(50)
+    lines = [f"OpenMM's platforms: {', '.join(names())}; where none is named:"]
+    for subject, system in (
+        ("membranes", vesicle.system()),
+        ("with pairs of particles", mixed),
+        (f"with pairs, from {LEAST_FOR_GPU} particles on", large),
+    ):
+        name, reason = choose(system, openmm.VerletIntegrator(0.1))
+        lines.append(f"  {subject}: {name}, for {reason}")
+    return [*lines, ""]
 
 
 def _timings() -> list[str]:

@@ -24,25 +24,37 @@ _radius_option = click.option(
 )
 
 
+def _reading_options(command):
+    """How a file that is no valid mesh as it is may be read."""
+    for option in (
+        click.option("--drop-unused", is_flag=True,
+                     help="Leave out vertices that belong to no triangle."),
+        click.option("--merge", type=float, metavar="D",
+                     help="Join vertices at most D apart, in the numbers of the file."),
+        click.option("--triangulate", is_flag=True,
+                     help="Split faces of more than three corners along their shortest diagonals."),
+    ):  # fmt: skip
+        command = option(command)
+    return command
+
+
 @contextlib.contextmanager
 def _tidy_errors() -> Iterator[None]:
-    """Errors of meshes and files as one line, without a traceback."""
+    """Errors of meshes as one line, without a traceback; those of files are `main`'s."""
     from ..errors import MeshError
 
     try:
         yield
-    except (MeshError, FileNotFoundError) as reason:
+    except MeshError as reason:
         raise click.ClickException(str(reason)) from None
-    except OSError as reason:
-        raise click.ClickException(f"{reason.filename}: {reason.strerror}") from None
 
 
 @click.group()
 def mesh() -> None:
     """Make, inspect, convert and transform closed triangulated surfaces.
 
-    The extension of a file gives its format: PLY, OBJ, STL, OFF, VTK, VTU, or Gmsh (.msh). Numbers
-    are taken as nm.
+    The extension of a file gives its format: PLY, OBJ, STL, OFF, VTK, VTU, or Gmsh (.msh); VTP is
+    read only. Numbers are taken as nm.
     """
 
 
@@ -79,13 +91,14 @@ def random(vertices, output, radius, seed, force):
 @mesh.command()
 @click.argument("input", type=_INPUT)
 @click.argument("output", type=_OUTPUT)
+@_reading_options
 @_force_option
-def convert(input, output, force):
+def convert(input, output, force, **reading):
     """Write the mesh of INPUT in the format of OUTPUT, triangles turned outward."""
     from ..mesh import Mesh
 
     with _tidy_errors():
-        _write(Mesh.read(input), output, force)
+        _write(Mesh.read(input, **reading), output, force)
 
 
 def _note(context: click.Context, parameter: click.Parameter, value):
@@ -117,9 +130,10 @@ def _step(name: str, help: str, **options):
 @_step("rotate", "Rotate about the origin by a rotation vector in degrees.",
        type=(float, float, float), metavar="X Y Z")  # fmt: skip
 @_step("translate", "Move, nm.", type=(float, float, float), metavar="X Y Z")
+@_reading_options
 @_force_option
 @click.pass_context
-def transform(context, input, output, force, **steps):
+def transform(context, input, output, force, triangulate, merge, drop_unused, **steps):
     """Transform the mesh of INPUT and write it to OUTPUT.
 
     Transformations are done in the order in which they are given.
@@ -130,7 +144,7 @@ def transform(context, input, output, force, **steps):
     if not asked:
         raise click.UsageError("nothing to do: give a transformation such as --scale 2")
     with _tidy_errors():
-        result = Mesh.read(input)
+        result = Mesh.read(input, triangulate=triangulate, merge=merge, drop_unused=drop_unused)
         for name, value in asked:
             result = _transformed(result, name, value)
         _write(result, output, force)
@@ -166,12 +180,13 @@ def _transformed(given, name: str, value):
     help="Ξ, for which to say the least triangle height d.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
-def info(input, softness, as_json):
+@_reading_options
+def info(input, softness, as_json, **reading):
     """Say what the mesh of INPUT is like: size, shape, degrees, edges, heights."""
     from ..mesh import Mesh
 
     with _tidy_errors():
-        facts = _facts(Mesh.read(input), softness)
+        facts = _facts(Mesh.read(input, **reading), softness)
     if as_json:
         click.echo(json.dumps(facts))
         return

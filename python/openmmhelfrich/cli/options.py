@@ -9,31 +9,30 @@ from pathlib import Path
 
 import click
 
-__all__ = ["config_argument", "platform_option", "reader_options", "tidy_errors"]
+__all__ = ["check_platform", "config_argument", "platform_option", "reader_options", "tidy_errors"]
 
 config_argument = click.argument("config", type=click.Path(path_type=Path, dir_okay=False))
 
 
-def _check_platform(context: click.Context, parameter: click.Parameter, name: str | None):
+def check_platform(context: click.Context, parameter: click.Parameter, name: str | None):
+    """The name of a platform as OpenMM spells it; click calls this for an option."""
     if name is None:
         return None
-    import openmm
+    from .. import platforms
 
-    count = openmm.Platform.getNumPlatforms()
-    known = {openmm.Platform.getPlatform(i).getName() for i in range(count)}
-    by_lower = {platform.lower(): platform for platform in known}
-    if name.lower() not in by_lower:
-        raise click.BadParameter(
-            f"no platform {name!r}; this OpenMM has {', '.join(sorted(known))}"
-        )
-    return by_lower[name.lower()]
+    try:
+        return platforms.find(name)
+    except ValueError as reason:
+        raise click.BadParameter(str(reason)) from None
 
 
 platform_option = click.option(
     "--platform",
     metavar="NAME",
-    callback=_check_platform,
-    help="OpenMM platform: Reference (the default, mostly the fastest), CPU, OpenCL, CUDA, HIP.",
+    callback=check_platform,
+    help="OpenMM platform: Helfrich (the default for membranes, mostly the fastest), CPU (the "
+    "default where pairs of particles interact), Reference, OpenCL, CUDA or HIP. "
+    "'openmm-helfrich info CONFIG' says which would be used, and why.",
 )
 
 
@@ -68,5 +67,5 @@ def tidy_errors() -> Iterator[None]:
         warnings.showwarning = show
         try:
             yield
-        except (ConfigError, RunError, FileNotFoundError) as reason:
+        except (ConfigError, RunError) as reason:
             raise click.ClickException(str(reason)) from None

@@ -37,10 +37,13 @@ __all__ = ["run"]
     "--xtc/--no-xtc", default=None, help="Write an XTC trajectory. Default: as CONFIG says, or yes."
 )
 @click.option(
-    "--ply/--no-ply",
-    default=None,
-    help="Write a PLY file per membrane and frame. Default: as CONFIG says, or no.",
+    "--frames",
+    type=click.Choice(["none", "ply", "obj", "vtk"]),
+    help="Write a mesh per membrane and frame; PLY and VTK have curvatures and areas of the "
+    "vertices, OVITO reads OBJ and VTK. Default: as CONFIG says, or none.",
 )
+@click.option("--ply", "frames", flag_value="ply", help="Short for --frames ply.")
+@click.option("--no-ply", "frames", flag_value="none", help="Short for --frames none.")
 @click.option(
     "--checkpoint",
     "checkpoint_seconds",

@@ -6,6 +6,8 @@ from pathlib import Path
 
 import click
 
+from .._writing import write_whole
+
 __all__ = ["spectrum"]
 
 _MODES = (".csv", ".h5", ".hdf5")
@@ -80,7 +82,7 @@ def spectrum(source, mesh_path, lmax, kappa, young, radius, table_path, plot, **
             _write(table_path, rows)
         if plot is not None:
             _plot(plot, found, l, theory, kappa, young)
-    except (ValueError, TypeError, OSError, ImportError, MeshError) as reason:
+    except (ValueError, TypeError, ImportError, MeshError) as reason:
         raise click.ClickException(str(reason)) from None
 
 
@@ -124,15 +126,19 @@ def _lines(num_frames, kappa, young, rows):
 
 def _write(path, rows):
     import csv
+    import io
 
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(["l", "mean", "error", "correlation_time_frames", "theory", "ratio"])
-        for l, mean, error, time, theory in rows:
-            writer.writerow([l, *(float(x) for x in (mean, error, time, theory, mean / theory))])
+    text = io.StringIO(newline="")
+    writer = csv.writer(text)
+    writer.writerow(["l", "mean", "error", "correlation_time_frames", "theory", "ratio"])
+    for l, mean, error, time, theory in rows:
+        writer.writerow([l, *(float(x) for x in (mean, error, time, theory, mean / theory))])
+    write_whole(path, text.getvalue().encode())
 
 
 def _plot(path, found, l, theory, kappa, young):
+    import io
+
     from matplotlib.figure import Figure
 
     low, high = found.interval()
@@ -147,4 +153,7 @@ def _plot(path, found, l, theory, kappa, young):
     axes.set_xticks(l, [str(number) for number in l])
     axes.minorticks_off()
     axes.legend()
-    figure.savefig(path, dpi=150)
+    picture = io.BytesIO()
+    path = path if path.suffix else path.with_suffix(".png")
+    figure.savefig(picture, format=path.suffix[1:], dpi=150)
+    write_whole(path, picture.getvalue())

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..forces import BendingForce, DihedralForce
+from ..vcm.frames import FRAMES
 from .values import (
     Reader,
     boolean,
@@ -74,7 +75,7 @@ KEYS: tuple[Key, ...] = (
     Key("simulation", "seed", integer(0, _MAX_SEED), 0,
         "Of all random numbers; 0 draws one, which is printed and kept."),
     Key("simulation", "platform", text, None,
-        "OpenMM platform, unless --platform names another. Default: Reference."),
+        "OpenMM platform, unless --platform names another. Default: the fastest."),
     Key("simulation", "minimise", boolean, False, "Minimise the energy before the first step."),
     Key("simulation", "thermal_velocities", boolean, True,
         "Draw the first velocities at the temperature; otherwise they are zero."),
@@ -86,7 +87,10 @@ KEYS: tuple[Key, ...] = (
     Key("integrator", "friction", number(least=0), 0.01, "γ, 1/ps; Verlet has none."),
     Key("output", "interval", number(above=0), 100.0, "Time between frames, ps, in whole steps."),
     Key("output", "xtc", boolean, True, "Write a trajectory `<name>.xtc`."),
-    Key("output", "ply", boolean, False, "Write a mesh per vesicle and frame."),
+    Key("output", "frames", choice(FRAMES), "none",
+        "Write a mesh per vesicle and frame: `\"ply\"`, `\"obj\"` or `\"vtk\"`. PLY and VTK have "
+        "the vertices' mean curvatures and areas; OVITO reads OBJ and VTK."),
+    Key("output", "ply", boolean, False, "Short for `frames = \"ply\"`."),
     Key("output", "text", choices(_TEXTS), (),
         "Text files: an array of " + ", ".join(f"`\"{name}\"`" for name in _TEXTS) + "."),
     Key("vesicle", "name", text, None, "Label in file names and tables. Default: its number."),
@@ -120,7 +124,13 @@ KEYS: tuple[Key, ...] = (
     Key("vesicle", "min_triangle_area", number(least=0), None,
         "Triangle area below which triangles repel, nm². Default: 0, none."),
     Key("vesicle.mesh", "file", text, None,
-        "A mesh file, beside the configuration: PLY, OBJ, STL, OFF, VTK, VTU, Gmsh."),
+        "A mesh file, beside the configuration: PLY, OBJ, STL, OFF, VTK, VTP, VTU, Gmsh."),
+    Key("vesicle.mesh", "triangulate", boolean, False,
+        "Split the file's faces of more than three corners."),
+    Key("vesicle.mesh", "merge", number(least=0), None,
+        "Join the file's vertices at most so far apart, in its numbers."),
+    Key("vesicle.mesh", "drop_unused", boolean, False,
+        "Leave out the file's vertices that belong to no triangle."),
     Key("vesicle.mesh", "icosphere", integer(1), None,
         "In place of a file: a regular sphere, each side of the icosahedron in n parts, "
         "N = 10 n² + 2."),

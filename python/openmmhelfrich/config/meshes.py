@@ -13,6 +13,7 @@ from .tables import Table
 __all__ = ["start_mesh"]
 
 _SOURCES = ("file", "icosphere", "random")
+_READING = ("triangulate", "merge", "drop_unused")
 
 
 def start_mesh(table: Table, folder: Path) -> Mesh:
@@ -40,7 +41,7 @@ def start_mesh(table: Table, folder: Path) -> Mesh:
     _check_companions(table, source)
     try:
         if source == "file":
-            mesh = Mesh.read(folder / table["file"])
+            mesh = Mesh.read(folder / table["file"], **{name: table[name] for name in _READING})
         elif source == "icosphere":
             mesh = Mesh.icosphere(table["icosphere"], table["radius"])
         else:
@@ -72,5 +73,8 @@ def _check_companions(table: Table, source: str) -> None:
         raise table.error("radius", "a mesh from a file has its own size; use scale")
     if source != "file" and not table.given("radius"):
         raise table.error(source, "a sphere needs a radius, nm; add radius")
+    for name in _READING:
+        if source != "file" and table.given(name):
+            raise table.error(name, "it says how to read a file, and this mesh is made")
     if source != "random" and table.given("seed"):
         raise table.error("seed", "only a random mesh has a seed")

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import openmm
 
-from .. import vcm
+from .. import platforms, vcm
 from ..vcm.grammar import GENERAL, MEMBRANE, ConfigError, nearest
 from ..vcm.parsers import Interval
 from ..vcm.settings import Settings
@@ -62,7 +62,10 @@ class Configuration(vcm.Config):
         self.general = _general(simulation, integrator, output, self.path.stem)
         self.seed = seed or simulation["seed"] or secrets.randbelow(_MAX_SEED) + 1
         self.platform = _platform(simulation)
-        self.writes = {"xtc": output["xtc"], "ply": output["ply"]}
+        if output.given("ply") and output.given("frames"):
+            raise output.error("ply", "give either frames or ply, not both")
+        frames = "ply" if output["ply"] else output["frames"]
+        self.writes = {"xtc": output["xtc"], "frames": frames}
         self.membranes = _vesicles(document, self.kT)
         self._repulsion = None
         if "repulsion" in document.data:
@@ -118,17 +121,19 @@ class Configuration(vcm.Config):
 
     def _repulsive_force(self) -> openmm.Force:
         """E = s (1 − r/d)² for r < d, between vertices of different vesicles."""
-        force = openmm.CustomNonbondedForce("strength*(1-r/contact)^2*step(contact-r)")
+        # With interaction groups OpenMM would go through all pairs, without neighbour lists.
+        force = openmm.CustomNonbondedForce(
+            "(1-delta(vesicle1-vesicle2))*strength*(1-r/contact)^2*step(contact-r)"
+        )
+        force.addPerParticleParameter("vesicle")
         force.setName("repulsion")
         force.addGlobalParameter("strength", self._repulsion["strength"])
         force.addGlobalParameter("contact", self._repulsion["distance"])
         force.setNonbondedMethod(openmm.CustomNonbondedForce.CutoffNonPeriodic)
         force.setCutoffDistance(self._repulsion["distance"])
-        for _ in range(self.num_particles):
-            force.addParticle()
-        for number, first in enumerate(self.membranes):
-            for second in self.membranes[number + 1 :]:
-                force.addInteractionGroup(set(first.particles), set(second.particles))
+        for number, membrane in enumerate(self.membranes):
+            for _ in membrane.particles:
+                force.addParticle([number])
         return force
 
 
@@ -199,14 +204,10 @@ def _platform(simulation: Table) -> str | None:
     wanted = simulation["platform"]
     if wanted is None:
         return None
-    count = openmm.Platform.getNumPlatforms()
-    known = [openmm.Platform.getPlatform(i).getName() for i in range(count)]
-    by_lower = {name.lower(): name for name in known}
-    if wanted.lower() not in by_lower:
-        raise simulation.error(
-            "platform", f"no platform {wanted!r}; this OpenMM has {', '.join(known)}"
-        )
-    return by_lower[wanted.lower()]
+    try:
+        return platforms.find(wanted)
+    except ValueError as reason:
+        raise simulation.error("platform", str(reason)) from None
 
 
 def _vesicles(document: Document, kT: float) -> tuple[VesicleMembrane, ...]:

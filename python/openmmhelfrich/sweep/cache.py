@@ -16,6 +16,8 @@ from pathlib import Path
 import numpy as np
 from tqdm import tqdm
 
+from .._writing import naming
+
 __all__ = ["RECORD", "Cache"]
 
 #: The entry of a file that holds the point, and those results that are no arrays.
@@ -130,7 +132,11 @@ class Cache:
             The folder cannot be written to.
         """
         path = self.path(name, key)
-        path.parent.mkdir(parents=True, exist_ok=True)
+        with naming(path):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            self._save(path, point, result)
+
+    def _save(self, path: Path, point: Mapping, result: Mapping) -> None:
         arrays = {entry: value for entry, value in result.items() if isinstance(value, np.ndarray)}
         rest = {entry: value for entry, value in result.items() if entry not in arrays}
         record = {"point": point, "result": rest}

@@ -4,99 +4,25 @@ from __future__ import annotations
 
 import copy
 from collections import defaultdict
-from dataclasses import dataclass, field
+from collections.abc import Iterable
 
 import numpy as np
 import openmm as mm
 from openmm import unit
 
-from .recognise.bending import bending_terms
-from .recognise.constraints import (
-    ERRORS,
-    CollectiveReading,
-    collective_terms,
-    pair_term,
-    read_collective,
-)
-from .recognise.edges import EdgeReading, read_edges
-from .recognise.local import dihedral_term, repulsion_term, triangle_area_term
-from .recognise.rings import RingReading, read_rings
-from .recognise.source import (
-    Bonds,
-    Unreadable,
-    global_parameters,
-    is_pi,
-    read_bonds,
-    trials_of,
-)
-from .recognise.surface import Surfaces, distinct
+from .recognise.conditions import Condition, Search, plan_of
+from .recognise.constraints import CollectiveReading
+from .recognise.fixed import Fixed
+from .recognise.reader import Outcome, Plans, Reader
+from .recognise.source import all_parameters, derivatives, is_pi
 from .recognise.term import Refused, Term, common_name
-from .recognise.triangles import (
-    PairReading,
-    RepulsionReading,
-    TriangleReading,
-    read_pairs,
-    read_repulsion,
-    read_triangles,
-)
+from .report import Left, Replaced, Report
 
 __all__ = ["Left", "Replaced", "Report", "accelerate"]
 
 
-@dataclass(frozen=True)
-class Replaced:
-    """Custom forces that one of ours took the place of.
-
-    indices, names: of the forces in the given System; force_class: the class of ours;
-    num_triangles: of its surface; description: its parameters, in words.
-    """
-
-    indices: tuple[int, ...]
-    names: tuple[str, ...]
-    force_class: str
-    num_triangles: int
-    description: str
-
-
-@dataclass(frozen=True)
-class Left:
-    """A force that stays, and why."""
-
-    index: int
-    name: str
-    reason: str
-
-
-@dataclass
-class Report:
-    """What `accelerate` replaced and what it left alone.
-
-    Attributes
-    ----------
-    replaced : list of Replaced
-    left : list of Left
-    notes : list of str
-        What else has changed.
-    """
-
-    replaced: list[Replaced] = field(default_factory=list)
-    left: list[Left] = field(default_factory=list)
-    notes: list[str] = field(default_factory=list)
-
-    def __str__(self) -> str:
-        lines = [f"replaced {sum(len(r.indices) for r in self.replaced)} forces"]
-        for r in self.replaced:
-            names = ", ".join(sorted(set(r.names)))
-            which = ", ".join(map(str, r.indices))
-            lines.append(f"  {which} ({names}) -> {r.force_class}, {r.num_triangles} triangles")
-            lines.append(f"      {r.description}")
-        lines.append(f"left {len(self.left)} forces alone")
-        lines += [f"  {r.index} ({r.name}): {r.reason}" for r in self.left]
-        return "\n".join([*lines, *self.notes])
-
-
 def accelerate(
-    system: mm.System, positions=None, tolerance: float = 1e-9
+    system: mm.System, positions=None, tolerance: float = 1e-9, freeze: Iterable[str] = ()
 ) -> tuple[mm.System, Report]:
     """Replace the Custom forces of membranes by the forces of this package.
 
@@ -120,6 +46,11 @@ def accelerate(
     tolerance : float
         Of that comparison: the largest difference, relative to the sum of the absolute values of
         what the Custom forces add up.
+    freeze : iterable of str
+        Global parameters that may become numbers, their defaults in the System. The report names
+        those that would help. A force that needs a frozen parameter to follow another one, such as
+        a cutoff hc = 2^¼ s of a repulsion whose s is a parameter too, gets one that does: freeze
+        both to make both numbers.
 
     Returns
     -------
@@ -134,10 +65,15 @@ def accelerate(
     the order of the neighbours in signed bending energies decides then, and if it does not, the
     choice is arbitrary and changes no energy.
 
+    A frozen parameter is a parameter of the new System only where forces that were not replaced
+    have it; it does nothing to the others then. A cutoff hc that has become 2^¼ s follows s when
+    that is changed in a Context, which the parameter hc of the given System did not by itself.
+
     Examples
     --------
     >>> faster, report = accelerate(system, positions)
     >>> print(report)
+    >>> faster, report = accelerate(system, positions, freeze=["hc"])
     """
     if positions is not None:
         if unit.is_quantity(positions):
@@ -148,139 +84,152 @@ def accelerate(
                 f"accelerate: the System has {system.getNumParticles()} particles, but positions "
                 f"have the shape {positions.shape}"
             )
-    return _Accelerator(system, positions, tolerance).result()
+    return _Accelerator(system, positions, tolerance, _frozen(system, freeze)).result()
+
+
+def _frozen(system: mm.System, freeze: Iterable[str]) -> dict[str, float]:
+    """The parameters to freeze, with their values.
+
+    Raises
+    ------
+    ValueError
+        If there is none of that name, or if its forces disagree about its value.
+    """
+    values: dict[str, set[float]] = defaultdict(set)
+    for force in system.getForces():
+        for name, value in all_parameters(force).items():
+            values[name].add(value)
+    names = list(dict.fromkeys([freeze] if isinstance(freeze, str) else freeze))
+    for name in names:
+        if name not in values:
+            known = ", ".join(values) or "none"
+            raise ValueError(
+                f"accelerate: freeze: no force of the System has a global parameter {name!r}; "
+                f"there are: {known}"
+            )
+        if len(values[name]) > 1:
+            raise ValueError(
+                f"accelerate: freeze: forces of the System have different defaults of {name}: "
+                f"{', '.join(f'{value:.9g}' for value in sorted(values[name]))}"
+            )
+    return {name: min(values[name]) for name in names}
 
 
 class _Accelerator:
     """One System on its way."""
 
-    def __init__(self, system: mm.System, positions: np.ndarray | None, tolerance: float):
+    def __init__(
+        self,
+        system: mm.System,
+        positions: np.ndarray | None,
+        tolerance: float,
+        frozen: dict[str, float],
+    ):
         self._system = system
         self._positions = positions
         self._tolerance = tolerance
-        self._forces = list(system.getForces())
-        self._trials = trials_of(system)
-        self._surfaces = Surfaces(positions)
-        self._readings: dict[int, object] = {}
-        self._left: dict[int, str] = {}
-        #: The index of the first replaced force: what takes its place.
-        self._new: dict[int, list[mm.Force]] = defaultdict(list)
-        self._report = Report()
+        self._frozen = frozen
+        self._reader = Reader(system, positions)
+        self._forces = self._reader.forces
 
     def result(self) -> tuple[mm.System, Report]:
-        for index, force in enumerate(self._forces):
-            try:
-                self._readings[index] = self._read(force)
-            except ERRORS as reason:
-                self._left[index] = str(reason)
-        self._accept(self._terms())
-        for index in self._left:
-            force = self._forces[index]
-            self._report.left.append(Left(index, force.getName(), self._left[index]))
-        self._report.left.sort(key=lambda left: left.index)
+        numbers = {name: Fixed(name, value) for name, value in self._frozen.items()}
+        plans = {i: plan_of(force, numbers) for i, force in enumerate(self._forces)}
+        self._attempt(plans)
+        # Where numbers are not enough, parameters may be meant to follow others.
+        conditions = self._conditions()
+        wanted = [c for c in conditions if c.fixed.keys() <= self._frozen.keys()]
+        if wanted:
+            for condition in wanted:
+                for index in condition.sources:
+                    plans[index] = plan_of(self._forces[index], condition.fixed)
+            self._attempt(plans)
+            conditions = self._conditions()
+        self._explain(conditions)
         return self._system_with_ours(), self._report
 
-    def _read(self, force: mm.Force):
-        if isinstance(force, mm.CustomCVForce):
-            return read_collective(force, self._surfaces, self._trials)
-        bonds = read_bonds(force)
-        readers = (read_rings, read_triangles, read_repulsion, read_pairs, read_edges)
-        for reader in readers:
-            reading = reader(bonds, self._trials)
-            if isinstance(reading, str):
-                raise Refused(reading)
-            if reading is not None:
-                untested = bonds.expression.untested_branches()
-                if untested:
-                    raise Unreadable(
-                        f"its expression has branches ({', '.join(sorted(set(untested)))}) of "
-                        "which only one side was ever met, so it may be another energy elsewhere"
-                    )
-                return reading
-        raise Unreadable(
-            f"its energy of {bonds.num_points} particles is none of those that we know"
-        )
+    def _attempt(self, plans: Plans) -> None:
+        """Replace what can be under these plans, from the beginning."""
+        self._plans = plans
+        self._report = Report()
+        #: The index of the first replaced force: what takes its place.
+        self._new: dict[int, list[mm.Force]] = defaultdict(list)
+        self._outcome = self._reader.recognise(range(len(self._forces)), plans)
+        self._left = dict(self._outcome.left)
+        #: Of the new System, for forces that would have to keep them.
+        self._kept: set[str] = set()
+        #: What differs from ours at the given positions, whichever parameters are frozen.
+        self._different: set[int] = set()
+        self._accept(self._outcome)
 
-    def _of(self, kind: type) -> list[tuple[int, object]]:
-        return [(i, r) for i, r in self._readings.items() if isinstance(r, kind)]
+    def _conditions(self) -> list[Condition]:
+        """Under which more forces could be replaced."""
+        search = Search(self._reader, list(self._frozen), self._check_lost, self._check_derivatives)
+        return list(search.conditions(i for i in sorted(self._left) if i not in self._different))
 
-    def _group(self, index: int) -> int:
-        return self._forces[index].getForceGroup()
+    def _explain(self, conditions: list[Condition]) -> None:
+        """Say why forces are left, and what freezing has changed."""
+        reasons, freeze = dict(self._left), {}
+        for condition in conditions:
+            if condition.fixed.keys() <= self._frozen.keys() and not condition.obstacle:
+                continue
+            for index in condition.sources:
+                known = index not in self._outcome.unknown
+                reasons[index] = f"{self._left[index]}; {condition}" if known else str(condition)
+                if not condition.obstacle:
+                    freeze[index] = tuple(condition.fixed)
+        self._report.left = [
+            Left(index, self._forces[index].getName(), reasons[index], freeze.get(index, ()))
+            for index in sorted(reasons)
+        ]
+        for name in self._frozen:
+            self._report.notes.append(self._note_on(name))
 
-    def _terms(self) -> list[list[Term]]:
-        """Sets of terms that take the place of the same forces."""
-        found: list[list[Term]] = []
-        used: set[int] = set()
-
-        def attempt(index: int, make) -> None:
-            try:
-                terms = make()
-            except ERRORS as reason:
-                self._left[index] = str(reason)
-                return
-            terms = terms if isinstance(terms, list) else [terms]
-            used.update(i for term in terms for i in term.sources)
-            found.append(terms)
-
-        surfaces, trials = self._surfaces, self._trials
-        # Volumes first, because they say which side is outside.
-        for index, reading in sorted(self._of(CollectiveReading), key=lambda p: p[0]):
-            attempt(index, lambda i=index, r=reading: collective_terms(i, r, trials))
-        for index, reading in sorted(self._of(PairReading), key=lambda p: p[1].kind != "volume"):
-            singles = [
-                (i, single)
-                for i, single in self._of(TriangleReading)
-                if i not in used
-                and single.kind == reading.kind
-                and self._group(i) == self._group(index)
-                and _same_triangles(single, reading)
-            ]
-            attempt(
-                index, lambda i=index, r=reading, s=singles: pair_term((i, r), s, surfaces, trials)
+    def _note_on(self, name: str) -> str:
+        having = [
+            f"{i} ({self._forces[i].getName()})"
+            for i in sorted(self._left)
+            if name in all_parameters(self._forces[i])
+        ]
+        used = any(fixed.name == name for r in self._report.replaced for fixed in r.fixed)
+        if not used:
+            return f"{name} is frozen in no force: none that was replaced has it"
+        if having:
+            return (
+                f"{name} is still a parameter of the Context, for the forces left alone that have "
+                f"it, {', '.join(having)}; what was replaced no longer depends on it"
             )
-        for kind, make in (
-            (TriangleReading, triangle_area_term),
-            (RepulsionReading, repulsion_term),
-            (EdgeReading, dihedral_term),
-        ):
-            for index, reading in self._of(kind):
-                if index not in used:
-                    attempt(index, lambda i=index, r=reading, m=make: m(i, r, surfaces, trials))
-        by_group: dict[int, list] = defaultdict(list)
-        for index, reading in self._of(RingReading):
-            by_group[self._group(index)].append((index, reading))
-        for readings in by_group.values():
-            terms, reasons = bending_terms(readings, surfaces, trials)
-            found += [[term] for term in terms]
-            self._left |= reasons
-        return found
+        return f"{name} is no longer a parameter of the Context"
 
-    def _accept(self, found: list[list[Term]]) -> None:
+    def _accept(self, outcome: Outcome) -> None:
         """Build what keeps all parameters of the Context and passes the comparison."""
         rejected: dict[int, str] = {}
+        accepted: set[str] = set()
         # Leaving a force alone can keep a parameter that another one would lose, but not the
         # other way round, so one pass with everything accepted is the strict one.
-        kept = {name for index in self._left for name in global_parameters(self._forces[index])} | {
-            name for terms in found for term in terms for name in term.contexts
-        }
-        for terms in found:
+        self._kept = {name for terms in outcome.found for term in terms for name in term.contexts}
+        for terms in outcome.found:
             sources = sorted({i for term in terms for i in term.sources})
             forces = [self._forces[i] for i in sources]
             try:
-                self._check_parameters(sources, terms, kept)
-                derivatives = {name for force in forces for name in _derivatives(force)}
+                self._check_lost(sources, terms, self._plans)
+                self._check_derivatives(sources, terms, self._plans)
+                wanted = {name for force in forces for name in derivatives(force)}
                 name = common_name(forces)
                 ours = [
                     force
                     for term in terms
-                    for force in term.build(name, forces[0].getForceGroup(), derivatives)
+                    for force in term.build(name, forces[0].getForceGroup(), wanted)
                 ]
                 self._compare(sources, ours)
             except Refused as reason:
                 rejected |= dict.fromkeys(sources, str(reason))
                 continue
             self._new[sources[0]] += ours
+            accepted |= {name for term in terms for name in term.contexts}
+            self._note_pi(sources, terms)
             for term in terms:
+                fixed = {f for i in term.sources for f in self._plans[i].values()}
                 self._report.replaced.append(
                     Replaced(
                         tuple(term.sources),
@@ -288,27 +237,49 @@ class _Accelerator:
                         term.force_class,
                         sum(len(component.triangles) for component in term.components),
                         term.describe(),
+                        tuple(sorted(fixed, key=lambda f: f.name)),
                     )
                 )
         self._left |= rejected
+        self._kept = accepted
 
-    def _check_parameters(self, sources: list[int], terms: list[Term], kept: set[str]) -> None:
+    def _lost(self, sources: list[int], terms: list[Term], plans: Plans) -> dict[str, float]:
+        """The parameters that the Context would lose, which nobody has fixed, with their values."""
+        kept = self._kept | {name for term in terms for name in term.contexts}
+        kept |= {n for i in self._left if i not in sources for n in all_parameters(self._forces[i])}
+        return {
+            name: value
+            for index in sources
+            for name, value in all_parameters(self._forces[index]).items()
+            if name not in kept and name not in plans[index]
+        }
+
+    def _check_lost(self, sources: list[int], terms: list[Term], plans: Plans) -> None:
+        for name, value in self._lost(sources, terms, plans).items():
+            if not is_pi(value):
+                raise Refused(
+                    f"the Context would lose the parameter {name}, which is none of our scalars"
+                )
+
+    def _note_pi(self, sources: list[int], terms: list[Term]) -> None:
+        for name in self._lost(sources, terms, self._plans):
+            note = f"the Context parameter {name} was π, and is gone"
+            if note not in self._report.notes:
+                self._report.notes.append(note)
+
+    def _check_derivatives(self, sources: list[int], terms: list[Term], plans: Plans) -> None:
         own = {name for term in terms for name in term.contexts}
         for index in sources:
-            force = self._forces[index]
-            for name, value in global_parameters(force).items():
-                if name in own or name in kept:
-                    continue
-                if not is_pi(value):
-                    raise Refused(
-                        f"the Context would lose the parameter {name}, which is none of our scalars"
-                    )
-                note = f"the Context parameter {name} was π, and is gone"
-                if note not in self._report.notes:
-                    self._report.notes.append(note)
-            lost = set(_derivatives(force)) - own
-            if lost:
+            wanted = set(derivatives(self._forces[index]))
+            if lost := wanted - own:
                 raise Refused(f"the derivative by {min(lost)} would be lost")
+            for source in sources:
+                for fixed in plans[source].values():
+                    if fixed.base in wanted:
+                        raise Refused(
+                            f"the derivative by {fixed.base} would be another one, because "
+                            f"{fixed.name} would follow it"
+                        )
 
     def _compare(self, sources: list[int], ours: list[mm.Force]) -> None:
         """Energies and forces at the given positions."""
@@ -325,11 +296,12 @@ class _Accelerator:
             context.setPositions(self._positions)
             state = context.getState(energy=True, forces=True)
         except mm.OpenMMException as reason:
+            self._different.update(sources)
             raise Refused(f"our force cannot be evaluated at the positions: {reason}") from None
         md = unit.md_unit_system
         energy = state.getPotentialEnergy().value_in_unit_system(md)
         forces = state.getForces(asNumpy=True).value_in_unit_system(md)
-        parts = [_evaluate(self._readings[i], self._positions) for i in sources]
+        parts = [_evaluate(self._outcome.readings[i], self._positions) for i in sources]
         theirs, their_forces, scale, force_scale = (sum(p[k] for p in parts) for k in range(4))
         energy_error = abs(energy - theirs)
         force_error = np.abs(forces - their_forces).max()
@@ -337,6 +309,7 @@ class _Accelerator:
             energy_error <= self._tolerance * max(scale, abs(theirs))
             and force_error <= self._tolerance * np.max(force_scale)
         ):
+            self._different.update(sources)
             raise Refused(
                 f"ours differs at the positions: by {energy_error:.3g} kJ/mol in the energy of "
                 f"{theirs:.6g}, by up to {force_error:.3g} kJ/mol/nm in forces of up to "
@@ -374,24 +347,5 @@ def _without_forces(old: mm.System) -> mm.System:
     return new
 
 
-def _same_triangles(single: TriangleReading, pairs: PairReading) -> bool:
-    listed, both = (
-        {tuple(sorted(row)) for row in distinct(rows)[0].tolist()}
-        for rows in (single.bonds.particles, np.concatenate([pairs.first, pairs.second]))
-    )
-    return listed == both
-
-
-def _derivatives(force: mm.Force) -> list[str]:
-    if not hasattr(force, "getNumEnergyParameterDerivatives"):
-        return []
-    return [
-        force.getEnergyParameterDerivativeName(i)
-        for i in range(force.getNumEnergyParameterDerivatives())
-    ]
-
-
 def _evaluate(reading, positions: np.ndarray) -> tuple[float, np.ndarray, float, np.ndarray]:
-    bonds = reading if isinstance(reading, CollectiveReading) else reading.bonds
-    assert isinstance(bonds, (Bonds, CollectiveReading))
-    return bonds.forces(positions)
+    return (reading if isinstance(reading, CollectiveReading) else reading.bonds).forces(positions)

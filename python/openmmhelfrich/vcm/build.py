@@ -14,6 +14,7 @@ import numpy as np
 import openmm
 from openmm import app, unit
 
+from .. import platforms
 from . import interactions, membrane_forces, springs
 
 if TYPE_CHECKING:
@@ -165,12 +166,6 @@ def integrator(cfg: Config) -> openmm.Integrator:
     return result
 
 
-#: What the commands run on unless they are told otherwise. Membrane forces are computed on the
-#: processor, in double precision; every other platform only adds the way there and back (the CPU
-#: platform the waking of its threads).
-DEFAULT_PLATFORM = "Reference"
-
-
 def simulation(cfg: Config, platform=None) -> app.Simulation:
     """What `Config.simulation` returns."""
     made = unprepared_simulation(cfg, platform)
@@ -180,13 +175,15 @@ def simulation(cfg: Config, platform=None) -> app.Simulation:
 
 def unprepared_simulation(cfg: Config, platform=None) -> app.Simulation:
     """A Simulation without positions and velocities, which a checkpoint may give instead."""
+    system, integrator = cfg.system(), cfg.integrator()
+    if platform is None:
+        platform = platforms.choose(system, integrator).name
     if isinstance(platform, str):
         platform = openmm.Platform.getPlatformByName(platform)
-    # OpenMM refuses properties, even none, for a platform that it shall choose.
-    properties = None
-    if platform is not None and "Precision" in platform.getPropertyNames():
+    properties = {}
+    if "Precision" in platform.getPropertyNames():
         properties = {"Precision": cfg.general["Precision"]}
-    return app.Simulation(cfg.topology(), cfg.system(), cfg.integrator(), platform, properties)
+    return app.Simulation(cfg.topology(), system, integrator, platform, properties)
 
 
 def prepare(cfg: Config, context: openmm.Context) -> None:

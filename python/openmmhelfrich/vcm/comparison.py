@@ -9,6 +9,7 @@ import numpy as np
 import openmm as mm
 from openmm import unit
 
+from .. import platforms
 from .strings import custom_system, is_ours
 
 __all__ = ["Comparison", "TermComparison", "compare"]
@@ -39,12 +40,14 @@ class TermComparison:
 class Comparison:
     """All potentials, and the time that both Systems take for a step.
 
-    seconds: per step, theirs and ours, None where not measured; setup: to make the Contexts.
+    seconds: per step, theirs and ours, None where not measured; setup: to make the Contexts;
+    platform: OpenMM's name of the one for both.
     """
 
     terms: tuple[TermComparison, ...]
     seconds: tuple[float, float] | None
     setup: tuple[float, float]
+    platform: str
 
     def disagreements(self, tolerance: float) -> list[TermComparison]:
         """The terms whose relative errors are above a tolerance, or not numbers."""
@@ -58,7 +61,7 @@ class Comparison:
 def compare(
     cfg,
     style: str = "sums",
-    platform: str = "Reference",
+    platform: str | None = None,
     seconds: float = 2.0,
     strain: float = 0.02,
 ) -> Comparison:
@@ -74,8 +77,8 @@ def compare(
         As `openmmhelfrich.vcm.read` returns it.
     style : str
         How global area and volume are written: "sums" over triangles or "pairs" of triangles.
-    platform : str
-        OpenMM's name of the platform for both.
+    platform : str, optional
+        OpenMM's name of the platform for both. Default: the fastest one in double precision.
     seconds : float
         How long to measure the steps of each, s; 0 to leave it out. At least one step is made.
     strain : float
@@ -86,6 +89,8 @@ def compare(
     -------
     Comparison
     """
+    if platform is None:
+        platform = platforms.choose(cfg.system(), cfg.integrator(), double=True).name
     systems = (lambda: custom_system(cfg.system(), style), cfg.system)
     contexts, setup = [], []
     for make in systems:
@@ -97,7 +102,7 @@ def compare(
     per_step = None
     if seconds:
         per_step = tuple(_seconds_per_step(cfg, context, seconds) for context in contexts)
-    return Comparison(terms, per_step, tuple(setup))
+    return Comparison(terms, per_step, tuple(setup), platform)
 
 
 def _terms(cfg, contexts: list[mm.Context], strain: float) -> tuple[TermComparison, ...]:

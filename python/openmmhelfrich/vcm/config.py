@@ -71,12 +71,12 @@ class Config:
         Of all random numbers, above 0: the file's, or one drawn if that is 0.
     platform : str or None
         OpenMM platform for a run that is told no other; VCM's files name none.
-    writes : dict of bool
-        Whether a run that is not told writes "xtc" and "ply" files.
+    writes : dict
+        What a run that is not told writes: "xtc", a bool, and "frames", one of `frames.FRAMES`.
     """
 
     platform: str | None = None
-    writes: Mapping[str, bool] = MappingProxyType({"xtc": True, "ply": False})
+    writes: Mapping[str, bool | str] = MappingProxyType({"xtc": True, "frames": "none"})
 
     def __init__(self, path, sections: list[Section], compatible: bool, ignore: bool, seed: int):
         self.path = Path(path)
@@ -177,7 +177,8 @@ class Config:
         Parameters
         ----------
         platform : openmm.Platform or str, optional
-            Default: the one that OpenMM prefers. `Precision` is handed to platforms that have it.
+            Default: the fastest one for it, see `platforms.choose`. `Precision` is handed to
+            platforms that have it.
         """
         return build.simulation(self, platform)
 

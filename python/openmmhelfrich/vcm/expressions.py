@@ -15,7 +15,7 @@ ones. Lists rather than trees, because the longest expressions are too deep for 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from math import pi
 
 import numpy as np
@@ -102,9 +102,9 @@ class Expression:
         The expression, with its definitions.
     num_points : int
         The number of particles of a bond, 0 where there are none.
-    points : dict, optional
-        Names that stand for a function of particles, such as ``{"theta": "dihedral(p1,p2,p3,p4)"}``
-        for a torsion.
+    given : dict, optional
+        Names that stand for a formula, such as ``{"theta": "dihedral(p1,p2,p3,p4)"}`` for a
+        torsion. Definitions in the text go before them.
 
     Raises
     ------
@@ -115,7 +115,7 @@ class Expression:
     #: The functions that take numbers.
     FUNCTIONS = FUNCTIONS
 
-    def __init__(self, text: str, num_points: int = 0, points: Mapping[str, str] | None = None):
+    def __init__(self, text: str, num_points: int = 0, given: Mapping[str, str] | None = None):
         self.text = text
         self._num_points = num_points
         #: (operation, arguments): a "number" has a value, a "variable" a name.
@@ -123,7 +123,7 @@ class Expression:
         self._numbers: dict[tuple[str, tuple], int] = {}
         self._seen: dict[int, set[bool]] = {}
         definitions: dict[str, int] = {}
-        for name, formula in (points or {}).items():
+        for name, formula in (given or {}).items():
             definitions[name] = Parser(self, formula, {}).whole()
         parts = text.split(";")
         for part in reversed(parts[1:]):
@@ -173,9 +173,8 @@ class Expression:
         """The names of all variables that the value depends on."""
         return {self._list[i][1][0] for i in self._used if self._list[i][0] == "variable"}
 
-    @property
-    def literals(self) -> list[float]:
-        """The numbers written in the expression, and those computed of them."""
+    def _constants(self) -> dict[int, float]:
+        """The operations that no variable is in, with their values."""
         constant: dict[int, float] = {}
         for number in self._used:
             operation, arguments = self._list[number]
@@ -186,7 +185,24 @@ class Expression:
                     constant[number] = float(
                         _OPERATIONS[operation][0](*(np.float64(constant[a]) for a in arguments))
                     )
-        return sorted({abs(v) for v in constant.values() if np.isfinite(v) and v != 0})
+        return constant
+
+    def _only_of(self, names: Collection[str]) -> set[int]:
+        """The operations that no variables but these are in, and at least one of them."""
+        constants, found = self._constants(), set()
+        for number in self._used:
+            operation, arguments = self._list[number]
+            if operation == "variable":
+                if arguments[0] in names:
+                    found.add(number)
+            elif number not in constants and all(a in found or a in constants for a in arguments):
+                found.add(number)
+        return found
+
+    @property
+    def literals(self) -> list[float]:
+        """The numbers written in the expression, and those computed of them."""
+        return sorted({abs(v) for v in self._constants().values() if np.isfinite(v) and v != 0})
 
     def _values(self, variables: Mapping[str, np.ndarray | float], watch: bool) -> dict:
         values: dict[int, np.ndarray] = {}
@@ -242,16 +258,24 @@ class Expression:
         """Forget which branches were taken."""
         self._seen.clear()
 
-    def untested_branches(self) -> list[str]:
+    def untested_branches(self, parameters: Collection[str] = ()) -> list[str]:
         """The operations with branches of which `evaluate` has met only one side.
 
-        Harmless ones are left out: an absolute value whose argument has one sign, and a ``min`` or
-        ``max`` with 0, 1 or −1, which are there to catch rounding.
+        Harmless ones are left out: an absolute value whose argument has one sign, a ``min`` or
+        ``max`` with 0, 1 or −1, which are there to catch rounding, and what constants decide.
+
+        Parameters
+        ----------
+        parameters : collection of str
+            Variables that may get any value later, so that nothing is harmless of what they alone
+            decide.
         """
-        found = []
+        found, constants = [], self._constants()
+        free = self._only_of(parameters)
         for number in self._used:
             operation, arguments = self._list[number]
-            if operation in ("floor", "ceil"):
+            decided = number in constants or (operation == "select" and arguments[0] in constants)
+            if operation in ("floor", "ceil") and not decided:
                 found.append(operation)
             if operation not in _SIDES or len(self._seen.get(number, ())) == 2:
                 continue
@@ -259,8 +283,8 @@ class Expression:
                 self._list[a][0] == "number" and abs(self._list[a][1][0]) in (0.0, 1.0)
                 for a in arguments
             )
-            constant = all(self._list[a][0] == "number" for a in arguments)
-            if operation == "abs" or constant or (operation in ("min", "max") and clamp):
+            harmless = operation == "abs" or (operation in ("min", "max") and clamp)
+            if decided or (harmless and number not in free):
                 continue
             found.append(operation)
         return found

@@ -125,17 +125,37 @@ def makers(cfg: Config) -> dict[str, Callable[[], openmm.Force]]:
 
 def _force(cfg: Config, word: str, pairs: list[tuple[int, int]]) -> openmm.Force:
     expression, reach = _POTENTIALS[word]
-    force = openmm.CustomNonbondedForce(expression.format(kT=cfg.kT))
+    expression = expression.format(kT=cfg.kT)
+    parameters = _parameters(cfg, word)[:, : 1 + (word == "LJ")]
+    interacts = np.zeros((len(cfg.membranes),) * 2)
+    for i, j in pairs:
+        interacts[i, j] = interacts[j, i] = 1
+    # With interaction groups OpenMM goes through all pairs, without neighbour lists. Membranes that
+    # do not see each other may lie in one place, though, where a distance of 0 spoils any factor.
+    grouped = not interacts[~np.eye(len(interacts), dtype=bool)].all()
+    named = not grouped and not interacts.all()
+    if named:
+        energy, *definitions = expression.split(";")
+        energy = f"select(interacts(membrane1,membrane2),{energy},0)"
+        expression = ";".join([energy, *definitions])
+        sizes = [len(membrane.particles) for membrane in cfg.membranes]
+        owners = np.repeat(np.arange(len(sizes)), sizes)
+        parameters = np.column_stack([parameters, owners])
+    force = openmm.CustomNonbondedForce(expression)
     force.addPerParticleParameter("radius")
-    parameters = _parameters(cfg, word)
     if word == "LJ":
         force.addPerParticleParameter("epsilon")
-    for row in parameters[:, : 1 + (word == "LJ")].tolist():
+    if named:
+        force.addPerParticleParameter("membrane")
+        table = openmm.Discrete2DFunction(*interacts.shape, interacts.ravel().tolist())
+        force.addTabulatedFunction("interacts", table)
+    for row in parameters.tolist():
         force.addParticle(row)
     longest = 0.0
     for pair in pairs:
         members = [cfg.membranes[number].particles for number in pair]
-        force.addInteractionGroup(*map(list, members))
+        if grouped:
+            force.addInteractionGroup(*map(list, members))
         largest = sum(parameters[list(particles), 0].max() for particles in members)
         longest = max(longest, reach * largest)
     periodic = cfg.general["SimulationBoxLength"] > 0

@@ -1,4 +1,4 @@
-"""The files of a run: VCM's own formats, and XTC, PLY and CSV.
+"""The files of a run: VCM's own formats, XTC, CSV and meshes.
 
 Every file only grows, and `Outputs` knows how long each one was at a checkpoint, so that a run can
 go on from there with nothing lost and nothing doubled.
@@ -18,10 +18,11 @@ import openmm
 from openmm import unit
 from openmm.app.internal.xtc_utils import xtc_write_frame
 
-from .._mesh import geometry, ply
-from .._writing import naming
+from .._mesh import geometry
+from .._writing import in_memory, naming
 from ..analysis import mean_curvature
 from ..wireframe import write_psf
+from .frames import MeshFrames
 
 if TYPE_CHECKING:
     from .config import Config
@@ -130,15 +131,16 @@ class Outputs:
         Exists already.
     xtc : bool
         Write ``<name>.xtc`` too.
-    ply : bool
-        Write ``frames/<name>_<label>_<number>.ply`` too, a file per membrane and frame.
+    frames : str
+        One of `frames.FRAMES`: what to write ``frames/<name>_<label>_<number>`` as, a mesh per
+        membrane and frame.
     """
 
-    def __init__(self, cfg: Config, folder, xtc: bool = True, ply: bool = False):
+    def __init__(self, cfg: Config, folder, xtc: bool = True, frames: str = "none"):
         self._cfg = cfg
         self._folder = Path(folder)
         self._names = [atom.name for atom in cfg.topology().atoms()]
-        self._ply = ply
+        self._frames = MeshFrames(self._folder / "frames", cfg.name, frames)
         self._num_frames = 0
         text, binary = cfg.general["TextOutputs"], cfg.general["BinOutputs"]
         double = cfg.general["Precision"] == "double"
@@ -171,6 +173,10 @@ class Outputs:
         return list(self._writers)
 
     @property
+    def _labels(self) -> list[str]:
+        return [membrane.label for membrane in self._cfg.membranes]
+
+    @property
     def num_frames(self) -> int:
         """How many frames have been written."""
         return self._num_frames
@@ -179,7 +185,7 @@ class Outputs:
         """Make empty files, and the PSF file."""
         for path in self.paths:
             path.write_bytes(b"")
-        self._remove_frames_from(0)
+        self._frames.remove_from(0, self._labels)
         if "PSF" in self._cfg.general["TextOutputs"]:
             psf = self._folder / f"{self._cfg.name}.psf"
             with naming(psf):
@@ -199,15 +205,18 @@ class Outputs:
             with naming(path), path.open("r+b") as file:
                 file.seek(0, os.SEEK_END)
                 file.write(encode(frame))
-        if self._ply:
-            self._write_ply(frame)
+        if self._frames.wanted:
+            for membrane, vertices in self._parts(frame):
+                self._frames.write(
+                    self._num_frames, membrane.label, vertices, membrane.mesh.triangles
+                )
         self._num_frames += 1
 
     def state(self) -> dict:
         """The number of frames and the length of every file, once all of it is on the disk."""
         sizes = {}
         for path in self.paths:
-            with path.open("rb") as file:
+            with naming(path), path.open("rb") as file:
                 os.fsync(file.fileno())
                 sizes[path.name] = os.fstat(file.fileno()).st_size
         return {"frames": self._num_frames, "sizes": sizes}
@@ -235,7 +244,7 @@ class Outputs:
         for path in self.paths:
             os.truncate(path, sizes[path.name])
         self._num_frames = state["frames"]
-        self._remove_frames_from(self._num_frames)
+        self._frames.remove_from(self._num_frames, self._labels)
 
     def _xyz(self, frame: Frame, values: np.ndarray) -> bytes:
         """A frame in the XYZ format, with VCM's comment line; coordinates in nm."""
@@ -270,20 +279,15 @@ class Outputs:
     def _xtc(self, frame: Frame) -> bytes:
         """A frame of an XTC file.
 
-        OpenMM writes to names only, and says nothing if the disk is full: it writes into memory.
+        OpenMM says nothing if a file cannot be written.
         """
-        handle = os.memfd_create("frame")
-        try:
-            xtc_write_frame(
-                f"/proc/self/fd/{handle}".encode(),
-                frame.positions.astype(np.float32),
-                frame.box.astype(np.float32),
-                np.float32(frame.time),
-                np.int32(frame.step),
-            )
-            return os.pread(handle, os.fstat(handle).st_size, 0)
-        finally:
-            os.close(handle)
+        values = (
+            frame.positions.astype(np.float32),
+            frame.box.astype(np.float32),
+            np.float32(frame.time),
+            np.int32(frame.step),
+        )
+        return in_memory(lambda name: xtc_write_frame(name.encode(), *values))
 
     def _binary(self, values) -> bytes:
         return np.ascontiguousarray(values, dtype=self._type).tobytes()
@@ -313,23 +317,3 @@ class Outputs:
         line = ",".join(f"{value:.12g}" for value in columns.values()) + "\n"
         header = ",".join(columns) + "\n" if self._num_frames == 0 else ""
         return (header + line).encode()
-
-    def _frames(self) -> Path:
-        return self._folder / "frames"
-
-    def _write_ply(self, frame: Frame) -> None:
-        self._frames().mkdir(exist_ok=True)
-        for membrane, vertices in self._parts(frame):
-            name = f"{self._cfg.name}_{membrane.label}_{self._num_frames:06d}.ply"
-            path = self._frames() / name
-            with naming(path):
-                path.write_text(ply.write(vertices, membrane.mesh.triangles))
-
-    def _remove_frames_from(self, number: int) -> None:
-        if not self._ply:
-            return
-        for membrane in self._cfg.membranes:
-            stem = f"{self._cfg.name}_{membrane.label}_"
-            for path in self._frames().glob(f"{stem}*.ply"):
-                if int(path.stem.removeprefix(stem)) >= number:
-                    path.unlink()

@@ -35,7 +35,8 @@ class Run:
     folder : str or Path, optional
         Where outputs go. Default: a folder with the project's name in the present one.
     platform : str, optional
-        OpenMM platform. Default: that of the run to resume, that of the file, or Reference.
+        OpenMM platform. Default: that of the run to resume, that of the file, or the fastest
+        one for the System, see `platforms.choose`.
     seed : int
         In place of the file's, if not 0.
     resume : bool
@@ -44,8 +45,10 @@ class Run:
         Go on from the checkpoint before the last one, which is given up: for one that is damaged.
     vcm_compatible, ignore_unknown : bool
         As for `read`; a resumed run keeps its own.
-    xtc, ply : bool, optional
+    xtc, frames : bool and str, optional
         As for `Outputs`; a resumed run keeps its own. Default: what the file says, or XTC only.
+    ply : bool, optional
+        Short for ``frames="ply"`` or, if False, ``frames="none"``.
     checkpoint_seconds : float
         Wall time between checkpoints, s: what a kill can cost.
 
@@ -71,6 +74,7 @@ class Run:
         ignore_unknown: bool = False,
         xtc: bool | None = None,
         ply: bool | None = None,
+        frames: str | None = None,
         checkpoint_seconds: float = 10.0,
     ):
         # Imported here, because configurations of ours build on those of VCM.
@@ -79,7 +83,7 @@ class Run:
         options = {"vcm_compatible": vcm_compatible, "ignore_unknown": ignore_unknown}
         self._checkpoint_seconds = checkpoint_seconds
         self.cfg = cfg = read(config, seed=seed, **options)
-        asked = {"xtc": xtc, "ply": ply}
+        asked = {"xtc": xtc, "frames": frames or {True: "ply", False: "none"}.get(ply)}
         wanted = {name: given for name, given in asked.items() if given is not None}
         self._options = {**options, **cfg.writes, **wanted}
         self.folder = Path(folder if folder is not None else cfg.name)
@@ -111,14 +115,13 @@ class Run:
                 "a mesh has changed since; give another folder with --out"
             )
         try:
-            platform = platform or cfg.platform or build.DEFAULT_PLATFORM
-            self.simulation = build.unprepared_simulation(cfg, platform)
+            self.simulation = build.unprepared_simulation(cfg, platform or cfg.platform)
             if saved is None:
                 build.prepare(cfg, self.context)
         except openmm.OpenMMException as reason:
             where = "" if saved is None else f" on the platform {platform} of the checkpoint"
             raise RunError(f"OpenMM cannot start{where}: {reason}") from None
-        self.outputs = Outputs(cfg, self.folder, self._options["xtc"], self._options["ply"])
+        self.outputs = Outputs(cfg, self.folder, self._options["xtc"], self._options["frames"])
         self.resumed = saved is not None
         self.step = 0 if saved is None else saved.step
         if saved is not None:

@@ -2,12 +2,13 @@
 
 use super::Precision;
 use super::faults::{Fault, strikes};
+use super::interface::Binding;
 use crate::error::{Error, Result};
 use std::sync::OnceLock;
 use wgpu::{DeviceType, Features};
 
 /// Storage buffers that the shaders bind at once.
-pub(super) const STORAGE_BUFFERS: u32 = 15;
+const STORAGE_BUFFERS: u32 = Binding::COUNT as u32;
 
 /// A GPU, or a driver that computes on the processor like one.
 #[derive(Debug, Clone)]

@@ -3,32 +3,11 @@
 use super::Precision;
 use super::device::Device;
 use super::frame::groups;
+use super::interface::{Binding, FORCES_PER_TRIANGLE, SLOPES_PER_VERTEX};
 use crate::error::{Error, Result};
 use crate::mesh::Topology;
 use crate::potentials::Needs;
 use wgpu::BufferUsages as Usage;
-
-/// The binding of each buffer; `shaders/bindings.wgsl` says what is in them.
-#[derive(Clone, Copy)]
-pub enum Binding {
-    Frame,
-    Positions,
-    CornerVertices,
-    CornerEdges,
-    EdgeCorners,
-    Rings,
-    Fields,
-    TriangleGeometry,
-    EdgeGeometry,
-    VertexSlopes,
-    VectorSlopes,
-    CornerForces,
-    Totals,
-    Results,
-    ThinTriangles,
-}
-
-const COUNT: usize = Binding::ThinTriangles as usize + 1;
 
 /// How many bytes some of the buffers must have for an evaluation.
 pub struct Demand {
@@ -40,7 +19,7 @@ pub struct Demand {
 
 /// Buffers in the order of their bindings, and one from which the processor reads.
 pub struct Buffers {
-    bound: [wgpu::Buffer; COUNT],
+    bound: [wgpu::Buffer; Binding::COUNT],
     pub readback: wgpu::Buffer,
     pub group: wgpu::BindGroup,
     /// The number of vertices, for messages.
@@ -65,31 +44,31 @@ impl Buffers {
     pub fn new(device: &Device, topology: &Topology, precision: Precision) -> Result<Self> {
         let (v, e) = (topology.num_vertices(), topology.edges.len());
         let t = topology.triangles.len();
-        let real = precision.size();
+        let bytes = |binding: Binding, items| items * binding.item().size(precision.size());
         // Two sums of area and volume for each group, and the derivatives with respect to them.
         let totals = match precision {
-            Precision::Single => 16 * (2 * groups(t) + 1),
-            Precision::Double => 16 * (groups(t) + 1),
+            Precision::Single => 2 * groups(t) + 1,
+            Precision::Double => groups(t) + 1,
         };
         let optional = [
-            (Binding::EdgeGeometry, Needs::EDGES | Needs::CURVATURES, 4 * e * real),
-            (Binding::VertexSlopes, Needs::VERTICES, 4 * v * real),
-            (Binding::VectorSlopes, Needs::VECTORS, 9 * v * real),
-        ];
-        let position = if precision == Precision::Single { 4 } else { 8 };
+            (Binding::EdgeGeometry, Needs::EDGES | Needs::CURVATURES, e),
+            (Binding::VertexSlopes, Needs::VERTICES, v),
+            (Binding::VectorSlopes, Needs::VECTORS, SLOPES_PER_VERTEX as usize * v),
+        ]
+        .map(|(binding, needs, items)| (binding, needs, bytes(binding, items)));
         let sizes = |binding: Binding| match binding {
-            Binding::Positions => 3 * v * position,
-            Binding::CornerVertices | Binding::CornerEdges => 12 * t,
-            Binding::EdgeCorners => 8 * e,
-            Binding::Rings => 4 * (v + 1 + 3 * t),
-            Binding::TriangleGeometry => 4 * t * real,
-            Binding::CornerForces => 9 * t * real,
-            Binding::Totals => totals,
+            Binding::Positions => bytes(binding, 3 * v),
+            Binding::CornerVertices | Binding::CornerEdges => bytes(binding, 3 * t),
+            Binding::EdgeCorners => bytes(binding, e),
+            Binding::Rings => bytes(binding, v + 1 + 3 * t),
+            Binding::TriangleGeometry => bytes(binding, t),
+            Binding::CornerForces => bytes(binding, FORCES_PER_TRIANGLE as usize * t),
+            Binding::Totals => bytes(binding, totals),
             _ => LEAST,
         };
-        check_limits(device, v, ALL.into_iter().map(sizes).max().unwrap_or(0))?;
+        check_limits(device, v, Binding::ALL.into_iter().map(sizes).max().unwrap_or(0))?;
         let buffers = device.guarded(v, || {
-            let bound = std::array::from_fn(|k| create(device, sizes(ALL[k]), STORED));
+            let bound = std::array::from_fn(|k| create(device, sizes(Binding::ALL[k]), STORED));
             let readback = create(device, LEAST, READ);
             let group = bind(device, &bound);
             Self { bound, readback, group, vertices: v, optional }
@@ -182,24 +161,6 @@ fn check_limits(device: &Device, vertices: usize, largest: usize) -> Result<()> 
         ),
     })
 }
-
-const ALL: [Binding; COUNT] = [
-    Binding::Frame,
-    Binding::Positions,
-    Binding::CornerVertices,
-    Binding::CornerEdges,
-    Binding::EdgeCorners,
-    Binding::Rings,
-    Binding::Fields,
-    Binding::TriangleGeometry,
-    Binding::EdgeGeometry,
-    Binding::VertexSlopes,
-    Binding::VectorSlopes,
-    Binding::CornerForces,
-    Binding::Totals,
-    Binding::Results,
-    Binding::ThinTriangles,
-];
 
 fn create(device: &Device, size: usize, usage: Usage) -> wgpu::Buffer {
     let size = size.max(LEAST).next_multiple_of(16) as u64;

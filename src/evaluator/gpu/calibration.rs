@@ -19,7 +19,7 @@ pub struct Key {
     /// Version of the plugin, adapter, driver, precision, cores: what else decides how fast something is.
     machine: String,
     /// What the terms need.
-    needs: u8,
+    needs: u32,
     /// 2 log₂ of the number of vertices, rounded: sizes within a fifth count as alike.
     size: u32,
 }

@@ -1,15 +1,13 @@
 //! An open GPU with its compiled shaders, shared by all Contexts that use it.
 
-use super::adapters::{self, Adapter, STORAGE_BUFFERS};
+use super::adapters::{self, Adapter};
+use super::interface::Binding;
 use super::{Precision, shaders};
 use crate::error::{Error, Result};
 use std::collections::HashMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock};
 use wgpu::{BufferBindingType, ErrorFilter, Features};
-
-/// The bindings that the shaders only read; all others up to [`STORAGE_BUFFERS`] are written.
-const READ_ONLY: [u32; 7] = [0, 1, 2, 3, 4, 5, 6];
 
 /// The passes of one precision, in the order in which they run.
 pub(super) struct Pipelines {
@@ -80,12 +78,13 @@ impl Device {
         });
         // Errors are looked for where they can arise; one that comes out of nowhere must not end the process.
         wgpu.on_uncaptured_error(Arc::new(|error| eprintln!("openmm-helfrich: {error}")));
-        let entries: Vec<_> = (0..STORAGE_BUFFERS)
+        let entries: Vec<_> = Binding::ALL
+            .into_iter()
             .map(|binding| wgpu::BindGroupLayoutEntry {
-                binding,
+                binding: binding as u32,
                 visibility: wgpu::ShaderStages::COMPUTE,
                 ty: wgpu::BindingType::Buffer {
-                    ty: BufferBindingType::Storage { read_only: READ_ONLY.contains(&binding) },
+                    ty: BufferBindingType::Storage { read_only: binding.is_read_only() },
                     has_dynamic_offset: false,
                     min_binding_size: None,
                 },

@@ -1,19 +1,17 @@
 //! The passes over a mesh on the device: one submission and one readback an evaluation.
 
-use super::buffers::{Binding, Buffers, Demand, TAIL};
+use super::buffers::{Buffers, Demand, TAIL};
 use super::device::Device;
 use super::faults::{Fault, strikes};
 use super::frame::{Frame, groups};
+use super::interface::{Binding, GROUPS_ACROSS, Sink};
 use super::lattice::{Lattice, Scale};
-use super::{Precision, Reals};
+use super::{Bytes, Precision, Reals};
 use crate::error::{Error, Result};
 use crate::mesh::Topology;
 use crate::potentials::{Contribution, Needs, Term};
 use std::sync::{Arc, mpsc};
 use std::time::{Duration, Instant};
-
-/// The most workgroups of a row; `GROUPS_ACROSS` in `shaders/passes.wgsl`.
-const GROUPS_ACROSS: u32 = 32_768;
 
 /// Evaluates any set of terms on one mesh, on a GPU.
 ///
@@ -180,9 +178,8 @@ impl GpuEvaluator {
         write(Binding::Frame, &self.frame.bytes);
         if self.frame.fields_changed && !self.frame.fields.is_empty() {
             let mut bytes = Vec::with_capacity(self.frame.fields.len() * self.precision.size());
-            for value in &self.frame.fields {
-                self.precision.put(&mut bytes, *value);
-            }
+            let mut sink = Bytes { precision: self.precision, bytes: &mut bytes };
+            self.frame.fields.iter().for_each(|value| sink.real(*value));
             write(Binding::Fields, &bytes);
         }
     }

@@ -1,27 +1,18 @@
-//! The terms of an evaluation as the shaders read them (`Frame` in `shaders/bindings.wgsl`; the two change
-//! together), and where in the results each of them leaves its sums.
+//! The terms of an evaluation as the shaders read them, and where in the results each of them leaves its sums.
 
+use super::interface::{
+    FrameRecord, GROUP_SIZE, KINDS, NO_FIELD, SUMS_OF_EDGES, SUMS_OF_TOTALS, SUMS_OF_TRIANGLES,
+    SUMS_OF_VERTICES, TermRecord, Wishes,
+};
 use super::lattice::Scale;
-use super::{Precision, Reals, shaders};
+use super::{Bytes, Precision, Reals, shaders};
 use crate::mesh::Topology;
 use crate::potentials::{Contribution, MAX_PARAMETERS, Needs, Potential, Term};
 use std::ops::Range;
 
-/// Threads of a workgroup; `GROUP_SIZE` in `shaders/sums.wgsl`.
-pub const GROUP_SIZE: usize = 64;
-
-/// Bits beyond those of [`Needs`]: DERIVATIVES and FORCES in `shaders/bindings.wgsl`.
-const DERIVATIVES: u32 = 128;
-const FORCES: u32 = 256;
-
-const NO_FIELD: u32 = u32::MAX;
-
-/// The kinds of elements in the order in which a term's sums are listed.
-const KINDS: [Needs; 4] = [Needs::TOTALS, Needs::TRIANGLES, Needs::EDGES, Needs::VERTICES];
-
 /// Workgroups for some elements.
 pub fn groups(elements: usize) -> usize {
-    elements.div_ceil(GROUP_SIZE)
+    elements.div_ceil(GROUP_SIZE as usize)
 }
 
 /// The number by which the shaders know a potential: that of its file, whose stem is the name of its class as
@@ -41,7 +32,7 @@ pub fn shader_of(potential: &dyn Potential) -> usize {
 /// The sums of one term.
 struct Sums {
     /// Where they begin, for each kind of element that has any, and of how many groups they are.
-    places: [Option<(usize, usize)>; 4],
+    places: [Option<(usize, usize)>; KINDS.len()],
     derivatives: bool,
 }
 
@@ -84,15 +75,18 @@ impl Frame {
         self.update_fields(terms);
         self.needs =
             terms.iter().fold(Needs::empty(), |all, term| all | term.potential.needs(term));
-        let counts = [topology.num_vertices(), topology.edges.len(), topology.triangles.len()]
-            .map(|n| n as u32);
-        let [num_vertices, num_edges, num_triangles] = counts;
-        let needs = u32::from(self.needs.bits()) | if forces { FORCES } else { 0 };
-        let quantum = (scale.quantum as f32).to_bits();
-        let header =
-            [num_vertices, num_edges, num_triangles, needs, terms.len() as u32, quantum, 0, 0];
+        let wishes = if forces { Wishes::FORCES } else { Wishes::empty() };
         self.bytes.clear();
-        self.bytes.extend_from_slice(bytemuck::cast_slice(&header));
+        FrameRecord {
+            num_vertices: topology.num_vertices() as u32,
+            num_edges: topology.edges.len() as u32,
+            num_triangles: topology.triangles.len() as u32,
+            needs: self.needs.bits() | wishes.bits(),
+            num_terms: terms.len() as u32,
+            quantum: scale.quantum as f32,
+            padding: [0; 2],
+        }
+        .put(&mut Bytes { precision, bytes: &mut self.bytes });
         self.sums.clear();
         self.num_results = 3 * topology.num_vertices();
         let mut fits = true;
@@ -130,11 +124,14 @@ impl Frame {
         field_start: &mut usize,
     ) -> bool {
         let needs = term.potential.needs(term);
-        let derivatives = if term.wants_derivatives { DERIVATIVES } else { 0 };
+        let wishes = if term.wants_derivatives { Wishes::DERIVATIVES } else { Wishes::empty() };
         let values_of_sum = if term.wants_derivatives { 1 + MAX_PARAMETERS } else { 1 };
-        let triangles = topology.triangles.len();
-        let elements = [1, triangles, topology.edges.len(), topology.num_vertices()];
-        let mut places = [None; 4];
+        let mut elements = [0; KINDS.len()];
+        elements[SUMS_OF_TOTALS as usize] = 1;
+        elements[SUMS_OF_TRIANGLES as usize] = topology.triangles.len();
+        elements[SUMS_OF_EDGES as usize] = topology.edges.len();
+        elements[SUMS_OF_VERTICES as usize] = topology.num_vertices();
+        let mut places = [None; KINDS.len()];
         for (kind, place) in places.iter_mut().enumerate() {
             if needs.contains(KINDS[kind]) {
                 let groups = groups(elements[kind]);
@@ -144,26 +141,27 @@ impl Frame {
         }
         self.sums.push(Sums { places, derivatives: term.wants_derivatives });
 
-        let number = shader_of(term.potential) as u32;
-        let bits = u32::from(needs.bits()) | derivatives;
-        let mut words = vec![number, term.form as u32, term.switches, bits];
-        words.extend(places.map(|place| place.map_or(0, |(first, _)| first as u32)));
-        for field in term.fields {
-            words.push(if field.is_empty() { NO_FIELD } else { *field_start as u32 });
+        let field_starts = term.fields.map(|field| {
+            let start = if field.is_empty() { NO_FIELD } else { *field_start as u32 };
             *field_start += field.len();
-        }
+            start
+        });
         let reference =
             if needs.contains(Needs::TOTALS) { reference(scale, term) } else { Some(0) };
         let limbs = reference.unwrap_or(0);
-        words.extend((0..4).map(|limb| (limbs >> (32 * limb)) as u32));
-        self.bytes.extend_from_slice(bytemuck::cast_slice(&words));
         let units = units(scale, term);
-        for (value, unit) in term.values.iter().zip(units) {
-            precision.put(&mut self.bytes, value / unit);
+        TermRecord {
+            potential: shader_of(term.potential) as u32,
+            form: term.form as u32,
+            switches: term.switches,
+            needs: needs.bits() | wishes.bits(),
+            sums: places.map(|place| place.map_or(0, |(first, _)| first as u32)),
+            field_starts,
+            reference: std::array::from_fn(|limb| (limbs >> (32 * limb)) as u32),
+            values: std::array::from_fn(|k| term.values[k] / units[k]),
+            field_units: units.map(|unit| 1.0 / unit),
         }
-        for unit in units {
-            precision.put(&mut self.bytes, 1.0 / unit);
-        }
+        .put(&mut Bytes { precision, bytes: &mut self.bytes });
         reference.is_some()
     }
 

@@ -2,6 +2,7 @@
 //!
 //! The shaders in `shaders/` are the twins of the formulas in [`crate::mesh`] and [`crate::potentials`]; build.rs
 //! composes and validates them. [`adapters`] finds GPUs and [`device`] opens one, once for all Contexts;
+//! `interface.rs` states what the two share;
 //! `lattice.rs` and `frame.rs` bring positions and terms into the shaders' form; `buffers.rs` holds what a mesh
 //! needs on the device, and `evaluator.rs` runs the passes.
 
@@ -12,9 +13,12 @@ pub mod device;
 mod evaluator;
 pub mod faults;
 mod frame;
+#[allow(dead_code, reason = "build.rs uses the rest")]
+mod interface;
 mod lattice;
 
 pub use evaluator::{GpuEvaluator, Timings};
+use interface::Sink;
 
 /// The composed shaders.
 mod shaders {
@@ -38,12 +42,23 @@ impl Precision {
             Self::Double => 8,
         }
     }
+}
 
-    /// Append a number to what a device will read.
-    fn put(self, bytes: &mut Vec<u8>, value: f64) {
-        match self {
-            Self::Single => bytes.extend_from_slice(&(value as f32).to_ne_bytes()),
-            Self::Double => bytes.extend_from_slice(&value.to_ne_bytes()),
+/// What a device will read.
+struct Bytes<'a> {
+    precision: Precision,
+    bytes: &'a mut Vec<u8>,
+}
+
+impl Sink for Bytes<'_> {
+    fn word(&mut self, word: u32) {
+        self.bytes.extend_from_slice(&word.to_ne_bytes());
+    }
+
+    fn real(&mut self, value: f64) {
+        match self.precision {
+            Precision::Single => self.bytes.extend_from_slice(&(value as f32).to_ne_bytes()),
+            Precision::Double => self.bytes.extend_from_slice(&value.to_ne_bytes()),
         }
     }
 }

@@ -13,6 +13,12 @@ namespace HelfrichPlugin {
  * Equation (2) of Farnudi, Ejtehadi and Everaers, Phys. Rev. E 108, 015301 (2023),
  * doi:10.1103/PhysRevE.108.015301. V is positive for outward triangles, the sum over all components of
  * the surface, and does not depend on the origin.
+ *
+ * Triangles must run counter-clockwise seen from outside. Where V is below zero when a Context first evaluates the
+ * force, it throws an exception: swap two corners of each triangle. Of several surfaces some may face inward, as
+ * the inner wall of a shell does, if V as a whole is above zero, and a flat surface (|V| below a thousandth of a
+ * sphere's of the same area) may start. A shape that turns inside out or crosses itself later is not refused; the
+ * formula holds for V of either sign.
  */
 class EnclosedVolumeForce : public MembraneForce {
 public:

@@ -11,5 +11,8 @@ expression is written does not matter; only its values do.
 - `triangles`: areas, volumes, heights, over one triangle, a pair, or a triangle and an apex
 - `edges`: dihedral energies, over two neighbouring triangles
 - `surface`: closed surfaces of the triangles that turned up, and which side is outside
-- `terms`, `bending`: whole potentials from the bonds' energies
+- `constraints`, `local`, `bending`: whole potentials (`term`) from the bonds' energies
+- `reader`: all forces of a System read and put together
+- `fixed`, `conditions`: global parameters that must be numbers, or follow others, for a force to be
+  ours
 """

@@ -18,8 +18,9 @@ import openmm as mm
 
 from ..expressions import Expression, ExpressionError
 from .fit import resolve, solve, spread
+from .fixed import Fixed, formulas, remaining
 from .local import checked, constant_offset, known_numbers
-from .source import Bonds, Unreadable, global_parameters, read_bonds
+from .source import Bonds, Unreadable, global_parameters, list_bonds, read_bonds
 from .surface import Component, NotClosed, Surfaces, distinct, parity
 from .term import Refused, Term
 from .triangles import (
@@ -183,12 +184,14 @@ def _decide(components: list[Component], signs, volume: bool) -> None:
 class CollectiveReading:
     """E = Σ_i (s_i Q_i² + l_i Q_i) + constant of the collective variables of one force.
 
-    Of each variable: its kind, components and the signs of their volumes; form has shape
-    (num_trials, num_variables, 2), constant (num_trials,).
+    globals: the global parameters that it depends on, with their defaults. Of each variable: its
+    kind, components and the signs of their volumes; form has shape (num_trials, num_variables, 2),
+    constant (num_trials,).
     """
 
     force: mm.Force
     expression: Expression
+    globals: dict[str, float]
     inner: list[Bonds]
     kinds: list[str]
     components: list[list[Component]]
@@ -201,7 +204,7 @@ class CollectiveReading:
         parts = [bonds.forces(positions) for bonds in self.inner]
         names = [self.force.getCollectiveVariableName(i) for i in range(len(parts))]
         variables = {name: part[0] for name, part in zip(names, parts, strict=True)}
-        variables |= global_parameters(self.force)
+        variables |= self.globals
         energy, slopes = self.expression.gradient(variables)
         forces, magnitudes = np.zeros_like(positions), np.zeros_like(positions)
         magnitude = abs(float(energy))
@@ -214,9 +217,19 @@ class CollectiveReading:
 
 
 def read_collective(
-    force: mm.Force, surfaces: Surfaces, trials: list[dict[str, float]]
+    force: mm.Force,
+    surfaces: Surfaces,
+    trials: list[dict[str, float]],
+    fixed: dict[str, Fixed],
 ) -> CollectiveReading:
     """Read a CustomCVForce as a quadratic function of areas and volumes.
+
+    Parameters
+    ----------
+    force, surfaces, trials
+        As everywhere.
+    fixed : dict
+        What its global parameters are that do not vary by themselves, and those of its variables.
 
     Raises
     ------
@@ -226,17 +239,19 @@ def read_collective(
     num = force.getNumCollectiveVariables()
     if force.getNumTabulatedFunctions():
         raise Unreadable("its expression has tabulated functions")
+    names = [force.getCollectiveVariableName(i) for i in range(num)]
+    outer = {name: f for name, f in fixed.items() if name not in names}
     try:
-        expression = Expression(force.getEnergyFunction())
+        expression = Expression(force.getEnergyFunction(), given=formulas(outer))
     except ExpressionError as reason:
         raise Unreadable(f"its expression is not understood: {reason}") from None
-    names = [force.getCollectiveVariableName(i) for i in range(num)]
-    unknown = expression.variables - set(names) - set(global_parameters(force))
+    globals_ = remaining(global_parameters(force), outer)
+    unknown = expression.variables - set(names) - set(globals_)
     if unknown or num == 0:
         raise Unreadable("its expression has unknown variables")
     inner, kinds, components, signs, factors = [], [], [], [], []
     for i, name in enumerate(names):
-        bonds = read_bonds(force.getCollectiveVariable(i))
+        bonds = read_bonds(list_bonds(force.getCollectiveVariable(i)), fixed)
         kind, parts, sign, factor = _sum(name, bonds, surfaces)
         inner.append(bonds)
         kinds.append(kind)
@@ -260,9 +275,11 @@ def read_collective(
         form[t, :, 0] = found[:num] * np.square(factors)
         form[t, :, 1] = found[num : 2 * num] * factors
         constant[t] = found[-1]
-    if expression.untested_branches():
+    if expression.untested_branches(globals_):
         raise Unreadable("its expression has branches that were never taken")
-    return CollectiveReading(force, expression, inner, kinds, components, signs, form, constant)
+    return CollectiveReading(
+        force, expression, globals_, inner, kinds, components, signs, form, constant
+    )
 
 
 def _sum(

@@ -8,9 +8,21 @@ from math import pi
 import numpy as np
 import openmm as mm
 
+from ... import forces as our_forces
 from ..expressions import Expression, ExpressionError
+from .fixed import Fixed, formulas, remaining
 
-__all__ = ["Bonds", "Unreadable", "global_parameters", "read_bonds", "trials_of"]
+__all__ = [
+    "BondList",
+    "Bonds",
+    "Unreadable",
+    "all_parameters",
+    "derivatives",
+    "global_parameters",
+    "list_bonds",
+    "read_bonds",
+    "trials_of",
+]
 
 # OpenMM has no constant for π, so expressions get it as a global parameter.
 _PI_ERROR = 1e-12
@@ -111,6 +123,35 @@ def global_parameters(force: mm.Force) -> dict[str, float]:
     }
 
 
+def all_parameters(force: mm.Force) -> dict[str, float]:
+    """The parameters that a force gives the Context, with their defaults.
+
+    Those of a CustomCVForce's variables are among them, and those of our forces.
+    """
+    result = global_parameters(force)
+    if isinstance(force, mm.CustomCVForce):
+        for index in range(force.getNumCollectiveVariables()):
+            result = all_parameters(force.getCollectiveVariable(index)) | result
+    for cls in our_forces.MembraneForce.__subclasses__():
+        if cls.isinstance(force):
+            ours = cls.cast(force)
+            for index in range(ours.getNumParameters()):
+                key = ours.getParameterName(index)
+                if ours.getContextParameter(key):
+                    result[ours.getContextParameter(key)] = ours.getParameterValue(key)
+    return result
+
+
+def derivatives(force: mm.Force) -> list[str]:
+    """The parameters by which a Custom force's energy is to be differentiated."""
+    if not hasattr(force, "getNumEnergyParameterDerivatives"):
+        return []
+    return [
+        force.getEnergyParameterDerivativeName(i)
+        for i in range(force.getNumEnergyParameterDerivatives())
+    ]
+
+
 def is_pi(value: float) -> bool:
     """Whether a global parameter is there for lack of a constant."""
     return abs(value - pi) <= _PI_ERROR
@@ -138,13 +179,28 @@ def trials_of(system: mm.System) -> list[dict[str, float]]:
     return trials
 
 
-def read_bonds(force: mm.Force) -> Bonds:
+@dataclass
+class BondList:
+    """The bonds of a force as OpenMM has them, which are long to ask for and read but once.
+
+    particles: shape (num_bonds, num_points); names: of the per-bond values, shape
+    (num_bonds, num_names); points: names that stand for a function of the particles.
+    """
+
+    force: mm.Force
+    particles: np.ndarray
+    names: tuple[str, ...]
+    values: np.ndarray
+    points: dict[str, str]
+
+
+def list_bonds(force: mm.Force) -> BondList:
     """The bonds of a force that OpenMM evaluates from an expression, bond by bond.
 
     Raises
     ------
     Unreadable
-        If it is of another class, periodic, empty, or has an expression that is not understood.
+        If it is of another class, periodic, empty, or has tabulated functions.
     """
     if isinstance(force, mm.CustomCompoundBondForce):
         num_points, points = force.getNumParticlesPerBond(), {}
@@ -164,11 +220,6 @@ def read_bonds(force: mm.Force) -> Bonds:
         raise Unreadable("it has no bonds")
     if getattr(force, "getNumTabulatedFunctions", lambda: 0)():
         raise Unreadable("its expression has tabulated functions")
-    try:
-        expression = Expression(force.getEnergyFunction(), num_points, points)
-    except ExpressionError as reason:
-        raise Unreadable(f"its expression is not understood: {reason}") from None
-
     names = tuple(
         getattr(force, f"getPer{kind}ParameterName")(i)
         for i in range(getattr(force, f"getNumPer{kind}Parameters")())
@@ -177,14 +228,39 @@ def read_bonds(force: mm.Force) -> Bonds:
     values = np.empty((count, len(names)))
     for index in range(count):
         particles[index], values[index] = read(index)
+    return BondList(force, particles, names, values, points)
+
+
+def read_bonds(bonds: BondList, fixed: dict[str, Fixed]) -> Bonds:
+    """What the energies of bonds depend on.
+
+    Parameters
+    ----------
+    bonds : BondList
+        Of a force.
+    fixed : dict
+        What its global parameters are that do not vary by themselves.
+
+    Raises
+    ------
+    Unreadable
+        If the expression is not understood.
+    """
+    force, num_points = bonds.force, bonds.particles.shape[1]
+    coordinates = {f"{axis}{i + 1}" for axis in "xyz" for i in range(num_points)}
+    # Where names are given twice these go before global parameters.
+    fixed = {n: f for n, f in fixed.items() if n not in coordinates and n not in bonds.names}
+    try:
+        given = {**formulas(fixed), **bonds.points}
+        expression = Expression(force.getEnergyFunction(), num_points, given)
+    except ExpressionError as reason:
+        raise Unreadable(f"its expression is not understood: {reason}") from None
     # A parameter that the energy does not depend on would only make the bonds look different.
-    used = [i for i, name in enumerate(names) if name in expression.variables]
-    rows, row_of = np.unique(values[:, used], axis=0, return_inverse=True)
-    names = tuple(names[i] for i in used)
-    known = {f"{axis}{i + 1}" for axis in "xyz" for i in range(num_points)}
-    unknown = expression.variables - known - set(names) - set(global_parameters(force))
+    used = [i for i, name in enumerate(bonds.names) if name in expression.variables]
+    rows, row_of = np.unique(bonds.values[:, used], axis=0, return_inverse=True)
+    names = tuple(bonds.names[i] for i in used)
+    globals_ = remaining(global_parameters(force), fixed)
+    unknown = expression.variables - coordinates - set(names) - set(globals_)
     if unknown:
         raise Unreadable(f"its expression has the unknown variable {min(unknown)!r}")
-    return Bonds(
-        force, expression, particles, names, rows, row_of.ravel(), global_parameters(force)
-    )
+    return Bonds(force, expression, bonds.particles, names, rows, row_of.ravel(), globals_)

@@ -67,6 +67,7 @@ struct HelfrichFlipState {
 int64_t Helfrich_lastError(char* buffer, int64_t size);
 void helfrich_setLastError(const char* message);
 const char* Helfrich_openmmVersion();
+void Helfrich_register();
 int Helfrich_Potential_find(const char* potential, int* index);
 int Helfrich_Potential_parameter(const char* potential, int index, HelfrichParameterInfo* info);
 int Helfrich_Potential_form(const char* potential, int index, const char** what, const char** name);
@@ -97,6 +98,11 @@ int64_t Helfrich_Membrane_order(const HelfrichMembrane* membrane, uint32_t* orde
 int Helfrich_Membrane_restore(const char* subject, HelfrichMembrane* membrane, const int* corners,
                               const uint32_t* order, int64_t flips);
 double Helfrich_Membrane_fingerprint(const HelfrichMembrane* membrane, const int* corners);
+/**
+ * Whether an OpenMM::System under an OpenMM::Integrator is one for the platform Helfrich (PlatformChoice.h): 0, or
+ * else 1, and the last error says why not.
+ */
+int Helfrich_Platform_check(const void* system, const void* integrator);
 /** `force` is the address of an OpenMM::Force. */
 void* Helfrich_createImpl(const void* force);
 }

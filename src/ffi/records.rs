@@ -1,0 +1,40 @@
+//! The structures that cross the border to C++.
+//!
+//! build.rs includes this file, and has the C++ compiler compare those of `Core.h` and `HelfrichDynamics.h` with their layout.
+
+use crate::potentials::MAX_PARAMETERS;
+use std::ffi::{c_char, c_int};
+
+/// A scalar of a potential, for C++ and Python: `name` lives as long as the library, the unit is
+/// (kJ/mol)^`energy` nm^`length`, and a default of NaN says that the user must give a value.
+#[repr(C)]
+pub struct ParameterInfo {
+    pub(super) name: *const c_char,
+    pub(super) energy: c_int,
+    pub(super) length: c_int,
+    pub(super) default_value: f64,
+    /// 0: only as a scalar; 1: also for each vertex; 2: also for each triangle.
+    pub(super) per: c_int,
+}
+
+/// One term of an evaluation, as C++ hands it over.
+#[repr(C)]
+pub struct TermInput {
+    pub(super) potential: c_int,
+    pub(super) form: c_int,
+    pub(super) switches: u32,
+    pub(super) wants_derivatives: c_int,
+    pub(super) values: [f64; MAX_PARAMETERS],
+    /// Values of single elements, null where there are none.
+    pub(super) fields: [*const f64; MAX_PARAMETERS],
+    pub(super) field_lengths: [i64; MAX_PARAMETERS],
+}
+
+/// The arrays of a time step; three values for each particle.
+#[repr(C)]
+pub struct ParticleArrays {
+    pub(super) num_particles: i64,
+    pub(super) positions: *mut f64,
+    pub(super) velocities: *mut f64,
+    pub(super) forces: *const f64,
+}

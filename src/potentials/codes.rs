@@ -1,0 +1,90 @@
+//! The numbers by which other languages know potentials: bits, variants and switches, and what they read.
+//!
+//! Shaders and C++ never state them on their own. build.rs includes this file: it writes the numbers as WGSL into
+//! the shaders, and has the C++ compiler compare the enumerations of the headers with the lists here.
+
+use bitflags::{Flags, bitflags};
+use std::ffi::CStr;
+
+/// The most scalars that a potential can have.
+pub const MAX_PARAMETERS: usize = 4;
+
+bitflags! {
+    /// On which elements of the mesh a potential adds energy, and what it wants to know of them
+    /// beyond areas, lengths and volume.
+    #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+    pub struct Needs: u32 {
+        /// Adds energy of the total area and volume.
+        const TOTALS = 1;
+        /// Adds energy of each triangle's area and sides.
+        const TRIANGLES = 2;
+        /// Adds energy of each edge's dihedral angle.
+        const EDGES = 4;
+        /// Adds energy of each vertex' area and curvature.
+        const VERTICES = 8;
+        /// Wants Jülicher's curvature of the vertices.
+        const CURVATURES = 16;
+        /// Wants the Voronoi areas of the vertices.
+        const VECTORS = 32;
+        /// Wants the normals of the vertices, too.
+        const NORMALS = 64;
+        /// Wants the curvature vectors of the vertices, too.
+        const CURVATURE_VECTORS = 128;
+    }
+}
+
+const _: () = assert!(
+    Needs::all().bits().count_ones() as usize == <Needs as Flags>::FLAGS.len(),
+    "each of Needs is one bit, which no other has"
+);
+
+/// An energy and its derivatives with respect to the potential's scalars. The C++ shim reads it.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Contribution {
+    /// kJ/mol.
+    pub energy: f64,
+    /// ∂E/∂(parameter), in the order of `Potential::parameters`.
+    pub by_parameter: [f64; MAX_PARAMETERS],
+}
+
+/// An enumeration with its variants in a list, and their names as the user writes them.
+macro_rules! variants {
+    ($(#[$doc:meta])* $name:ident { $($variant:ident),* $(,)? }) => {
+        $(#[$doc])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum $name {
+            $(#[doc = concat!("`", stringify!($variant), "`")] $variant),*
+        }
+
+        impl $name {
+            /// In the order of their numbers.
+            pub const ALL: &[Self] = &[$(Self::$variant),*];
+            /// In the same order.
+            pub const NAMES: &[&CStr] = &[$(c_name(concat!(stringify!($variant), "\0"))),*];
+        }
+    };
+}
+
+const fn c_name(name: &str) -> &CStr {
+    match CStr::from_bytes_with_nul(name.as_bytes()) {
+        Ok(name) => name,
+        Err(_) => panic!("a name ends with its only NUL"),
+    }
+}
+
+variants! {
+    /// The schemes of `BendingForce`; `bending.rs` has their formulas.
+    Scheme { Julicher, GompperKroll, GompperKrollBarycentric, JulicherVoronoi, Espriu }
+}
+
+variants! {
+    /// The forms of `DihedralForce`; `dihedral.rs` has their formulas.
+    Form { Quartic, Cosine, Exp, SmoothExp, SmoothExp46 }
+}
+
+/// The switches of `BendingForce`; the k-th is bit k.
+pub const BENDING_SWITCHES: &[&CStr] = &[c"unsignedSpontaneousCurvature"];
+
+/// The first of them: the linear term takes |c|.
+pub const UNSIGNED: u32 = 1 << 0;

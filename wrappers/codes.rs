@@ -1,0 +1,85 @@
+//! Part of build.rs: C++ that compares the headers with `src/potentials/codes.rs` and `src/ffi/records.rs`, so that the
+//! build stops where they differ.
+
+use crate::codes::{Contribution, Form, MAX_PARAMETERS, Scheme};
+use crate::records::{ParameterInfo, ParticleArrays, TermInput};
+use std::ffi::CStr;
+use std::mem::offset_of;
+
+/// Assertions on the size of a structure and on where its fields are.
+macro_rules! structure {
+    ($rust:ident, $cpp:literal, $($field:ident)*) => {
+        structure($cpp, size_of::<$rust>(), &[$((stringify!($field), offset_of!($rust, $field))),*])
+    };
+}
+
+/// A source that compiles only if the enumerations of the headers have the numbers of Rust's and no others, and the
+/// structures the same layout.
+pub fn comparison() -> String {
+    let mut text = "#include <OpenMMHelfrich.h>\n#include <OpenMMHelfrichCWrapper.h>\n\
+                    #include <HelfrichDynamics.h>\n#include <cstddef>\n"
+        .to_owned();
+    text += &format!(
+        "static_assert(HELFRICH_MAX_PARAMETERS == {MAX_PARAMETERS}, \
+         \"MAX_PARAMETERS is not what src/potentials/codes.rs says\");\n"
+    );
+    for (class, kind, names) in
+        [("BendingForce", "Scheme", Scheme::NAMES), ("DihedralForce", "Form", Form::NAMES)]
+    {
+        let in_cpp = format!("HelfrichPlugin::{class}::");
+        text += &enumeration(&format!("{in_cpp}{kind}"), &in_cpp, names);
+        let in_c = format!("Helfrich_{class}_");
+        text += &enumeration(&format!("{in_c}{kind}"), &in_c, names);
+    }
+    // Pointers of another machine may have another size.
+    let width = std::env::var("CARGO_CFG_TARGET_POINTER_WIDTH").unwrap_or_default();
+    if width == usize::BITS.to_string() {
+        text += &structure!(ParameterInfo, "HelfrichParameterInfo", name energy length default_value per);
+        text += &structure!(Contribution, "HelfrichContribution", energy by_parameter);
+        text += &structure!(
+            ParticleArrays,
+            "HelfrichParticleArrays",
+            num_particles positions velocities forces
+        );
+        text += &structure!(
+            TermInput,
+            "HelfrichTerm",
+            potential form switches wants_derivatives values fields field_lengths
+        );
+    }
+    text
+}
+
+fn structure(cpp: &str, size: usize, fields: &[(&str, usize)]) -> String {
+    let differs = "has another layout in Rust";
+    let mut text = format!("static_assert(sizeof({cpp}) == {size}, \"{cpp} {differs}\");\n");
+    for (field, offset) in fields {
+        let mut words = field.split('_');
+        let mut name = words.next().unwrap_or_default().to_owned();
+        for word in words {
+            name += &word[..1].to_uppercase();
+            name += &word[1..];
+        }
+        text += &format!(
+            "static_assert(offsetof({cpp}, {name}) == {offset}, \"{cpp}::{name} {differs}\");\n"
+        );
+    }
+    text
+}
+
+/// Values by assertions; that there are no more by a switch, of which the compiler says what it lacks.
+fn enumeration(kind: &str, prefix: &str, names: &[&CStr]) -> String {
+    let (mut assertions, mut cases) = (String::new(), String::new());
+    for (number, name) in names.iter().enumerate() {
+        let name = name.to_string_lossy();
+        assertions += &format!(
+            "static_assert((int) {prefix}{name} == {number}, \
+             \"{prefix}{name} is not what src/potentials/codes.rs says\");\n"
+        );
+        cases += &format!("        case {prefix}{name}: return true;\n");
+    }
+    format!(
+        "{assertions}[[maybe_unused]] static bool isKnown({kind} value) {{\n    switch (value) {{\n{cases}    }}\n    \
+         return false;\n}}\n"
+    )
+}
