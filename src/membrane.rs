@@ -26,6 +26,7 @@ pub struct Membrane {
     order: Vec<u32>,
     /// How many flips there have been since the order was made.
     flips_of_order: u64,
+    initial_fingerprint: u64,
     evaluator: ChosenEvaluator,
     local: LocalEnergy,
     num_particles: usize,
@@ -55,6 +56,7 @@ impl Membrane {
         let (evaluator, local) = (ChosenEvaluator::new(), LocalEnergy::default());
         ALIVE.fetch_add(1, Ordering::Relaxed);
         Ok(Self {
+            initial_fingerprint: mesh.fingerprint(),
             mesh,
             order,
             flips_of_order: 0,
@@ -73,6 +75,13 @@ impl Membrane {
     /// The mesh as it is now.
     pub fn mesh(&self) -> &Triangulation {
         &self.mesh
+    }
+
+    /// A whole number below 2⁵³, as a double, that tells the present triangles from any others: 0 for those that the
+    /// membrane began with.
+    pub fn fingerprint(&self) -> f64 {
+        let difference = self.mesh.fingerprint().wrapping_sub(self.initial_fingerprint);
+        if difference == 0 { 0.0 } else { ((difference >> 11) | 1) as f64 }
     }
 
     /// What there is to remember of the present connectivity.
@@ -245,22 +254,6 @@ impl Membrane {
         }
         Ok(())
     }
-}
-
-/// A whole number below 2⁵³, as a double, that tells triangles from any others: 0 if they are `initial`.
-pub fn fingerprint(mesh: &Triangulation, initial: &[[u32; 3]]) -> f64 {
-    let now = (0..mesh.triangles().len()).map(|triangle| mesh.particles_of(triangle));
-    if now.clone().eq(initial.iter().copied()) {
-        return 0.0;
-    }
-    // FNV-1a over whole words, then a mixing step, so that all bits depend on all triangles.
-    let mut hash = 0xcbf2_9ce4_8422_2325u64;
-    for particle in now.flatten() {
-        hash = (hash ^ u64::from(particle)).wrapping_mul(0x0000_0100_0000_01b3);
-        hash ^= hash >> 29;
-    }
-    hash = (hash ^ hash >> 32).wrapping_mul(0xd6e8_feb8_6659_fd93);
-    ((hash >> 11) | 1) as f64
 }
 
 impl Drop for Membrane {

@@ -143,16 +143,11 @@ pub unsafe extern "C" fn Helfrich_Membrane_restore(
     })
 }
 
-/// A number below 2⁵³ that tells the present triangles from any others: 0 if they are `corners`.
+/// A whole number below 2⁵³ that tells the present triangles from any others: 0 for those that the membrane began with.
 ///
 /// # Safety
-/// `membrane` must be alive; `corners` must hold three values for each of its triangles.
+/// `membrane` must be alive.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn Helfrich_Membrane_fingerprint(
-    membrane: *const Membrane,
-    corners: *const c_int,
-) -> f64 {
-    let mesh = unsafe { &*membrane }.mesh();
-    let initial = unsafe { slice(corners.cast::<[u32; 3]>(), mesh.triangles().len()) };
-    crate::membrane::fingerprint(mesh, initial)
+pub unsafe extern "C" fn Helfrich_Membrane_fingerprint(membrane: *const Membrane) -> f64 {
+    unsafe { &*membrane }.fingerprint()
 }

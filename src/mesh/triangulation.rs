@@ -23,6 +23,23 @@ pub struct Triangulation {
     degrees: Vec<u32>,
     /// A half-edge that begins at each vertex.
     leaving: Vec<u32>,
+    /// The sum of numbers that look random, one for each triangle with its corners; so it tells any two sets of
+    /// triangles apart, and a flip changes two of its terms.
+    fingerprint: u64,
+}
+
+/// A number that looks random, of a triangle's index and corners (the mixing of SplitMix64,
+/// doi:10.1145/2660193.2660195).
+#[inline]
+fn mixed(triangle: usize, corners: &[u32; 3]) -> u64 {
+    let mut mixed = triangle as u64;
+    for &corner in corners {
+        mixed = (mixed ^ u64::from(corner)).wrapping_add(0x9e37_79b9_7f4a_7c15);
+        mixed = (mixed ^ mixed >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+        mixed ^= mixed >> 31;
+    }
+    mixed
 }
 
 /// Which way the edge of a quadrilateral turns in a flip. Each undoes the other.
@@ -70,7 +87,7 @@ pub fn next(half: u32) -> u32 {
 /// The half-edge before one in its triangle.
 #[inline(always)]
 pub fn previous(half: u32) -> u32 {
-    if half % 3 == 0 { half + 2 } else { half - 1 }
+    if half.is_multiple_of(3) { half + 2 } else { half - 1 }
 }
 
 impl Triangulation {
@@ -87,7 +104,9 @@ impl Triangulation {
             twins.as_flattened_mut()[b as usize] = a;
         }
         let vertices = 0..topology.num_vertices();
+        let terms = topology.triangles.iter().enumerate().map(|(t, corners)| mixed(t, corners));
         Self {
+            fingerprint: terms.fold(0, u64::wrapping_add),
             particles: topology.particles.clone(),
             triangles: topology.triangles.clone(),
             twins,
@@ -140,6 +159,11 @@ impl Triangulation {
     /// How many edges end at each vertex.
     pub fn degrees(&self) -> &[u32] {
         &self.degrees
+    }
+
+    /// A number that tells these triangles from any others of the same vertices.
+    pub fn fingerprint(&self) -> u64 {
+        self.fingerprint
     }
 
     /// The user's indices of the corners of a triangle.
@@ -246,10 +270,19 @@ impl Triangulation {
             Turn::Right => ([previous(a), previous(b)], [a, b]),
         };
         let outside = lost.map(|half| self.twin(half));
+        let changing = quad.triangles();
+        for triangle in changing {
+            let term = mixed(triangle, &self.triangles[triangle]);
+            self.fingerprint = self.fingerprint.wrapping_sub(term);
+        }
         let corners = self.triangles.as_flattened_mut();
         let left_behind = taking.map(|half| corners[half as usize]);
         corners[taking[0] as usize] = l;
         corners[taking[1] as usize] = k;
+        for triangle in changing {
+            let term = mixed(triangle, &self.triangles[triangle]);
+            self.fingerprint = self.fingerprint.wrapping_add(term);
+        }
         // Where ij was is now the side that the other triangle has given, and kl is where that side has been.
         let twins = self.twins.as_flattened_mut();
         for (one, other) in [(lost[0], lost[1]), (b, outside[0]), (a, outside[1])] {
@@ -330,6 +363,7 @@ mod tests {
             let expected = rebuilt(&mesh);
             assert_eq!(mesh.twins(), expected.twins());
             assert_eq!(mesh.degrees(), expected.degrees());
+            assert_eq!(mesh.fingerprint(), expected.fingerprint());
             for vertex in 0..12 {
                 mesh.ring(vertex, &mut ring);
                 assert!(ring.iter().all(|&half| mesh.origin(half) == vertex));
@@ -354,6 +388,7 @@ mod tests {
             for (turn, back) in [(Turn::Left, Turn::Right), (Turn::Right, Turn::Left)] {
                 let mut moved = mesh.clone();
                 moved.flip(&quad, turn);
+                assert_ne!(moved.fingerprint(), mesh.fingerprint());
                 let reverse = moved.quad(Triangulation::flipped(half, turn));
                 let mut ends = [reverse.vertices[0], reverse.vertices[1]];
                 ends.sort_unstable();
@@ -364,6 +399,7 @@ mod tests {
                 assert_eq!(moved.triangles(), mesh.triangles());
                 assert_eq!(moved.twins(), mesh.twins());
                 assert_eq!(moved.degrees(), mesh.degrees());
+                assert_eq!(moved.fingerprint(), mesh.fingerprint());
                 // From the other side the move is the same.
                 let (mut one, mut other) = (mesh.clone(), mesh.clone());
                 one.flip(&quad, turn);

@@ -221,16 +221,23 @@ class TestRules:
         assert accepted[1] > 3 * accepted[2]
 
     def test_energies_of_groups_are_as_without(self):
-        context, _ = flowing()
-        context.getIntegrator().step(10)
-        whole, _ = measure(context)
-        system = context.getSystem()
-        for number, force in enumerate(system.getForces()):
+        mover = mover_of(start())
+        forces = [*forces_of(start()), mover]
+        for number, force in enumerate(forces):
             force.setForceGroup(number)
-        parts = [measure(context, {number})[0] for number in range(system.getNumForces())]
+        context = REFERENCE.context(system_of(*forces), langevin())
+        context.setPositions(start().vertices)
+        context.getIntegrator().step(10)
+        assert mover.getStatistics(context)["accepted"] > 20
+        whole, _ = measure(context)
+        parts = [measure(context, {number})[0] for number in range(len(forces))]
         assert sum(parts) == pytest.approx(whole, rel=1e-12)
         assert parts[-1] == 0
-        assert not measure(context, {system.getNumForces() - 1})[1].any()
+        assert not measure(context, {len(forces) - 1})[1].any()
+
+    def test_the_platform_is_chosen_as_without(self):
+        context = mm.Context(system_of(mover_of(start()), *forces_of(start())), langevin())
+        assert context.getPlatform().getName() == "Helfrich"
 
     def test_hot_and_cold(self):
         accepted = {}

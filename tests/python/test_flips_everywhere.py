@@ -141,10 +141,10 @@ class TestToml:
             rows = list(csv.DictReader(file))
         count = helfrich.Mesh.random_sphere(132, 400).num_triangles
         triangles = analysis.read_triangles(tmp_path / "run/run.triangles", 2 * count)
-        assert len(triangles) == len(rows) == 11
+        assert len(triangles) == len(rows) == 5
         changed = [len(np.argwhere((frame != triangles[0]).any(axis=1))) for frame in triangles]
         assert changed[0] == 0 and min(changed[1:]) > 0
-        for number in range(11):
+        for number in range(5):
             for label, mine in (("fluid", triangles[:, :count]), ("solid", triangles[:, count:])):
                 mesh = helfrich.Mesh.read(tmp_path / f"run/frames/run_{label}_{number:06d}.vtk")
                 volume = float(rows[number][f"volume {label} (nm^3)"])
@@ -173,7 +173,7 @@ class TestToml:
     def test_mistakes_have_their_line(self, tmp_path, flips, message):
         with pytest.raises(vcm.ConfigError, match=message) as caught:
             helfrich.config.read(toml(tmp_path, flips))
-        assert "run.toml:11" in str(caught.value)
+        assert "run.toml:12" in str(caught.value)
 
 
 class TestVcm:

@@ -406,7 +406,7 @@ fn small_terms() -> Vec<Term<'static>> {
 
 #[test]
 fn visited_frequencies_are_boltzmann_weights_for_each_term() {
-    for (n, term) in small_terms(false).iter().enumerate() {
+    for (n, term) in small_terms().iter().enumerate() {
         visits_are_boltzmann(5, &[*term], 20_000, 60, 0.5, 10 + n as u32);
         visits_are_boltzmann(6, &[*term], 20_000, 100, 0.5, 30 + n as u32);
     }

@@ -117,8 +117,9 @@ string nameOf(const Force& force) {
 }
 
 string Tally::add(const Force& force) {
-    if (auto* surface = dynamic_cast<const TriangulatedForce*>(&force)) {
-        for (int particle : surface->getTriangles())
+    // What flips bonds costs less than the evaluations of the membrane.
+    if (auto* membrane = dynamic_cast<const TriangulatedForce*>(&force)) {
+        for (int particle : membrane->getTriangles())
             // The Context will say so if there is no such particle.
             if (particle >= 0 && particle < (int) isVertex.size())
                 isVertex[particle] = true;

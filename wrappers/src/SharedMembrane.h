@@ -85,7 +85,7 @@ public:
     void setTriangles(const std::string& subject, OpenMM::ContextImpl& context, const std::vector<int>& corners);
     /** A number that tells the present triangles from others, 0 for those of the System. */
     double getFingerprint() const {
-        return Helfrich_Membrane_fingerprint(core, triangles.data());
+        return Helfrich_Membrane_fingerprint(core);
     }
     /** Whether something has to be saved to go on with the same bits. */
     bool needsSaving() const;

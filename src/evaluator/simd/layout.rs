@@ -206,7 +206,8 @@ impl Layout {
             self.neighbours_before.push(neighbours_before);
             self.steps.push(self.neighbours.len() as u32);
             self.longest = self.longest.max(longest + 1);
-            if (block + 1) % (TILE / BLOCK) == 0 || (block + 1) * BLOCK >= self.num_vertices {
+            if (block + 1).is_multiple_of(TILE / BLOCK) || (block + 1) * BLOCK >= self.num_vertices
+            {
                 // All triangles at this tile have a number now, and those of earlier tiles.
                 self.frontier.push(met as u32);
             }

@@ -85,11 +85,6 @@ void Helfrich_Membrane_setThreads(HelfrichMembrane* membrane, int threads);
 int Helfrich_Membrane_evaluate(const char* subject, HelfrichMembrane* membrane, const HelfrichTerm* terms,
                                int64_t numTerms, int64_t numParticles, const double* positions,
                                HelfrichContribution* contributions, double* forces);
-/**
- * Whether an OpenMM::System under an OpenMM::Integrator is one for the platform Helfrich (PlatformChoice.h): 0, or
- * else 1, and the last error says why not.
- */
-int Helfrich_Platform_check(const void* system, const void* integrator);
 int Helfrich_Membrane_checkFlips(const char* subject, const HelfrichMembrane* membrane, const HelfrichFlipRules* rules);
 int Helfrich_Membrane_flip(const char* subject, HelfrichMembrane* membrane, const HelfrichTerm* terms, int64_t numTerms,
                            int64_t numParticles, const double* positions, const HelfrichFlipRules* rules,
@@ -102,7 +97,12 @@ int Helfrich_Membrane_setTriangles(const char* subject, HelfrichMembrane* membra
 int64_t Helfrich_Membrane_order(const HelfrichMembrane* membrane, uint32_t* order);
 int Helfrich_Membrane_restore(const char* subject, HelfrichMembrane* membrane, const int* corners,
                               const uint32_t* order, int64_t flips);
-double Helfrich_Membrane_fingerprint(const HelfrichMembrane* membrane, const int* corners);
+double Helfrich_Membrane_fingerprint(const HelfrichMembrane* membrane);
+/**
+ * Whether an OpenMM::System under an OpenMM::Integrator is one for the platform Helfrich (PlatformChoice.h): 0, or
+ * else 1, and the last error says why not.
+ */
+int Helfrich_Platform_check(const void* system, const void* integrator);
 /** `force` is the address of an OpenMM::Force. */
 void* Helfrich_createImpl(const void* force);
 }
