@@ -52,7 +52,7 @@ fn philox(counter: [u64; 4], key: [u32; 2]) -> [u64; 4] {
 }
 
 /// The 128 random bits that belong to a number and a key.
-#[inline]
+#[inline(always)]
 pub fn bits(key: [u32; 2], number: u64) -> [u64; 2] {
     let words = philox([number, number >> 32, 0, 0], key);
     [words[0] | words[1] << 32, words[2] | words[3] << 32]

@@ -12,6 +12,7 @@
 //! Surfaces, and G. Gompper, D. M. Kroll, doi:10.1088/0953-8984/9/42/001.
 
 use super::local::LocalEnergy;
+use crate::dynamics::instructions::{Arithmetic, Kernel, run};
 use crate::dynamics::random;
 use crate::error::{Error, Result};
 use crate::mesh::Triangulation;
@@ -75,14 +76,22 @@ pub struct Draw {
 
 impl FlipState {
     /// The random numbers of the next attempts, for so many half-edges.
-    fn draw(&self, half_edges: usize, draws: &mut [Draw]) {
-        for (place, draw) in draws.iter_mut().enumerate() {
-            let [first, second] = random::bits(self.key, self.attempts + place as u64);
-            // The upper half of the product is uniform below the factor, to 1 part in 2³² or less.
-            let half = ((u128::from(first) * half_edges as u128) >> 64) as u32;
-            let uniform = (second >> 11) as f64 / (1u64 << 53) as f64;
-            *draw = Draw { half, uniform };
+    fn draw(&self, half_edges: usize, draws: &mut [Draw; BLOCK]) {
+        struct Fill<'a>(&'a FlipState, u64, &'a mut [Draw; BLOCK]);
+        impl Kernel for Fill<'_> {
+            #[inline(always)]
+            fn execute<A: Arithmetic>(self) {
+                let Self(state, half_edges, draws) = self;
+                for (place, draw) in draws.iter_mut().enumerate() {
+                    let [first, second] = random::bits(state.key, state.attempts + place as u64);
+                    // The upper half of the product of 32 random bits and a number below 2³² is uniform below the
+                    // latter, to one part in 2³² / (number of half-edges).
+                    draw.half = ((first >> 32) * half_edges >> 32) as u32;
+                    draw.uniform = (second >> 11) as f64 / (1u64 << 53) as f64;
+                }
+            }
         }
+        run(Fill(self, half_edges as u64, draws));
     }
 }
 
@@ -141,7 +150,7 @@ pub fn attempt(
     let mut left = attempts;
     while left > 0 {
         let count = left.min(BLOCK as u64) as usize;
-        state.draw(half_edges, &mut draws[..count]);
+        state.draw(half_edges, &mut draws);
         for (n, draw) in draws[..count].iter().enumerate() {
             // What later attempts will read is on its way meanwhile; wherever other flips have changed what they
             // will read, this is for nothing, but no more.
@@ -195,7 +204,10 @@ fn one(
     let allowed = if rules.demon != 0 {
         difference <= state.demon_energy
     } else {
-        difference <= 0.0 || draw.uniform < (-difference / rules.temperature).exp()
+        // Random numbers have steps of 2⁻⁵³ = exp(−36.7); further away nothing is accepted, and libraries take their
+        // time over exponentials that underflow.
+        let exponent = -difference / rules.temperature;
+        difference <= 0.0 || exponent > -40.0 && draw.uniform < exponent.exp()
     };
     if !allowed {
         state.by_energy += 1;
