@@ -51,6 +51,25 @@ def test_tiny_run(tmp_path):
     assert "| 5 steps " in text
 
 
+def test_platform_choice(tmp_path, monkeypatch):
+    """Both tables, of which docs/platforms.md has a run; what is chosen is what it says."""
+    monkeypatch.delenv("OPENMM_DEFAULT_PLATFORM", raising=False)
+    output = tmp_path / "platforms.md"
+    command = [sys.executable, BENCHES / "platform_choice.py", "--quick", "--output", output]
+    subprocess.run(list(map(str, command)), capture_output=True, text=True, check=True, timeout=600)
+    rows = [line.strip("|").split("|") for line in output.read_text().splitlines() if "|" in line]
+    rows = [[cell.strip() for cell in row] for row in rows]
+    cost = {row[0]: [float(cell) for cell in row[1:]] for row in rows if "thread" in row[0]}
+    assert all(number > 0 for row in cost.values() for number in row)
+    now = {tuple(row[:2]): row[4] for row in rows if row[1] in ("`openmm.Context`", "this package")}
+    assert len(now) == 6
+    for (system, door), platform in now.items():
+        if "repel" not in system:
+            assert platform == "Helfrich"
+        else:
+            assert (platform == "CPU") == (door == "this package")
+
+
 def rows_of(table):
     """What is asked, as (measured, verdict)."""
     cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in table[2:]]

@@ -367,11 +367,13 @@ class TestRun:
         assert float(rows[-1]["potential (kJ/mol)"]) == pytest.approx(energy, rel=1e-9)
         assert float(rows[-1]["area first (nm^2)"]) == pytest.approx(last[0].area, rel=1e-10)
 
-    def test_in_two_parts_as_in_one(self, write, tmp_path):
-        path = write(TWO)
+    @pytest.mark.parametrize("platform", ["Reference", "Helfrich"])
+    def test_in_two_parts_as_in_one(self, write, tmp_path, platform):
+        path = write(TWO.replace("reference", platform))
         for folder, ends in (("one", [100]), ("two", [37, 100])):
             for number, end in enumerate(ends):
                 job = Run(path, tmp_path / folder, resume=number > 0)
+                assert job.platform == platform
                 assert job.advance(end)
                 job.close()
         assert results(tmp_path / "one") == results(tmp_path / "two")

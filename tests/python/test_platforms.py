@@ -350,8 +350,12 @@ def in_a_process(code: str, *arguments: str, **environment: str) -> str:
 @pytest.mark.parametrize("environment", [{}, NO_OPENCL], ids=["as it is", "without OpenCL"])
 class TestMachines:
     def test_water_and_proteins_stay_where_they_were(self, environment):
-        before = json.loads(in_a_process(OTHERS, "theirs", **environment))
-        assert json.loads(in_a_process(OTHERS, "ours", **environment)) == before
+        # OpenMM's warnings about PoCL come first.
+        before, now = (
+            json.loads(in_a_process(OTHERS, side, **environment).splitlines()[-1])
+            for side in ("theirs", "ours")
+        )
+        assert now == before
         assert set(before) == {"water", "protein", "implicit", "springs"}
         assert "Helfrich" not in before.values()
 
@@ -362,7 +366,7 @@ class TestMachines:
 @pytest.mark.parametrize("name", ["Reference", "CPU", "Helfrich"])
 def test_the_environment_goes_first(name):
     found = in_a_process(MEMBRANE, OPENMM_DEFAULT_PLATFORM=name)
-    assert found.split() == [name, name]
+    assert found.split()[-2:] == [name, name]
 
 
 def test_the_example_of_the_readme():
