@@ -77,21 +77,20 @@ pub struct Draw {
 impl FlipState {
     /// The random numbers of the next attempts, for so many half-edges.
     fn draw(&self, half_edges: usize, draws: &mut [Draw; BLOCK]) {
-        struct Fill<'a>(&'a FlipState, u64, &'a mut [Draw; BLOCK]);
+        struct Fill<'a>(&'a FlipState, f64, &'a mut [Draw; BLOCK]);
         impl Kernel for Fill<'_> {
             #[inline(always)]
             fn execute<A: Arithmetic>(self) {
                 let Self(state, half_edges, draws) = self;
                 for (place, draw) in draws.iter_mut().enumerate() {
                     let [first, second] = random::bits(state.key, state.attempts + place as u64);
-                    // The upper half of the product of 32 random bits and a number below 2³² is uniform below the
-                    // latter, to one part in 2³² / (number of half-edges).
-                    draw.half = ((first >> 32) * half_edges >> 32) as u32;
+                    // Uniform to one part in 2⁵² / (number of half-edges); the product stays below that number.
+                    draw.half = ((first >> 12) as f64 / (1u64 << 52) as f64 * half_edges) as u32;
                     draw.uniform = (second >> 11) as f64 / (1u64 << 53) as f64;
                 }
             }
         }
-        run(Fill(self, half_edges as u64, draws));
+        run(Fill(self, half_edges as f64, draws));
     }
 }
 
