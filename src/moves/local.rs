@@ -22,8 +22,6 @@ pub struct LocalEnergy {
     needs: Needs,
     acting: Acting,
     triangles: Vec<TriangleRecord>,
-    /// φ / l of each side of each triangle; empty unless a term needs it.
-    bends: Vec<[f64; 3]>,
     /// The energy of the edge that each side is; empty unless a term needs it.
     edge_energies: Vec<[f64; 3]>,
     vertices: Vec<VertexRecord>,
@@ -38,8 +36,24 @@ pub struct LocalEnergy {
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 struct TriangleRecord {
-    geometry: TriangleGeometry,
+    face: Face,
+    /// φ / l of each side, if a term needs it.
+    bends: [f64; 3],
     energy: f64,
+}
+
+/// N and |N| of a triangle, as in [`TriangleGeometry`].
+#[derive(Clone, Copy)]
+struct Face {
+    normal: Vec3,
+    twice_area: f64,
+}
+
+impl From<&TriangleGeometry> for Face {
+    #[inline(always)]
+    fn from(&TriangleGeometry { normal, twice_area, .. }: &TriangleGeometry) -> Self {
+        Self { normal, twice_area }
+    }
 }
 
 /// What is known of a vertex, in one cache line.
@@ -107,16 +121,6 @@ fn at<'a, 't>(terms: &'a [Term<'t>], places: &'a Places) -> impl Iterator<Item =
     places.iter().map(|place| &terms[*place as usize])
 }
 
-/// The geometry of a triangle whose corner 0 is kept at place `place`.
-#[inline(always)]
-fn turned(geometry: &TriangleGeometry, place: usize) -> TriangleGeometry {
-    let mut turned = *geometry;
-    for corner in 0..3 {
-        turned.dots[(place + corner) % 3] = geometry.dots[corner];
-    }
-    turned
-}
-
 impl LocalEnergy {
     fn energy_of_totals(&self, terms: &[Term], totals: &Totals) -> f64 {
         let mut unused = TotalPartials::default();
@@ -132,11 +136,10 @@ impl LocalEnergy {
         self.needs =
             terms.iter().fold(Needs::empty(), |all, term| all | term.potential.needs(term));
         self.acting = Acting::new(terms);
-        self.bends.clear();
         self.edge_energies.clear();
         self.vectors.clear();
         self.gather_positions(mesh, positions);
-        if !self.fill_triangles(mesh) {
+        if !self.fill_triangles(mesh, terms) {
             return false;
         }
         if self.needs.intersects(Needs::EDGES | Needs::CURVATURES) {
@@ -173,22 +176,38 @@ impl LocalEnergy {
         }));
     }
 
-    /// Triangles, totals, and the barycentric areas of the vertices.
-    fn fill_triangles(&mut self, mesh: &Triangulation) -> bool {
+    /// Triangles with their energies, totals, and the barycentric areas of the vertices.
+    fn fill_triangles(&mut self, mesh: &Triangulation, terms: &[Term]) -> bool {
         self.triangles.clear();
         let (mut twice_area, mut six_volumes, mut smallest) = (0.0, 0.0, f64::INFINITY);
-        for corners in mesh.triangles() {
-            let corners = corners.map(|vertex| vertex as usize);
-            let [a, b, c] = corners.map(|vertex| &self.vertices[vertex].position);
-            let geometry = TriangleGeometry::new(a, b, c);
-            twice_area += geometry.twice_area;
-            six_volumes += a.dot(&geometry.normal);
-            smallest = geometry.twice_area.min(smallest);
-            let third = geometry.area() / 3.0;
-            for vertex in corners {
-                self.vertices[vertex].scalars.area += third;
+        let mut first = 0;
+        for chunk in mesh.triangles().chunks(CHUNK) {
+            let mut ids = [0; CHUNK];
+            let nothing =
+                TriangleGeometry { normal: Vec3::zeros(), twice_area: 0.0, dots: [0.0; 3] };
+            let (mut geometry, mut energies) = ([nothing; CHUNK], [0.0; CHUNK]);
+            for (n, corners) in chunk.iter().enumerate() {
+                let corners = corners.map(|vertex| vertex as usize);
+                let [a, b, c] = corners.map(|vertex| &self.vertices[vertex].position);
+                geometry[n] = TriangleGeometry::new(a, b, c);
+                ids[n] = first + n as u32;
+                twice_area += geometry[n].twice_area;
+                six_volumes += a.dot(&geometry[n].normal);
+                smallest = geometry[n].twice_area.min(smallest);
+                let third = geometry[n].area() / 3.0;
+                for vertex in corners {
+                    self.vertices[vertex].scalars.area += third;
+                }
             }
-            self.triangles.push(TriangleRecord { geometry, energy: 0.0 });
+            let (ids, geometry) = (&ids[..chunk.len()], &geometry[..chunk.len()]);
+            for term in at(terms, &self.acting.triangles) {
+                let energies = &mut energies[..chunk.len()];
+                term.potential.triangles(term, Triangles::Energies { ids, geometry, energies });
+            }
+            self.triangles.extend(geometry.iter().zip(energies).map(|(known, energy)| {
+                TriangleRecord { face: known.into(), bends: [0.0; 3], energy }
+            }));
+            first += chunk.len() as u32;
         }
         self.totals = Totals { area: 0.5 * twice_area, volume: six_volumes / 6.0 };
         smallest > SMALLEST_AREA && twice_area.is_finite()
@@ -196,7 +215,6 @@ impl LocalEnergy {
 
     /// Angles of all edges, and Jülicher's curvatures.
     fn fill_bends(&mut self, mesh: &Triangulation, terms: &[Term]) {
-        self.bends.resize(self.triangles.len(), [0.0; 3]);
         if !self.acting.edges.is_empty() {
             self.edge_energies.resize(self.triangles.len(), [0.0; 3]);
         }
@@ -225,11 +243,11 @@ impl LocalEnergy {
         for n in 0..count {
             let half = hinges.halves[n];
             let twin = mesh.twin(half);
-            let (left, right) = (self.geometry_of(half), self.geometry_of(twin));
-            let start = &self.vertices[mesh.origin(half) as usize].position;
-            let tip = &self.vertices[mesh.origin(previous(twin)) as usize].position;
+            let (left, right) = (self.beside(half), self.beside(twin));
+            let [start, end, tip] = [half, twin, previous(twin)]
+                .map(|half| &self.vertices[mesh.origin(half) as usize].position);
             hinges.twins[n] = twin;
-            hinges.lengths_squared[n] = left.length_squared(half as usize % 3);
+            hinges.lengths_squared[n] = (end - start).norm_squared();
             hinges.determinants[n] = left.normal.dot(&(start - tip));
             hinges.cosines[n] = left.normal.dot(&right.normal);
             hinges.products[n] = left.twice_area * right.twice_area;
@@ -245,7 +263,7 @@ impl LocalEnergy {
             let edge = &edges[n];
             let share = 0.5 * edge.bend * edge.length_squared;
             for half in [hinges.halves[n], hinges.twins[n]] {
-                self.bends.as_flattened_mut()[half as usize] = edge.bend;
+                self.triangles[half as usize / 3].bends[half as usize % 3] = edge.bend;
                 self.vertices[mesh.origin(half) as usize].scalars.curvature += share;
                 if edges_act {
                     self.edge_energies.as_flattened_mut()[half as usize] = energies[n];
@@ -254,25 +272,9 @@ impl LocalEnergy {
         }
     }
 
+    /// Energies of vertices and totals.
     fn fill_energies(&mut self, terms: &[Term]) {
         let mut ids = [0; CHUNK];
-        let mut first = 0;
-        for chunk in self.triangles.chunks_mut(CHUNK) {
-            let count = chunk.len();
-            let (mut geometry, mut energies) = ([chunk[0].geometry; CHUNK], [0.0; CHUNK]);
-            for n in 0..count {
-                (ids[n], geometry[n]) = (first + n as u32, chunk[n].geometry);
-            }
-            let (ids, geometry) = (&ids[..count], &geometry[..count]);
-            for term in at(terms, &self.acting.triangles) {
-                let energies = &mut energies[..count];
-                term.potential.triangles(term, Triangles::Energies { ids, geometry, energies });
-            }
-            for (record, energy) in chunk.iter_mut().zip(energies) {
-                record.energy = energy;
-            }
-            first += count as u32;
-        }
         let total = self.vertices.len();
         let mut first = 0;
         for chunk in self.vertices.chunks_mut(CHUNK) {
@@ -299,8 +301,14 @@ impl LocalEnergy {
 
     /// The triangle that a half-edge is a side of.
     #[inline(always)]
-    fn geometry_of(&self, half: u32) -> &TriangleGeometry {
-        &self.triangles[half as usize / 3].geometry
+    fn beside(&self, half: u32) -> &Face {
+        &self.triangles[half as usize / 3].face
+    }
+
+    /// φ / l of an edge.
+    #[inline(always)]
+    fn bend_of(&self, half: u32) -> f64 {
+        self.triangles[half as usize / 3].bends[half as usize % 3]
     }
 
     /// Bring what an attempt will need near: first, of the triangle that it begins with.
@@ -310,9 +318,6 @@ impl LocalEnergy {
         fetch(&mesh.triangles()[triangle]);
         fetch(&mesh.twins()[triangle]);
         fetch(&self.triangles[triangle]);
-        if let Some(bends) = self.bends.get(triangle) {
-            fetch(bends);
-        }
     }
 
     /// Then, of the other triangle and the vertices.
@@ -342,14 +347,14 @@ impl LocalEnergy {
     fn fill_vectors(&mut self, mesh: &Triangulation) {
         self.vectors.resize(self.vertices.len(), VertexVectors::default());
         let normals = self.needs.contains(Needs::NORMALS);
-        for (corners, triangle) in mesh.triangles().iter().zip(&self.triangles) {
+        for corners in mesh.triangles() {
             let points = corners.map(|vertex| self.vertices[vertex as usize].position);
+            let geometry = TriangleGeometry::new(&points[0], &points[1], &points[2]);
             for k in 0..3 {
                 let vertex = corners[k] as usize;
                 let around = [&points[k], &points[(k + 1) % 3], &points[(k + 2) % 3]];
                 let scalars = &mut self.vertices[vertex].scalars;
-                let vectors = &mut self.vectors[vertex];
-                add_corner(scalars, vectors, around, &triangle.geometry, k, normals);
+                add_corner(scalars, &mut self.vectors[vertex], around, &geometry, k, normals);
             }
         }
     }
@@ -377,8 +382,9 @@ impl LocalEnergy {
             Turn::Left => [(slot_a, a as usize % 3), (slot_b, b as usize % 3)],
             Turn::Right => [(slot_b, next(b) as usize % 3), (slot_a, next(a) as usize % 3)],
         };
-        let old = [slot_a, slot_b].map(|slot| &self.triangles[slot].geometry);
-        // Half the area of the new triangles less that of the old ones; what the tetrahedron ijkl has is lost.
+        let old = [slot_a, slot_b].map(|slot| &self.triangles[slot].face);
+        let old_area = 0.5 * (old[0].twice_area + old[1].twice_area);
+        // The volume loses the tetrahedron ijkl where ij is convex, and gains it where ij is concave.
         let mut flipped = Flipped {
             difference: f64::NAN,
             slots,
@@ -390,9 +396,7 @@ impl LocalEnergy {
             vectors: [VertexVectors::default(); 4],
             vertex_energies: [0.0; 4],
             totals: Totals {
-                area: self.totals.area + triangles[0].area() + triangles[1].area()
-                    - old[0].area()
-                    - old[1].area(),
+                area: self.totals.area + triangles[0].area() + triangles[1].area() - old_area,
                 volume: self.totals.volume - old[0].normal.dot(&(i - l)) / 6.0,
             },
             totals_energy: self.totals_energy,
@@ -440,29 +444,29 @@ impl LocalEnergy {
         flipped: &mut Flipped,
     ) -> f64 {
         let [a, b] = quad.halves;
-        let [j, k, l] = [1, 2, 3].map(|n| &self.vertices[quad.vertices[n] as usize].position);
+        let [i, j, k, l] = quad.vertices.map(|vertex| &self.vertices[vertex as usize].position);
         let [new_i, new_j] = &flipped.triangles;
         let across = k - l;
         let rim = [previous(a), next(b), next(a), previous(b)];
         // Seen from outside the quadrilateral, the tip beyond ki and jk is l, the tip beyond il and lj is k; the
         // determinant is that of the edge's start less the tip.
-        let outside = rim.map(|half| self.geometry_of(mesh.twin(half)));
+        let outside = rim.map(|half| self.beside(mesh.twin(half)));
+        let (face_i, face_j) = (Face::from(new_i), Face::from(new_j));
         flipped.edges = [
-            edge_between(new_i, new_j, across.norm_squared(), || k - j),
-            edge_between(outside[0], new_i, new_i.length_squared(2), || across),
-            edge_between(outside[1], new_i, new_i.length_squared(0), || -across),
-            edge_between(outside[2], new_j, new_j.length_squared(0), || across),
-            edge_between(outside[3], new_j, new_j.length_squared(2), || -across),
+            edge_between(&face_i, &face_j, across.norm_squared(), k - j),
+            edge_between(outside[0], &face_i, new_i.length_squared(2), across),
+            edge_between(outside[1], &face_i, new_i.length_squared(0), -across),
+            edge_between(outside[2], &face_j, new_j.length_squared(0), across),
+            edge_between(outside[3], &face_j, new_j.length_squared(2), -across),
         ];
-        let bends = self.bends.as_flattened();
-        let old = [a, rim[0], rim[1], rim[2], rim[3]].map(|half| half as usize);
+        let old = [a, rim[0], rim[1], rim[2], rim[3]];
         if self.needs.contains(Needs::CURVATURES) {
             let curvature = |edge: &EdgeGeometry| 0.5 * edge.bend * edge.length_squared;
-            let gone = 0.5 * bends[a as usize] * self.geometry_of(a).length_squared(a as usize % 3);
+            let gone = 0.5 * self.bend_of(a) * (j - i).norm_squared();
             let come = curvature(&flipped.edges[0]);
             let [ki, il, jk, lj] = std::array::from_fn(|n| {
                 let edge = &flipped.edges[n + 1];
-                0.5 * edge.length_squared * (edge.bend - bends[old[n + 1]])
+                0.5 * edge.length_squared * (edge.bend - self.bend_of(old[n + 1]))
             });
             flipped.vertices[0].curvature += ki + il - gone;
             flipped.vertices[1].curvature += jk + lj - gone;
@@ -478,15 +482,14 @@ impl LocalEnergy {
             term.potential.edges(term, Edges::Energies { geometry, energies });
         }
         let known = self.edge_energies.as_flattened();
-        energies.iter().zip(old).map(|(energy, half)| energy - known[half]).sum()
+        energies.iter().zip(old).map(|(energy, half)| energy - known[half as usize]).sum()
     }
 
     /// Areas and vectors of the four vertices; the change of their energies.
     fn vertices_of(&self, terms: &[Term], quad: &Quad, flipped: &mut Flipped) -> f64 {
-        let [a, b] = quad.halves;
-        let old = quad.triangles().map(|slot| self.triangles[slot].geometry);
-        let [old_a, old_b, new_i, new_j] =
-            [old[0], old[1], flipped.triangles[0], flipped.triangles[1]].map(|t| t.area() / 3.0);
+        let [old_a, old_b] =
+            quad.triangles().map(|slot| self.triangles[slot].face.twice_area / 6.0);
+        let [new_i, new_j] = flipped.triangles.map(|triangle| triangle.area() / 3.0);
         flipped.vertices[0].area += new_i - old_a - old_b;
         flipped.vertices[1].area += new_j - old_a - old_b;
         flipped.vertices[2].area += new_i + new_j - old_a;
@@ -494,10 +497,10 @@ impl LocalEnergy {
         let wants_vectors = self.needs.contains(Needs::VECTORS);
         if wants_vectors {
             flipped.vectors = quad.vertices.map(|vertex| self.vectors[vertex as usize]);
+            let [i, j, k, l] = quad.vertices.map(|vertex| &self.vertices[vertex as usize].position);
+            let (a, b) = (TriangleGeometry::new(i, j, k), TriangleGeometry::new(j, i, l));
             let [new_i, new_j] = flipped.triangles;
-            // The corners of each triangle as places among i, j, k, l, and where in its geometry they begin.
-            let a = turned_back(&old[0], a as usize % 3);
-            let b = turned_back(&old[1], b as usize % 3);
+            // The corners of each triangle as places among i, j, k, l.
             for (geometry, corners, sign) in [
                 (&a, [0, 1, 2], -1.0),
                 (&b, [1, 0, 3], -1.0),
@@ -545,18 +548,15 @@ impl LocalEnergy {
     pub fn apply(&mut self, mesh: &Triangulation, quad: &Quad, flipped: &Flipped) {
         let edges_act = !self.edge_energies.is_empty();
         for (n, (slot, place)) in flipped.slots.into_iter().enumerate() {
-            let geometry = turned(&flipped.triangles[n], place);
-            self.triangles[slot] =
-                TriangleRecord { geometry, energy: flipped.triangle_energies[n] };
-            if self.bends.is_empty() {
-                continue;
-            }
+            let record = &mut self.triangles[slot];
+            record.face = Face::from(&flipped.triangles[n]);
+            record.energy = flipped.triangle_energies[n];
             // The sides of I are il, lk, ki; those of J are jk, kl, lj.
             let sides = if n == 0 { [2, 0, 1] } else { [3, 0, 4] };
             for (side, edge) in sides.into_iter().enumerate() {
                 let half = 3 * slot + (place + side) % 3;
                 for half in [half, mesh.twin(half as u32) as usize] {
-                    self.bends.as_flattened_mut()[half] = flipped.edges[edge].bend;
+                    self.triangles[half / 3].bends[half % 3] = flipped.edges[edge].bend;
                     if edges_act {
                         self.edge_energies.as_flattened_mut()[half] = flipped.edge_energies[edge];
                     }
@@ -575,23 +575,12 @@ impl LocalEnergy {
     }
 }
 
-/// The geometry of a triangle with the corner at `place` as its first.
-#[inline(always)]
-fn turned_back(geometry: &TriangleGeometry, place: usize) -> TriangleGeometry {
-    turned(geometry, (3 - place) % 3)
-}
-
 /// The edge of a triangle on the left and one on the right; `arm` leads from the tip of the right one to the edge.
 #[inline(always)]
-fn edge_between(
-    left: &TriangleGeometry,
-    right: &TriangleGeometry,
-    length_squared: f64,
-    arm: impl FnOnce() -> Vec3,
-) -> EdgeGeometry {
+fn edge_between(left: &Face, right: &Face, length_squared: f64, arm: Vec3) -> EdgeGeometry {
     let cosine = left.normal.dot(&right.normal);
     let product = left.twice_area * right.twice_area;
-    let bend = bend(length_squared, left.normal.dot(&arm()), cosine, product);
+    let bend = bend(length_squared, left.normal.dot(&arm), cosine, product);
     EdgeGeometry { length_squared, bend }
 }
 
