@@ -19,6 +19,9 @@ mod headers;
 #[allow(dead_code, reason = "the crate uses the rest")]
 mod interface;
 
+#[path = "src/moves/records.rs"]
+#[allow(dead_code, reason = "only the layouts matter here")]
+mod flip_records;
 #[path = "src/ffi/records.rs"]
 mod records;
 
@@ -38,7 +41,9 @@ fn main() {
     }
     println!("cargo:rerun-if-changed=wrappers");
     println!("cargo:rerun-if-changed=shaders");
-    for shared in ["potentials/codes.rs", "evaluator/gpu/interface.rs", "ffi/records.rs"] {
+    for shared in
+        ["potentials/codes.rs", "evaluator/gpu/interface.rs", "ffi/records.rs", "moves/records.rs"]
+    {
         println!("cargo:rerun-if-changed=src/{shared}");
     }
     #[cfg(feature = "gpu")]

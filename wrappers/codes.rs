@@ -1,7 +1,9 @@
-//! Part of build.rs: C++ that compares the headers with `src/potentials/codes.rs` and `src/ffi/records.rs`, so that the
+//! Part of build.rs: C++ that compares the headers with `src/potentials/codes.rs`, `src/ffi/records.rs` and
+//! `src/moves/records.rs`, so that the
 //! build stops where they differ.
 
 use crate::codes::{Contribution, Form, MAX_PARAMETERS, Scheme};
+use crate::flip_records::{FlipRules, FlipState};
 use crate::records::{ParameterInfo, ParticleArrays, TermInput};
 use std::ffi::CStr;
 use std::mem::offset_of;
@@ -40,6 +42,16 @@ pub fn comparison() -> String {
             ParticleArrays,
             "HelfrichParticleArrays",
             num_particles positions velocities forces
+        );
+        text += &structure!(
+            FlipRules,
+            "HelfrichFlipRules",
+            temperature min_degree max_degree max_edge_length demon
+        );
+        text += &structure!(
+            FlipState,
+            "HelfrichFlipState",
+            key attempts accepted by_degree by_length by_shape by_energy by_edge demon_energy
         );
         text += &structure!(
             TermInput,

@@ -5,5 +5,6 @@
 
 pub mod flips;
 pub mod local;
+pub mod records;
 
-pub use flips::{FlipRules, FlipState};
+pub use records::{FlipRules, FlipState};
