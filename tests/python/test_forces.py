@@ -49,7 +49,7 @@ def test_every_force_class_has_a_row():
     classes = {
         name
         for name, value in vars(helfrich).items()
-        if isinstance(value, type) and issubclass(value, mm.Force) and value.__module__
+        if isinstance(value, type) and issubclass(value, helfrich.MembraneForce)
     }
     # The base class is not for users to make.
     assert classes - {"MembraneForce"} == {case.force for case in PRESENT}
