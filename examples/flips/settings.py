@@ -1,0 +1,55 @@
+"""What is run: lengths, time steps and rates of the runs of `fluid_run.flow`."""
+
+from typing import NamedTuple
+
+
+class Setting(NamedTuple):
+    """Time steps, ps, with flips and without, and the flips."""
+
+    time_step: float
+    fixed_time_step: float
+    attempts: float = 0.1
+    every: int = 10
+
+
+SETTINGS = {
+    0.037: Setting(0.4, 0.8),
+    0.15: Setting(1.0, 1.6),
+    0.33: Setting(1.6, 2.4),
+    0.59: Setting(2.0, 3.0, attempts=1.0),
+}
+"""By softness Ξ, for 1002 vertices on a sphere of 1000 nm and κ = 20 kBT."""
+
+PERIODS = 50
+"""Length of one run with flips, τ_2."""
+
+FIXED_PERIODS = 30
+"""Length of one run without."""
+
+
+def with_flips(softness, seeds, num_vertices=1002, share=1.0, periods=PERIODS):
+    """Arguments of `flow` for runs with a share of the usual flips, one for each seed."""
+    setting = SETTINGS[softness]
+    return [
+        {
+            "num_vertices": num_vertices,
+            "softness": softness,
+            "attempts": share * setting.attempts,
+            "every": setting.every,
+            # The period of the fastest mode goes as 1/√N.
+            "time_step": setting.time_step * (1002 / num_vertices) ** 0.5,
+            "periods": periods,
+            "seed": seed,
+        }
+        for seed in seeds
+    ]
+
+
+def without_flips(softness, seeds, num_vertices=1002, periods=FIXED_PERIODS):
+    """Arguments of `flow` for runs of meshes that keep their neighbours, one for each seed."""
+    setting = SETTINGS[softness]
+    scale = setting.fixed_time_step / setting.time_step
+    return [
+        point | {"time_step": point["time_step"] * scale}
+        for point in with_flips(softness, seeds, num_vertices, 0.0, periods)
+    ]
