@@ -2,8 +2,8 @@
 
 On a sphere free diffusion has ⟨r̂(0) · r̂(t)⟩ = exp(−2 D t), D in rad²/ps, so that −2 ln ⟨cos⟩ =
 4 D t at all times, the mean squared angle while it is small. The rotation of the whole is removed.
-D comes from a straight line through −2 ln ⟨cos⟩ from 1 to 5 τ_2; its error is half the difference
-of two runs (over their number's root for more).
+D comes from a straight line through −2 ln ⟨cos⟩ from 1 to 5 τ_2; its error is the standard error
+from the differences between runs.
 """
 
 import numpy as np
@@ -14,7 +14,7 @@ from settings import with_flips, without_flips
 SOFTNESS = 0.33
 
 # Of the usual flips, with the number of runs.
-SHARES = {0.03: 2, 0.1: 2, 0.3: 2, 1.0: 4}
+SHARES = {0.03: 2, 0.1: 2, 0.3: 2, 1.0: 12}
 
 LAGS = (0.5, 1, 2, 5, 10, 20)
 

@@ -4,30 +4,28 @@ from typing import NamedTuple
 
 
 class Setting(NamedTuple):
-    """Time steps, ps, with flips and without, and the flips."""
+    """Time steps, ps, with flips and without, the flips, and the length of a run with them, τ_2."""
 
     time_step: float
     fixed_time_step: float
     attempts: float = 0.1
     every: int = 10
+    periods: float = 50
 
 
 SETTINGS = {
-    0.037: Setting(0.4, 0.8),
+    0.037: Setting(0.4, 0.8, periods=25),
     0.15: Setting(1.0, 1.6),
     0.33: Setting(1.6, 2.4),
     0.59: Setting(2.0, 3.0, attempts=1.0),
 }
 """By softness Ξ, for 1002 vertices on a sphere of 1000 nm and κ = 20 kBT."""
 
-PERIODS = 50
-"""Length of one run with flips, τ_2."""
-
 FIXED_PERIODS = 30
-"""Length of one run without."""
+"""Length of one run without flips, τ_2."""
 
 
-def with_flips(softness, seeds, num_vertices=1002, share=1.0, periods=PERIODS):
+def with_flips(softness, seeds, num_vertices=1002, share=1.0, periods=None):
     """Arguments of `flow` for runs with a share of the usual flips, one for each seed."""
     setting = SETTINGS[softness]
     return [
@@ -38,7 +36,7 @@ def with_flips(softness, seeds, num_vertices=1002, share=1.0, periods=PERIODS):
             "every": setting.every,
             # The period of the fastest mode goes as 1/√N.
             "time_step": setting.time_step * (1002 / num_vertices) ** 0.5,
-            "periods": periods,
+            "periods": setting.periods if periods is None else periods,
             "seed": seed,
         }
         for seed in seeds

@@ -28,7 +28,7 @@ sys.path.append(str(Path(__file__).resolve().parents[1] / "paper"))
 from mesh_corrections import bending_ratio, shear_ratio
 
 L = np.arange(2, 9)
-SEEDS = {0.037: 4, 0.15: 4, 0.33: 8, 0.59: 2}
+SEEDS = {0.037: 5, 0.15: 6, 0.33: 12, 0.59: 4}
 FIXED_SEEDS = 4
 
 
