@@ -102,6 +102,8 @@ impl Membrane {
     pub fn set_triangles(&mut self, triangles: &[[i64; 3]]) -> Result<()> {
         let mesh = self.mesh.with_triangles(triangles)?;
         let order = breadth_first(&mesh);
+        // They may be turned the other way.
+        self.has_outside = false;
         self.take(mesh, order, 0)
     }
 

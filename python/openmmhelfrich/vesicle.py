@@ -348,8 +348,7 @@ class Vesicle:
         simulation = app.Simulation(self._mesh.topology(), system, integrator, platform)
         simulation.context.setPositions(self._mesh.vertices)
         if self._flips is not None and "temperature" not in self._flips:
-            # Integrators without a bath leave the flips' own.
-            temperature = getattr(integrator, "getTemperature", lambda: _TEMPERATURE)()
+            temperature = _bath_of(integrator)
             simulation.context.setParameter(MonteCarloBondFlip.Temperature(), temperature)
         return simulation
 
@@ -429,6 +428,31 @@ class Vesicle:
                 mesh, self._min_triangle_area, self._epsilon, **at
             )
         return forces
+
+
+def _bath_of(integrator):
+    """The temperature of an integrator's bath, K; 300 K if it has none that can be asked for."""
+    if isinstance(integrator, openmm.CompoundIntegrator):
+        count = integrator.getNumIntegrators()
+        found = {_bath_of(integrator.getIntegrator(number)) for number in range(count)}
+        if len(found) > 1:
+            raise ValueError(
+                f"Vesicle: the integrators have the temperatures {', '.join(map(str, found))}; "
+                "give the flips one of their own, flips={'temperature': …}"
+            )
+        return found.pop()
+    if hasattr(integrator, "getTemperature"):
+        temperature = integrator.getTemperature()
+        return temperature / unit.kelvin if unit.is_quantity(temperature) else float(temperature)
+    if isinstance(integrator, openmm.CustomIntegrator):
+        names = [
+            integrator.getGlobalVariableName(number)
+            for number in range(integrator.getNumGlobalVariables())
+        ]
+        # As OpenMM's own, such as MTSLangevinIntegrator, call it.
+        if "kT" in names:
+            return integrator.getGlobalVariableByName("kT") / theory.BOLTZMANN
+    return _TEMPERATURE
 
 
 def _checked_flips(flips):

@@ -118,7 +118,7 @@ impl Triangulation {
     /// The same surface with other connectivity: triangles of particles, as [`Topology::new`] takes them.
     ///
     /// # Errors
-    /// Those of [`Topology::new`]; another number of triangles, other particles, or other parts.
+    /// Those of [`Topology::new`]; another number of triangles, or other particles.
     pub fn with_triangles(&self, triangles: &[[i64; 3]]) -> Result<Self> {
         if triangles.len() != self.triangles.len() {
             return Err(Error::Contract(format!(

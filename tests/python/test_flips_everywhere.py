@@ -89,6 +89,38 @@ class TestVesicle:
         )
         assert simulation.context.getParameter(MonteCarloBondFlip.Temperature()) == expected
 
+    def test_baths_of_other_integrators_are_found(self):
+        compound = openmm.CompoundIntegrator()
+        compound.addIntegrator(integrator(350))
+        compound.addIntegrator(integrator(350))
+        multiple = openmm.MTSLangevinIntegrator(340, 0.01, 0.4, [(0, 1)])
+        for made, expected in ((compound, 350), (multiple, 340)):
+            context = helfrich.Vesicle(MESH, flips=0.1).simulation(made, "Reference").context
+            found = context.getParameter(MonteCarloBondFlip.Temperature())
+            assert found == pytest.approx(expected, rel=1e-5)
+        mixed = openmm.CompoundIntegrator()
+        mixed.addIntegrator(integrator(300))
+        mixed.addIntegrator(integrator(310))
+        with pytest.raises(ValueError, match="the integrators have the temperatures"):
+            helfrich.Vesicle(MESH, flips=0.1).simulation(mixed, "Reference")
+
+    def test_beads_that_would_share_bonds_are_refused(self):
+        system = helfrich.Vesicle(MESH, flips=0.1).system()
+        with pytest.raises(openmm.OpenMMException, match="beads of an RPMDIntegrator"):
+            openmm.Context(
+                system,
+                openmm.RPMDIntegrator(4, 300, 1, 0.001),
+                openmm.Platform.getPlatformByName("Reference"),
+            )
+
+    def test_triangles_turned_inside_out_are_refused(self):
+        simulation = helfrich.Vesicle(MESH).simulation(integrator())
+        force = helfrich.EnclosedVolumeForce.cast(simulation.system.getForce(1))
+        simulation.context.getState(energy=True)
+        force.setTrianglesInContext(simulation.context, MESH.triangles[:, ::-1].copy())
+        with pytest.raises(openmm.OpenMMException, match="clockwise"):
+            simulation.context.getState(energy=True)
+
     def test_arguments_reach_the_mover(self):
         flips = {
             "frequency": 4,

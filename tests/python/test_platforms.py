@@ -375,3 +375,31 @@ def test_the_example_of_the_readme():
     code = text.split("```python\n")[1].split("```")[0].replace("step(1000)", "step(10)")
     assert "context.getPlatform().getName()" in code
     assert in_a_process(code).split()[-1] == "Helfrich"
+
+
+def test_a_context_that_fails_leaves_nothing_for_the_next():
+    """A water-like System goes where it goes without the failure."""
+
+    def plain():
+        system = mm.System()
+        force = mm.NonbondedForce()
+        for _ in range(8):
+            system.addParticle(1)
+            force.addParticle(0, 0.3, 0.1)
+        system.addForce(force)
+        return mm.Context(system, mm.VerletIntegrator(0.001)).getPlatform().getName()
+
+    expected = plain()
+    assert expected != "Helfrich"
+    mesh = helfrich.Mesh.icosphere(2, 100)
+    broken = mm.System()
+    bonds = mm.HarmonicBondForce()
+    bonds.addBond(0, 10**6, 1, 1)
+    broken.addForce(bonds)
+    helfrich.Vesicle(mesh).add_to(broken)
+    for arguments in ((), (mm.Platform.getPlatformByName("CPU"), {"Threads": "none"})):
+        with pytest.raises(mm.OpenMMException):
+            mm.Context(broken, mm.VerletIntegrator(0.001), *arguments)
+        assert [plain(), plain()] == [expected] * 2
+        context = mm.Context(helfrich.Vesicle(mesh).system(), mm.VerletIntegrator(0.001))
+        assert context.getPlatform().getName() == "Helfrich"

@@ -92,11 +92,15 @@ const string& HelfrichPlatform::getPropertyValue(const Context& context, const s
 }
 
 void HelfrichPlatform::contextCreated(ContextImpl& context, const map<string, string>& properties) const {
-    if (PlatformChoice::isUnasked(context)) {
+    if (PlatformChoice::isUnasked()) {
         // OpenMM goes on with its next platform, after the second entry of this one has refused too.
-        string reason = whyNotHelfrich(context.getSystem(), context.getIntegrator());
-        if (!reason.empty())
+        string reason = PlatformChoice::hasMembrane(context)
+            ? whyNotHelfrich(context.getSystem(), context.getIntegrator())
+            : "it has no membrane";
+        if (!reason.empty()) {
+            PlatformChoice::refuse();
             throw OpenMMException("Platform Helfrich: not for this System: " + reason);
+        }
     }
     PlatformChoice::end();
     auto given = properties.find(THREADS);

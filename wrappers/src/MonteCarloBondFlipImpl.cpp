@@ -1,6 +1,7 @@
 #include "MonteCarloBondFlipImpl.h"
 
 #include <openmm/CompoundIntegrator.h>
+#include <openmm/CustomCVForce.h>
 #include <openmm/CustomIntegrator.h>
 #include <openmm/System.h>
 #include <openmm/internal/OSRngSeed.h>
@@ -10,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <typeinfo>
 
 using namespace HelfrichPlugin;
 using namespace OpenMM;
@@ -37,19 +39,36 @@ uint32_t findNumber(const System& system, const MonteCarloBondFlip& owner) {
     return number;
 }
 
+/** Refuse triangulated forces on some particles in a force that evaluates others in a Context of its own. */
+void refuseIn(const MonteCarloBondFlip& owner, const std::set<int>& particles, const Force& contained,
+              const string& outer) {
+    if (auto* variables = dynamic_cast<const CustomCVForce*>(&contained))
+        for (int i = 0; i < variables->getNumCollectiveVariables(); i++)
+            refuseIn(owner, particles, variables->getCollectiveVariable(i), outer);
+    if (auto* force = dynamic_cast<const TriangulatedForce*>(&contained))
+        for (int particle : force->getTriangles())
+            if (particles.count(particle) != 0)
+                throw OpenMMException(owner.getTypeName() + ": particle " + std::to_string(particle) + " has a " +
+                                      force->getTypeName() + " inside of the force \"" + outer +
+                                      "\", which would not see flips; add it to the System itself");
+}
+
 /** Refuse forces on the same particles that are evaluated in a Context of their own, which flips would not reach. */
 void refuseContained(const MonteCarloBondFlip& owner, ContextImpl& context) {
     const vector<int>& corners = owner.getTriangles();
     const std::set<int> particles(corners.begin(), corners.end());
     for (const ForceImpl* impl : context.getForceImpls())
         for (const Force* contained : impl->getContainedForces())
-            if (auto* force = dynamic_cast<const TriangulatedForce*>(contained))
-                for (int particle : force->getTriangles())
-                    if (particles.count(particle) != 0)
-                        throw OpenMMException(owner.getTypeName() + ": particle " + std::to_string(particle) +
-                                              " has a " + force->getTypeName() + " inside of the force \"" +
-                                              impl->getOwner().getName() +
-                                              "\", which would not see flips; add it to the System itself");
+            refuseIn(owner, particles, *contained, impl->getOwner().getName());
+}
+
+/** Refuse an integrator of many copies of the System, which have their own positions but would share connectivity. */
+void refuseCopies(const MonteCarloBondFlip& owner, const Integrator& integrator) {
+    // Its plugin is not linked; the name of a class is part of what compilers call its type.
+    if (string(typeid(integrator).name()).find("RPMDIntegrator") != string::npos)
+        throw OpenMMException(owner.getTypeName() +
+                              ": the beads of an RPMDIntegrator would flip the bonds that they share, each by its own "
+                              "energy, which is no ensemble; choose another integrator, or leave out the flips");
 }
 
 /** The integrator that makes the present step. */
@@ -98,6 +117,7 @@ MonteCarloBondFlipImpl::~MonteCarloBondFlipImpl() {
 void MonteCarloBondFlipImpl::initialize(ContextImpl& context) {
     inPlace = dynamic_cast<const ReferencePlatform*>(&context.getPlatform()) != nullptr;
     refuseContained(owner, context);
+    refuseCopies(owner, context.getIntegrator());
     membrane = SharedMembrane::acquire(owner.getTypeName(), context, owner.getTriangles());
     try {
         copyValues();

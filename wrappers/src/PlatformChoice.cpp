@@ -158,6 +158,8 @@ string whyNotIntegrator(const Integrator& integrator) {
 /** The membrane force of the Context that is being made, and how often the speed was asked for since. */
 thread_local const ForceImpl* pending = nullptr;
 thread_local int timesAsked = 0;
+/** How many entries of the platform have refused it. */
+thread_local int timesRefused = 0;
 
 } // namespace
 
@@ -181,7 +183,7 @@ string HelfrichPlugin::whyNotHelfrich(const System& system, const Integrator& in
 
 void PlatformChoice::begin(const ForceImpl& membrane) {
     pending = &membrane;
-    timesAsked = 0;
+    timesAsked = timesRefused = 0;
 }
 
 void PlatformChoice::end() {
@@ -193,8 +195,20 @@ double PlatformChoice::askSpeed() {
     return pending != nullptr ? FASTEST : SLOWEST;
 }
 
-bool PlatformChoice::isUnasked(const ContextImpl& context) {
-    // A note may be left of a Context that was refused for another reason: this one must have the force in it.
+bool PlatformChoice::isUnasked() {
+    return timesAsked >= 2 && pending != nullptr;
+}
+
+bool PlatformChoice::hasMembrane(const ContextImpl& context) {
+    // A note may be left of a Context that could not be made for another reason.
     auto& impls = context.getForceImpls();
-    return timesAsked >= 2 && pending != nullptr && std::find(impls.begin(), impls.end(), pending) != impls.end();
+    return std::find(impls.begin(), impls.end(), pending) != impls.end();
+}
+
+void PlatformChoice::refuse() {
+    // Both entries of the platform refuse, and then the choice is over.
+    if (++timesRefused == 2) {
+        pending = nullptr;
+        timesAsked = 0;
+    }
 }

@@ -38,7 +38,11 @@ public:
     /** The speed to tell OpenMM: the highest while a Context with a membrane is being made, or else the lowest. */
     static double askSpeed();
     /** Whether OpenMM tries the platform for a Context whose platform nobody has named. */
-    static bool isUnasked(const OpenMM::ContextImpl& context);
+    static bool isUnasked();
+    /** Whether that Context has the membrane that was noted. */
+    static bool hasMembrane(const OpenMM::ContextImpl& context);
+    /** Note that an entry of the platform refuses the Context. */
+    static void refuse();
 };
 
 } // namespace HelfrichPlugin

@@ -35,7 +35,8 @@ namespace HelfrichPlugin {
  * demon together is conserved.
  *
  * Like a barostat, this class has neither energy nor forces, and acts whenever an integrator updates the state of the
- * Context: all integrators of OpenMM do, a CustomIntegrator where it has addUpdateContextState(). Forces must have the
+ * Context: all integrators of OpenMM do, a CustomIntegrator where it has addUpdateContextState(). RPMDIntegrator, whose
+ * beads would share bonds, is refused. Forces must have the
  * same triangles in the same order to be on the same surface; other forces may not act on a triangulation of the same
  * particles. A surface has one MonteCarloBondFlip at most. Particles of mass 0 stay where they are, but their bonds
  * flip like others.
