@@ -5,9 +5,9 @@
 //! and [`LocalEnergy::apply`] notes that it was made. Positions stay as they were at the beginning.
 //! Energies come from the potentials' own formulas, through the form `Energies` of their runs.
 
-use crate::dynamics::instructions::{Arithmetic, Kernel, run};
+use super::hinges::{CHUNK, Hinges};
 use crate::mesh::geometry::{EdgeGeometry, TotalPartials, Totals, TriangleGeometry, Vec3};
-use crate::mesh::geometry::{VertexGeometry, bend, is_small, small_bend};
+use crate::mesh::geometry::{VertexGeometry, bend};
 use crate::mesh::triangulation::{Quad, Triangulation, Turn, next, previous};
 use crate::mesh::vertex_vectors::{VertexVectors, add_corner};
 use crate::potentials::{Edges, Needs, Term, Triangles, Vertices};
@@ -65,9 +65,6 @@ struct VertexRecord {
     scalars: VertexGeometry,
     energy: f64,
 }
-
-/// Elements that are handled together where the whole mesh is gone over.
-const CHUNK: usize = 64;
 
 /// What a flip makes of the elements that it touches. With i, j, k, l as in [`Quad`], I is the new triangle (i, l, k)
 /// and J the new triangle (j, k, l).
@@ -582,58 +579,6 @@ fn edge_between(left: &Face, right: &Face, length_squared: f64, arm: Vec3) -> Ed
     let product = left.twice_area * right.twice_area;
     let bend = bend(length_squared, left.normal.dot(&arm), cosine, product);
     EdgeGeometry { length_squared, bend }
-}
-
-/// Edges whose angles are computed together, as many at once as the processor has lanes.
-struct Hinges {
-    halves: [u32; CHUNK],
-    twins: [u32; CHUNK],
-    lengths_squared: [f64; CHUNK],
-    determinants: [f64; CHUNK],
-    cosines: [f64; CHUNK],
-    products: [f64; CHUNK],
-}
-
-impl Default for Hinges {
-    fn default() -> Self {
-        // Those that are not filled in are flat.
-        let (lengths_squared, determinants) = ([1.0; CHUNK], [0.0; CHUNK]);
-        let (cosines, products) = ([1.0; CHUNK], [1.0; CHUNK]);
-        let (halves, twins) = ([0; CHUNK], [0; CHUNK]);
-        Self { halves, twins, lengths_squared, determinants, cosines, products }
-    }
-}
-
-impl Hinges {
-    fn bend(&self, count: usize) -> [EdgeGeometry; CHUNK] {
-        struct Small<'a>(&'a Hinges, &'a mut [f64; CHUNK]);
-        impl Kernel for Small<'_> {
-            #[inline(always)]
-            fn execute<A: Arithmetic>(self) {
-                let Self(hinges, bends) = self;
-                for n in 0..CHUNK {
-                    bends[n] = small_bend(
-                        hinges.lengths_squared[n],
-                        hinges.determinants[n],
-                        hinges.cosines[n],
-                        hinges.products[n],
-                    );
-                }
-            }
-        }
-        let mut bends = [0.0; CHUNK];
-        run(Small(self, &mut bends));
-        let mut edges = [EdgeGeometry::default(); CHUNK];
-        for n in 0..count {
-            let (length_squared, cosine) = (self.lengths_squared[n], self.cosines[n]);
-            edges[n] = EdgeGeometry { length_squared, bend: bends[n] };
-            if !is_small(cosine, self.products[n]) {
-                edges[n].bend =
-                    bend(length_squared, self.determinants[n], cosine, self.products[n]);
-            }
-        }
-        edges
-    }
 }
 
 /// Ask for the cache lines of something that will be needed soon.

@@ -4,6 +4,7 @@
 //! [`flips`] are moves of the connectivity.
 
 pub mod flips;
+mod hinges;
 pub mod local;
 pub mod records;
 
