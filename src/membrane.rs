@@ -2,7 +2,7 @@
 
 use crate::backend::Choice;
 use crate::error::{Error, Result};
-use crate::evaluator::{ChosenEvaluator, Present, culprit};
+use crate::evaluator::{ChosenEvaluator, Present};
 use crate::mesh::numbering::breadth_first;
 use crate::mesh::orientation::is_inside_out;
 use crate::mesh::{Topology, Triangulation};
@@ -154,10 +154,9 @@ impl Membrane {
         for term in terms {
             self.check(term)?;
         }
-        if !self.local.fill(&self.mesh, terms, positions) {
-            let triangles = (0..self.mesh.triangles().len()).map(|t| self.mesh.particles_of(t));
-            return Err(culprit(self.mesh.particles(), triangles, positions));
-        }
+        let present = Present { mesh: &self.mesh, order: &self.order };
+        self.local
+            .fill(terms, |survey| self.evaluator.survey(present, terms, positions, None, survey))?;
         let made = flips::attempt(&mut self.mesh, &mut self.local, terms, rules, attempts, state);
         if made > 0 {
             self.flips_of_order += made;

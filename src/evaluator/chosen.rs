@@ -2,7 +2,7 @@
 
 #[cfg(feature = "gpu")]
 use super::gpu::{GpuEvaluator, Precision, calibration};
-use super::{CpuEvaluator, InstructionSet};
+use super::{CpuEvaluator, InstructionSet, Survey};
 use crate::backend::{self, Choice, Kind};
 use crate::error::{Error, Result};
 #[cfg(feature = "gpu")]
@@ -149,12 +149,31 @@ impl ChosenEvaluator {
         forces: Option<&mut [f64]>,
     ) -> Result<()> {
         backend::count_evaluation(false);
-        let threads = self.threads;
-        let cpu = self.cpu.get_or_insert_with(|| {
-            CpuEvaluator::of(present.mesh, present.order, InstructionSet::Best, threads)
-        });
         let terms: SmallVec<[&Term; 8]> = terms.iter().collect();
-        cpu.evaluate(&terms, positions, contributions, forces)
+        self.cpu(present).evaluate(&terms, positions, contributions, forces)
+    }
+
+    /// Evaluate terms on the processor, whatever has been chosen, and note what is known of every element.
+    ///
+    /// # Errors
+    /// As [`CpuEvaluator::survey`].
+    pub fn survey(
+        &mut self,
+        present: Present,
+        terms: &[Term],
+        positions: &[f64],
+        forces: Option<&mut [f64]>,
+        survey: &mut Survey,
+    ) -> Result<()> {
+        let terms: SmallVec<[&Term; 8]> = terms.iter().collect();
+        self.cpu(present).survey(&terms, positions, forces, survey)
+    }
+
+    fn cpu(&mut self, present: Present) -> &mut CpuEvaluator {
+        let threads = self.threads;
+        self.cpu.get_or_insert_with(|| {
+            CpuEvaluator::of(present.mesh, present.order, InstructionSet::Best, threads)
+        })
     }
 }
 

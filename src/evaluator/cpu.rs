@@ -1,5 +1,6 @@
 //! The evaluator on the processor, and the choice of what it computes with.
 
+use super::Survey;
 use super::simd::{Level, SimdEvaluator};
 use crate::error::Result;
 use crate::mesh::numbering::breadth_first;
@@ -88,6 +89,20 @@ impl CpuEvaluator {
         contributions: &mut [Contribution],
         forces: Option<&mut [f64]>,
     ) -> Result<()> {
-        self.simd.evaluate(terms, positions, contributions, forces)
+        self.simd.evaluate(terms, positions, contributions, forces, None)
+    }
+
+    /// Evaluate terms, and note what is known of every element. Forces, if wanted, are **added**.
+    ///
+    /// # Errors
+    /// Those of [`Self::evaluate`]; what is in the survey then is not to be used.
+    pub fn survey(
+        &mut self,
+        terms: &[&Term],
+        positions: &[f64],
+        forces: Option<&mut [f64]>,
+        survey: &mut Survey,
+    ) -> Result<()> {
+        self.simd.evaluate(terms, positions, &mut [], forces, Some(survey))
     }
 }

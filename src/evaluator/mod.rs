@@ -8,8 +8,9 @@ pub mod gpu;
 mod passes;
 mod reference;
 pub(crate) mod simd;
+mod survey;
 
-pub(crate) use checks::culprit;
 pub use chosen::{ChosenEvaluator, LEAST_VERTICES_FOR_GPU, Present};
 pub use cpu::{CpuEvaluator, InstructionSet};
 pub use reference::ReferenceEvaluator;
+pub use survey::{Survey, SurveyedTriangle, SurveyedVertex};

@@ -14,7 +14,7 @@ use nalgebra::Vector3;
 pub type Vec3 = Vector3<f64>;
 
 /// Forward geometry of one triangle with corners a, b, c.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct TriangleGeometry {
     /// N = (b − a) × (c − a), nm².
     pub normal: Vec3,

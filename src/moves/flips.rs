@@ -11,7 +11,7 @@
 //! distribution is sampled. See D. R. Nelson, T. Piran, S. Weinberg (eds.), Statistical Mechanics of Membranes and
 //! Surfaces, and G. Gompper, D. M. Kroll, doi:10.1088/0953-8984/9/42/001.
 
-use super::local::LocalEnergy;
+use super::local::{Flipped, LocalEnergy};
 use super::records::{FlipRules, FlipState};
 use crate::dynamics::instructions::{Arithmetic, Kernel, run};
 use crate::dynamics::random;
@@ -104,6 +104,7 @@ pub fn attempt(
     let half_edges = 3 * mesh.triangles().len();
     let before = state.accepted;
     let mut draws = [Draw::default(); BLOCK];
+    let mut flipped = Flipped::default();
     let mut left = attempts;
     while left > 0 {
         let count = left.min(BLOCK as u64) as usize;
@@ -120,7 +121,7 @@ pub fn attempt(
             if let Some(later) = draws[..count].get(n + 4) {
                 local.fetch_rest(mesh, later.half);
             }
-            one(mesh, local, terms, rules, draw, state);
+            one(mesh, local, terms, rules, draw, state, &mut flipped);
         }
         left -= count as u64;
     }
@@ -135,6 +136,7 @@ fn one(
     rules: &FlipRules,
     draw: &Draw,
     state: &mut FlipState,
+    flipped: &mut Flipped,
 ) {
     state.attempts += 1;
     let quad = mesh.quad(draw.half);
@@ -152,21 +154,15 @@ fn one(
         state.by_length += 1;
         return;
     }
-    let flipped = local.flipped(mesh, terms, &quad, turn);
-    let difference = flipped.difference;
+    // exp(−ΔE / kT) is above the random number up to here; the logarithm of 0 sets no limit.
+    let limit =
+        if rules.demon != 0 { state.demon_energy } else { -rules.temperature * draw.uniform.ln() };
+    let difference = local.flipped(mesh, terms, &quad, turn, limit, flipped);
     if !difference.is_finite() {
         state.by_shape += 1;
         return;
     }
-    let allowed = if rules.demon != 0 {
-        difference <= state.demon_energy
-    } else {
-        // Random numbers have steps of 2⁻⁵³ = exp(−36.7); further away nothing is accepted, and libraries take their
-        // time over exponentials that underflow.
-        let exponent = -difference / rules.temperature;
-        difference <= 0.0 || exponent > -40.0 && draw.uniform < exponent.exp()
-    };
-    if !allowed {
+    if difference > limit {
         state.by_energy += 1;
         return;
     }
@@ -175,7 +171,7 @@ fn one(
         return;
     }
     mesh.flip(&quad, turn);
-    local.apply(mesh, &quad, &flipped);
+    local.apply(mesh, &quad, flipped);
     state.accepted += 1;
     if rules.demon != 0 {
         state.demon_energy -= difference;

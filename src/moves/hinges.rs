@@ -1,40 +1,55 @@
-//! Dihedral angles of many edges at once, for a pass over the whole mesh.
+//! Dihedral angles of the few edges around a flip, all at once.
 
 use crate::dynamics::instructions::{Arithmetic, Kernel, run};
-use crate::mesh::geometry::{EdgeGeometry, bend, is_small, small_bend};
+use crate::mesh::geometry::{EdgeGeometry, TriangleGeometry, Vec3, bend, is_small, small_bend};
 
-/// Elements that are handled together where the whole mesh is gone over.
-pub const CHUNK: usize = 64;
+/// Room for ten edges, in whole registers.
+pub const HINGES: usize = 16;
 
 /// Edges whose angles are computed together, as many at once as the processor has lanes.
 pub struct Hinges {
-    pub halves: [u32; CHUNK],
-    pub twins: [u32; CHUNK],
-    pub lengths_squared: [f64; CHUNK],
-    pub determinants: [f64; CHUNK],
-    pub cosines: [f64; CHUNK],
-    pub products: [f64; CHUNK],
+    lengths_squared: [f64; HINGES],
+    determinants: [f64; HINGES],
+    cosines: [f64; HINGES],
+    products: [f64; HINGES],
 }
 
 impl Default for Hinges {
     fn default() -> Self {
         // Those that are not filled in are flat.
-        let (lengths_squared, determinants) = ([1.0; CHUNK], [0.0; CHUNK]);
-        let (cosines, products) = ([1.0; CHUNK], [1.0; CHUNK]);
-        let (halves, twins) = ([0; CHUNK], [0; CHUNK]);
-        Self { halves, twins, lengths_squared, determinants, cosines, products }
+        let (lengths_squared, determinants) = ([1.0; HINGES], [0.0; HINGES]);
+        let (cosines, products) = ([1.0; HINGES], [1.0; HINGES]);
+        Self { lengths_squared, determinants, cosines, products }
     }
 }
 
 impl Hinges {
-    /// The first so many.
-    pub fn bend(&self, count: usize) -> [EdgeGeometry; CHUNK] {
-        struct Small<'a>(&'a Hinges, &'a mut [f64; CHUNK]);
+    /// The edge of a triangle on the left and one on the right; `arm` leads from the tip of the right one to the
+    /// edge.
+    #[inline(always)]
+    pub fn set(
+        &mut self,
+        place: usize,
+        left: &TriangleGeometry,
+        right: &TriangleGeometry,
+        length_squared: f64,
+        arm: &Vec3,
+    ) {
+        self.lengths_squared[place] = length_squared;
+        self.determinants[place] = left.normal.dot(arm);
+        self.cosines[place] = left.normal.dot(&right.normal);
+        self.products[place] = left.twice_area * right.twice_area;
+    }
+
+    /// All of them.
+    #[inline]
+    pub fn bend(&self) -> [EdgeGeometry; HINGES] {
+        struct Small<'a>(&'a Hinges, &'a mut [f64; HINGES]);
         impl Kernel for Small<'_> {
             #[inline(always)]
             fn execute<A: Arithmetic>(self) {
                 let Self(hinges, bends) = self;
-                for n in 0..CHUNK {
+                for n in 0..HINGES {
                     bends[n] = small_bend(
                         hinges.lengths_squared[n],
                         hinges.determinants[n],
@@ -44,17 +59,17 @@ impl Hinges {
                 }
             }
         }
-        let mut bends = [0.0; CHUNK];
+        let mut bends = [0.0; HINGES];
         run(Small(self, &mut bends));
-        let mut edges = [EdgeGeometry::default(); CHUNK];
-        for n in 0..count {
+        std::array::from_fn(|n| {
             let (length_squared, cosine) = (self.lengths_squared[n], self.cosines[n]);
-            edges[n] = EdgeGeometry { length_squared, bend: bends[n] };
-            if !is_small(cosine, self.products[n]) {
-                edges[n].bend =
-                    bend(length_squared, self.determinants[n], cosine, self.products[n]);
-            }
-        }
-        edges
+            let (determinant, product) = (self.determinants[n], self.products[n]);
+            let bend = if is_small(cosine, product) {
+                bends[n]
+            } else {
+                bend(length_squared, determinant, cosine, product)
+            };
+            EdgeGeometry { length_squared, bend }
+        })
     }
 }

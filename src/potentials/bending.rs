@@ -102,6 +102,11 @@ impl Potential for Bending {
         needs
     }
 
+    /// Over an area above zero the energy is a square: ½ κ a (c / a − C₀)², or more where C₀ takes a component of c.
+    fn is_never_negative(&self, term: &Term) -> bool {
+        parts(term).1 == Area::Barycentric
+    }
+
     fn vertices(&self, term: &Term, run: Vertices) -> Contribution {
         const J: u8 = Numerator::Julicher as u8;
         const S: u8 = Numerator::Cotangent as u8;

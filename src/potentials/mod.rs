@@ -141,6 +141,12 @@ pub trait Potential: Sync {
         false
     }
 
+    /// Whether no vertex can have an energy below zero: then a move that must gain more than its vertices have is
+    /// refused without a look at what they would get. To say no is always right, but slower.
+    fn is_never_negative(&self, _: &Term) -> bool {
+        false
+    }
+
     /// Energy of the total area and volume.
     fn totals(&self, _: &Term, _: &Totals, _: &mut TotalPartials) -> Contribution {
         Contribution::default()

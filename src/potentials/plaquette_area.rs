@@ -29,6 +29,10 @@ impl Potential for PlaquetteArea {
         Needs::VERTICES
     }
 
+    fn is_never_negative(&self, _: &Term) -> bool {
+        true
+    }
+
     fn vertices(&self, term: &Term, run: Vertices) -> Contribution {
         let [stiffness, target, ..] = term.values;
         let scale = run.total() as f64 / target;

@@ -18,6 +18,7 @@ mod instructions;
 mod lanes;
 mod layout;
 mod records;
+mod survey;
 mod sweep;
 mod tiles;
 mod triangles;
@@ -29,6 +30,7 @@ pub use layout::Layout;
 pub use records::BLOCK;
 pub use tiles::{EdgeBlock, TriangleTile, VertexTile};
 
+use super::Survey;
 use super::checks::{check_energies, culprit};
 use crate::error::{Error, Result};
 use crate::mesh::Triangulation;
@@ -38,6 +40,7 @@ use crate::team::{Parts, Team};
 use arrays::Arrays;
 use backward::Forces;
 use choice::Choice;
+use survey::Findings;
 use sweep::{Scratch, Sweep, backward};
 use triangles::TriangleSums;
 
@@ -115,13 +118,14 @@ impl SimdEvaluator {
         self.scratch.resize_with(self.team.as_ref().map_or(1, Team::size), scratch);
     }
 
-    /// As [`super::CpuEvaluator::evaluate`].
+    /// As [`super::CpuEvaluator::evaluate`] and [`super::CpuEvaluator::survey`].
     pub fn evaluate(
         &mut self,
         terms: &[&Term],
         positions: &[f64],
         contributions: &mut [Contribution],
         forces: Option<&mut [f64]>,
+        survey: Option<&mut Survey>,
     ) -> Result<()> {
         let particles = self.particles;
         let (length, fits) =
@@ -133,7 +137,8 @@ impl SimdEvaluator {
             )));
         }
         let attempt = self.choice.next();
-        let outcome = self.attempt(terms, positions, contributions, forces, attempt.together);
+        let outcome =
+            self.attempt(terms, positions, contributions, forces, survey, attempt.together);
         self.choice.done(&attempt);
         outcome
     }
@@ -145,10 +150,14 @@ impl SimdEvaluator {
         positions: &[f64],
         contributions: &mut [Contribution],
         forces: Option<&mut [f64]>,
+        mut survey: Option<&mut Survey>,
         together: bool,
     ) -> Result<()> {
         let needs = terms.iter().fold(Needs::empty(), |all, term| all | term.potential.needs(term));
         self.make_room(needs, terms.len());
+        if let Some(survey) = &mut survey {
+            survey.make_room(needs, self.layout.num_triangles, self.layout.num_vertices);
+        }
         let team = self.team.as_mut().filter(|_| together).unwrap_or(&mut self.alone);
         let sweep = Sweep {
             level: self.level,
@@ -157,6 +166,7 @@ impl SimdEvaluator {
             terms,
             needs,
             positions,
+            findings: survey.as_deref_mut().map(Findings::new),
         };
         let sums = Parts::new(&mut self.triangle_sums);
         let parts = Parts::new(&mut self.contributions);
@@ -173,6 +183,9 @@ impl SimdEvaluator {
             particles.sort_unstable();
             return Err(culprit(&particles, self.layout.triangles().into_iter(), positions));
         };
+        if let Some(survey) = survey {
+            survey.totals = totals;
+        }
         let mut total_partials = TotalPartials::default();
         let mut ignored = Contribution::default();
         for (k, term) in terms.iter().enumerate() {

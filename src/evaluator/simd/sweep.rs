@@ -8,6 +8,7 @@ use super::forward::{self, NORMALS, VECTORS, VORONOI};
 use super::instructions::{Level, dispatch};
 use super::layout::{Layout, TILE};
 use super::records::BLOCK;
+use super::survey::Findings;
 use super::tiles::{EdgeBlock, TriangleTile, VertexTile};
 use super::triangles::{self, TriangleSums};
 use crate::mesh::geometry::TotalPartials;
@@ -28,6 +29,8 @@ pub struct Sweep<'a, 't> {
     pub terms: &'a [&'t Term<'t>],
     pub needs: Needs,
     pub positions: &'a [f64],
+    /// Where to note every element, if somebody wants to know.
+    pub findings: Option<Findings<'a>>,
 }
 
 impl Sweep<'_, '_> {
@@ -106,18 +109,22 @@ impl Sweep<'_, '_> {
         let (layout, arrays, level) = (self.layout, self.arrays, self.level);
         contributions.fill(Contribution::default());
         let potentials = self.needs.contains(Needs::TRIANGLES);
+        let columns = potentials || self.findings.is_some();
         macro_rules! forward {
             ($potentials:literal $angles:literal) => {{
                 type Pass<'a> = triangles::Forward<'a, $potentials, $angles>;
                 dispatch(level, Pass { layout, arrays, index, tile })
             }};
         }
-        let sums = match (potentials, self.needs.contains(Needs::NORMALS)) {
+        let sums = match (columns, self.needs.contains(Needs::NORMALS)) {
             (false, false) => forward!(false false),
             (false, true) => forward!(false true),
             (true, false) => forward!(true false),
             (true, true) => forward!(true true),
         };
+        if let Some(findings) = &self.findings {
+            self.survey_triangles(index, tile, findings);
+        }
         if !potentials {
             return TriangleSums { silent, ..sums };
         }
@@ -149,7 +156,7 @@ impl Sweep<'_, '_> {
             }};
         }
         match (bends, vector_level(needs)) {
-            (false, 0) if !needs.contains(Needs::VERTICES) => return,
+            (false, 0) if !needs.contains(Needs::VERTICES) && self.findings.is_none() => return,
             (false, 0) => forward!(false 0),
             (false, VORONOI) => forward!(false VORONOI),
             (false, VECTORS) => forward!(false VECTORS),
@@ -158,6 +165,9 @@ impl Sweep<'_, '_> {
             (true, VORONOI) => forward!(true VORONOI),
             (true, VECTORS) => forward!(true VECTORS),
             (true, _) => forward!(true NORMALS),
+        }
+        if let Some(findings) = &self.findings {
+            self.survey_vertices(index, tile, findings);
         }
         if lengths {
             self.edges(index, contributions);
