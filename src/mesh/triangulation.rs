@@ -205,6 +205,12 @@ impl Triangulation {
         }
     }
 
+    /// Of the half-edges that leave a vertex the one of the lowest number, where rings begin.
+    #[inline(always)]
+    pub fn leaving(&self, vertex: u32) -> u32 {
+        self.leaving[vertex as usize]
+    }
+
     /// The lowest of the half-edges that leave the same vertex as this one.
     fn lowest(&self, half: u32) -> u32 {
         let (mut lowest, mut other) = (half, self.after(half));

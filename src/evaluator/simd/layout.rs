@@ -50,11 +50,9 @@ pub struct Layout {
     /// How many triangles must be known before a tile of vertices can be handled.
     pub frontier: Vec<u32>,
     opposite: OnceLock<Vec<[u32; BLOCK]>>,
-    /// The number of each vertex and triangle by its index in the mesh, and the rings of a block; kept for their
-    /// memory.
+    /// The number of each vertex and triangle by its index in the mesh; kept for their memory.
     number: Vec<u32>,
     triangle_number: Vec<u32>,
-    rings: [Vec<u32>; BLOCK],
 }
 
 impl Layout {
@@ -78,7 +76,6 @@ impl Layout {
             opposite: OnceLock::new(),
             number: Vec::new(),
             triangle_number: Vec::new(),
-            rings: std::array::from_fn(|_| Vec::new()),
         };
         layout.update(mesh, order);
         layout
@@ -145,7 +142,7 @@ impl Layout {
         self.particles.extend(self.vertex_ids.iter().map(|&v| particles[v as usize]));
     }
 
-    /// Store the rings of all vertices, and number the triangles in the order in which the vertices meet them.
+    /// Store the rings of all vertices, and number the triangles in the order in which they are met.
     fn lay_rings(&mut self, mesh: &Triangulation) {
         const UNKNOWN: u32 = u32::MAX;
         let filled = self.num_triangles.next_multiple_of(BLOCK);
@@ -169,38 +166,43 @@ impl Layout {
         let triangles = mesh.triangles().as_flattened();
         for block in 0..self.vertex_ids.len() / BLOCK {
             let vertices = &self.vertex_ids[block * BLOCK..][..BLOCK];
-            for (ring, &vertex) in self.rings.iter_mut().zip(vertices) {
-                mesh.ring(vertex, ring);
-                for &half in &*ring {
-                    // Whether a triangle is new is up to chance, so there is no branch.
-                    let number = &mut self.triangle_number[half as usize / 3];
-                    self.triangle_ids[met] = half / 3;
-                    let is_new = *number == UNKNOWN;
-                    *number = if is_new { met as u32 } else { *number };
-                    met += usize::from(is_new);
-                }
-            }
-            let longest = self.rings.iter().map(Vec::len).max().unwrap_or(0);
+            let degrees: [usize; BLOCK] =
+                std::array::from_fn(|lane| mesh.degrees()[vertices[lane] as usize] as usize);
+            let longest = degrees.into_iter().max().unwrap_or(0);
             let start = self.neighbours.len();
             self.neighbours.resize(start + longest + 1, [0; BLOCK]);
             self.places.resize(start + longest + 1, [nothing; BLOCK]);
+            // All rings of the block go on together: to walk one, each step waits for the one before.
+            let mut halves: [u32; BLOCK] = std::array::from_fn(|lane| mesh.leaving(vertices[lane]));
             let mut before = [0; BLOCK];
             let mut neighbours_before = [0; BLOCK];
-            for (lane, ring) in self.rings.iter().enumerate() {
-                let neighbour =
-                    |half: u32| 4 * self.number[triangles[next(half) as usize] as usize];
-                let triangle = |half: u32| 4 * self.triangle_number[half as usize / 3];
-                for (step, &half) in ring.iter().enumerate() {
-                    self.neighbours[start + step][lane] = neighbour(half);
-                    self.places[start + step][lane] = triangle(half) + half % 3;
+            for step in 0..longest {
+                let (neighbours, places) =
+                    (&mut self.neighbours[start + step], &mut self.places[start + step]);
+                for lane in 0..BLOCK {
+                    if step >= degrees[lane] {
+                        continue;
+                    }
+                    let half = halves[lane];
+                    let (triangle, place) = (half / 3, half % 3);
+                    // Whether a triangle is new is up to chance, so there is no branch.
+                    let number = &mut self.triangle_number[triangle as usize];
+                    self.triangle_ids[met] = triangle;
+                    let is_new = *number == UNKNOWN;
+                    *number = if is_new { met as u32 } else { *number };
+                    met += usize::from(is_new);
+                    places[lane] = 4 * *number + place;
+                    neighbours[lane] = 4 * self.number[triangles[next(half) as usize] as usize];
+                    halves[lane] = mesh.after(half);
+                    // What is left at the end is the last of the ring.
+                    (before[lane], neighbours_before[lane]) = (4 * *number, neighbours[lane]);
                 }
-                let first = self.neighbours[start][lane];
-                for lanes in &mut self.neighbours[start + ring.len()..] {
-                    lanes[lane] = first;
+            }
+            let first = self.neighbours[start];
+            for lane in 0..BLOCK {
+                for lanes in &mut self.neighbours[start + degrees[lane]..] {
+                    lanes[lane] = first[lane];
                 }
-                let last = ring[ring.len() - 1];
-                before[lane] = triangle(last);
-                neighbours_before[lane] = neighbour(last);
             }
             self.before.push(before);
             self.neighbours_before.push(neighbours_before);
