@@ -8,7 +8,7 @@ use crate::mesh::orientation::is_inside_out;
 use crate::mesh::{Topology, Triangulation};
 use crate::moves::local::LocalEnergy;
 use crate::moves::{FlipRules, FlipState, flips};
-use crate::potentials::{Contribution, Element, Term};
+use crate::potentials::{Contribution, Element, MAX_PARAMETERS, Term};
 use std::sync::atomic::{AtomicI64, Ordering};
 
 /// How many membranes there are, which tells whether forces share them and whether any are left over.
@@ -29,9 +29,59 @@ pub struct Membrane {
     initial_fingerprint: u64,
     evaluator: ChosenEvaluator,
     local: LocalEnergy,
+    /// The forces after the last flips, which the time step asks for next.
+    remembered: Remembered,
+    /// The forces before them; kept for its memory.
+    before: Vec<f64>,
     num_particles: usize,
     /// Whether the surface has been looked at and is not inside out.
     has_outside: bool,
+}
+
+/// Forces of some terms at some positions.
+#[derive(Default)]
+struct Remembered {
+    is_there: bool,
+    terms: Vec<RememberedTerm>,
+    positions: Vec<f64>,
+    forces: Vec<f64>,
+}
+
+/// All of a term that forces depend on.
+struct RememberedTerm {
+    name: &'static str,
+    form: usize,
+    switches: u32,
+    values: [f64; MAX_PARAMETERS],
+    fields: [Vec<f64>; MAX_PARAMETERS],
+}
+
+impl Remembered {
+    fn is_of(&self, terms: &[Term], positions: &[f64]) -> bool {
+        self.is_there
+            && self.terms.len() == terms.len()
+            && self.terms.iter().zip(terms).all(|(known, term)| known.is(term))
+            && self.positions == positions
+    }
+}
+
+impl RememberedTerm {
+    fn new(term: &Term) -> Self {
+        Self {
+            name: term.potential.name(),
+            form: term.form,
+            switches: term.switches,
+            values: term.values,
+            fields: term.fields.map(<[f64]>::to_vec),
+        }
+    }
+
+    fn is(&self, term: &Term) -> bool {
+        self.name == term.potential.name()
+            && (self.form, self.switches) == (term.form, term.switches)
+            && self.values == term.values
+            && self.fields.iter().zip(term.fields).all(|(known, field)| known == field)
+    }
 }
 
 /// What decides the bits of evaluations beside positions: the connectivity, and in which order sums are formed.
@@ -62,6 +112,8 @@ impl Membrane {
             flips_of_order: 0,
             evaluator,
             local,
+            remembered: Remembered::default(),
+            before: Vec::new(),
             num_particles,
             has_outside: false,
         })
@@ -128,11 +180,13 @@ impl Membrane {
 
     fn take(&mut self, mesh: Triangulation, order: Vec<u32>, flips: u64) -> Result<()> {
         (self.mesh, self.order, self.flips_of_order) = (mesh, order, flips);
+        self.remembered.is_there = false;
         self.evaluator.connectivity_changed(Present { mesh: &self.mesh, order: &self.order })
     }
 
     /// Try to flip so many edges at the present positions (nm), with the energy of some terms. Returns how many flips
-    /// were made.
+    /// were made. If `force_change` (kJ/mol/nm, in the layout of the positions) is wanted, it gets by how much they
+    /// have changed the forces; it is left alone if there were none.
     ///
     /// # Errors
     /// Rules that make no sense, a term as [`Self::evaluate`] refuses it, a mesh without geometry. Nothing has
@@ -144,6 +198,7 @@ impl Membrane {
         rules: &FlipRules,
         attempts: u64,
         state: &mut FlipState,
+        mut force_change: Option<&mut [f64]>,
     ) -> Result<u64> {
         if positions.len() != 3 * self.num_particles {
             return Err(Error::Contract(format!(
@@ -154,9 +209,16 @@ impl Membrane {
         for term in terms {
             self.check(term)?;
         }
+        self.remembered.is_there = false;
+        let before = force_change.as_ref().map(|_| {
+            self.before.clear();
+            self.before.resize(positions.len(), 0.0);
+            self.before.as_mut_slice()
+        });
         let present = Present { mesh: &self.mesh, order: &self.order };
-        self.local
-            .fill(terms, |survey| self.evaluator.survey(present, terms, positions, None, survey))?;
+        self.local.fill(terms, |survey| {
+            self.evaluator.survey(present, terms, positions, before, survey)
+        })?;
         let made = flips::attempt(&mut self.mesh, &mut self.local, terms, rules, attempts, state);
         if made > 0 {
             self.flips_of_order += made;
@@ -166,8 +228,34 @@ impl Membrane {
             }
             self.evaluator
                 .connectivity_changed(Present { mesh: &self.mesh, order: &self.order })?;
+            if let Some(change) = &mut force_change {
+                self.compare_forces(terms, positions, change)?;
+            }
         }
         Ok(made)
+    }
+
+    /// By how much forces differ from those before flips; what they are is remembered.
+    fn compare_forces(
+        &mut self,
+        terms: &[Term],
+        positions: &[f64],
+        change: &mut [f64],
+    ) -> Result<()> {
+        let mut forces = std::mem::take(&mut self.remembered.forces);
+        forces.clear();
+        forces.resize(positions.len(), 0.0);
+        self.evaluate(terms, positions, &mut [], Some(&mut forces))?;
+        for ((change, after), before) in change.iter_mut().zip(&forces).zip(&self.before) {
+            *change = after - before;
+        }
+        let known = &mut self.remembered;
+        known.terms.clear();
+        known.terms.extend(terms.iter().map(RememberedTerm::new));
+        known.positions.clear();
+        known.positions.extend_from_slice(positions);
+        (known.forces, known.is_there) = (forces, true);
+        Ok(())
     }
 
     /// Let a force join that wants to be computed in some way, or in any.
@@ -190,7 +278,7 @@ impl Membrane {
         terms: &[Term],
         positions: &[f64],
         contributions: &mut [Contribution],
-        forces: Option<&mut [f64]>,
+        mut forces: Option<&mut [f64]>,
     ) -> Result<()> {
         let length = 3 * self.num_particles;
         let fits = forces.as_ref().is_none_or(|forces| forces.len() == length);
@@ -206,6 +294,13 @@ impl Membrane {
         }
         if !self.has_outside {
             self.look_for_outside(terms, positions)?;
+        }
+        let remembers = contributions.is_empty() && self.remembered.is_of(terms, positions);
+        self.remembered.is_there = false;
+        if let (true, Some(forces)) = (remembers, &mut forces) {
+            let known = &self.remembered.forces;
+            forces.iter_mut().zip(known).for_each(|(sum, force)| *sum += force);
+            return Ok(());
         }
         let present = Present { mesh: &self.mesh, order: &self.order };
         self.evaluator.evaluate(present, terms, positions, contributions, forces)

@@ -1,10 +1,10 @@
-//! What an evaluation knows of every element, by its index in the mesh: moves go on from there.
+//! What an evaluation knows of every triangle and vertex, by its index in the mesh: moves go on from there.
 
 use crate::mesh::geometry::{Totals, TriangleGeometry, Vec3, VertexGeometry};
 use crate::mesh::vertex_vectors::VertexVectors;
 use crate::potentials::Needs;
 
-/// Geometry and energies of all triangles and vertices at some positions.
+/// All triangles and vertices at some positions.
 #[derive(Default)]
 pub struct Survey {
     /// What the terms needed.

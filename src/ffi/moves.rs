@@ -21,12 +21,13 @@ pub unsafe extern "C" fn Helfrich_Membrane_checkFlips(
 }
 
 /// Try to flip so many edges at the present positions, with the energy of some terms. `made` gets how many
-/// flips were made.
+/// flips were made; `force_change`, if it is not null, by how much that has changed the forces, or nothing if there were
+/// no flips.
 ///
 /// # Safety
 /// `subject` must end with a NUL; `membrane` must be alive and used by no other thread; `terms` must hold
-/// `num_terms` values, `positions` three values for each particle; `rules` must be readable, `state` and `made`
-/// writable.
+/// `num_terms` values, `positions` and `force_change` three values for each particle; `rules` must be readable, `state`
+/// and `made` writable.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn Helfrich_Membrane_flip(
     subject: *const c_char,
@@ -39,6 +40,7 @@ pub unsafe extern "C" fn Helfrich_Membrane_flip(
     attempts: i64,
     state: *mut FlipState,
     made: *mut i64,
+    force_change: *mut f64,
 ) -> c_int {
     guarded(unsafe { text(subject) }, || {
         let inputs = unsafe { slice(terms, num_terms as usize) };
@@ -46,7 +48,9 @@ pub unsafe extern "C" fn Helfrich_Membrane_flip(
             inputs.iter().map(|input| unsafe { input.term() }).collect();
         let positions = unsafe { slice(positions, 3 * num_particles as usize) };
         let (membrane, rules, state) = unsafe { (&mut *membrane, &*rules, &mut *state) };
-        let count = membrane.flip(&terms, positions, rules, attempts as u64, state)?;
+        let change = (!force_change.is_null())
+            .then(|| unsafe { slices::from_raw_parts_mut(force_change, positions.len()) });
+        let count = membrane.flip(&terms, positions, rules, attempts as u64, state, change)?;
         unsafe { made.write(count as i64) };
         Ok(())
     })

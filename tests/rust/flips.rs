@@ -150,7 +150,7 @@ fn many_flips_leave_a_valid_surface_and_current_evaluators() {
     membrane.evaluate(&terms, &positions, &mut [], None).unwrap();
     let mut made = 0;
     for round in 0.. {
-        made += membrane.flip(&terms[..1], &positions, &hot, 3000, &mut state).unwrap();
+        made += membrane.flip(&terms[..1], &positions, &hot, 3000, &mut state, None).unwrap();
         let mesh = corners(membrane.mesh());
         let valid = Triangulation::new(&Topology::new(&mesh, count).unwrap());
         assert_eq!(valid.twins(), membrane.mesh().twins());
@@ -189,7 +189,7 @@ fn what_was_saved_goes_on_with_the_same_bits() {
     let terms = all_terms(true);
     let run = |membrane: &mut Membrane, state: &mut FlipState| {
         membrane
-            .flip(&terms, &positions, &FlipRules { temperature: 50.0, ..ANY }, 2000, state)
+            .flip(&terms, &positions, &FlipRules { temperature: 50.0, ..ANY }, 2000, state, None)
             .unwrap();
         let mut sums = vec![Contribution::default(); terms.len()];
         let mut forces = vec![0.0; positions.len()];
@@ -221,7 +221,7 @@ fn a_demon_keeps_the_energy() {
     let before = total(&membrane) + state.demon_energy;
     for _ in 0..20 {
         let rules = FlipRules { demon: 1, ..ANY };
-        membrane.flip(&terms, &positions, &rules, 500, &mut state).unwrap();
+        membrane.flip(&terms, &positions, &rules, 500, &mut state, None).unwrap();
         assert!(state.demon_energy >= 0.0);
         let after = total(&membrane) + state.demon_energy;
         assert!((after - before).abs() < 1e-9 * before.abs(), "{after} {before}");
@@ -248,7 +248,7 @@ fn bounds_are_kept() {
     };
     let start = edges(membrane.mesh());
     for _ in 0..50 {
-        membrane.flip(&[term], &positions, &hot, 200, &mut state).unwrap();
+        membrane.flip(&[term], &positions, &hot, 200, &mut state, None).unwrap();
         assert!(membrane.mesh().degrees().iter().all(|degree| (4..=9).contains(degree)));
         for edge in edges(membrane.mesh()).difference(&start) {
             assert!((place(edge[0]) - place(edge[1])).norm() <= longest);
@@ -365,7 +365,7 @@ fn visits_are_boltzmann(
     let (rules, mut state) = (FlipRules { temperature, ..ANY }, seeded(seed));
     let mut visits = vec![0usize; states.len()];
     for _ in 0..looks {
-        membrane.flip(terms, &positions, &rules, apart, &mut state).unwrap();
+        membrane.flip(terms, &positions, &rules, apart, &mut state, None).unwrap();
         let mesh = membrane.mesh();
         visits[index[&key((0..mesh.triangles().len()).map(|t| mesh.particles_of(t)))]] += 1;
     }
@@ -438,5 +438,59 @@ fn visited_frequencies_are_boltzmann_weights_with_voronoi_areas() {
         let term = Term::new("BendingForce", form, &[1.0, 0.3]).unwrap();
         visits_are_boltzmann(5, &[term], 20_000, 100, 0.6, 50 + n as u32);
         visits_are_boltzmann(6, &[term], 20_000, 150, 0.6, 60 + n as u32);
+    }
+}
+
+/// What a leapfrog wants to know: by how much flips have changed forces; and the evaluation that follows gets those
+/// that are remembered only where it would find the same.
+#[test]
+fn the_change_of_forces_is_that_of_two_evaluations() {
+    let mut noise = random(31);
+    let (positions, triangles) = spheroid(6, 9, &mut noise);
+    let count = positions.len() / 3;
+    let terms = all_terms(true);
+    let hot = FlipRules { temperature: 1e6, ..ANY };
+    let forces_of = |membrane: &mut Membrane, terms: &[Term], positions: &[f64]| {
+        let mut forces = vec![0.0; positions.len()];
+        membrane.evaluate(terms, positions, &mut [], Some(&mut forces)).unwrap();
+        forces
+    };
+    for seed in 0..4 {
+        let mut membrane = Membrane::new(&triangles, count).unwrap();
+        let before = forces_of(&mut membrane, &terms, &positions);
+        let mut change = vec![0.0; positions.len()];
+        let mut state = seeded(seed);
+        let made =
+            membrane.flip(&terms, &positions, &hot, 100, &mut state, Some(&mut change)).unwrap();
+        assert!(made > 0);
+        let saved = membrane.connectivity();
+        let mut other = Membrane::new(&triangles, count).unwrap();
+        other.restore(&saved).unwrap();
+        let after = forces_of(&mut other, &terms, &positions);
+        for ((change, after), before) in change.iter().zip(&after).zip(&before) {
+            assert_eq!(*change, after - before);
+        }
+        // The first evaluation is remembered, the second is not; a change of anything in between counts.
+        let mut moved = positions.clone();
+        moved[4] += 0.01;
+        let fewer = &terms[1..];
+        let expected = match seed {
+            0 => after.clone(),
+            1 => forces_of(&mut other, &terms, &moved),
+            2 => forces_of(&mut other, fewer, &positions),
+            _ => {
+                other.set_triangles(&triangles).unwrap();
+                membrane.set_triangles(&triangles).unwrap();
+                forces_of(&mut other, &terms, &positions)
+            }
+        };
+        let (terms, positions) = match seed {
+            1 => (&terms[..], &moved),
+            2 => (fewer, &positions),
+            _ => (&terms[..], &positions),
+        };
+        for _ in 0..2 {
+            assert_eq!(forces_of(&mut membrane, terms, positions), expected);
+        }
     }
 }

@@ -149,7 +149,7 @@ fn dynamics_with_flips(mesh: &Mesh, steps: usize) -> Vec<Sample> {
     let mut samples = Vec::new();
     for step in 0..steps {
         if step % 5 == 0 {
-            membrane.flip(&terms, &positions, &rules, count as u64, &mut state).unwrap();
+            membrane.flip(&terms, &positions, &rules, count as u64, &mut state, None).unwrap();
         }
         forces.fill(0.0);
         let wanted = step % 10 == 0 && step > steps / 20;

@@ -3,7 +3,12 @@
 #include <openmm/CompoundIntegrator.h>
 #include <openmm/CustomCVForce.h>
 #include <openmm/CustomIntegrator.h>
+#include <openmm/DPDIntegrator.h>
+#include <openmm/LangevinMiddleIntegrator.h>
+#include <openmm/NoseHooverIntegrator.h>
+#include <openmm/QTBIntegrator.h>
 #include <openmm/System.h>
+#include <openmm/VerletIntegrator.h>
 #include <openmm/internal/OSRngSeed.h>
 #include <openmm/reference/ReferencePlatform.h>
 #include <openmm/reference/SimTKOpenMMRealType.h>
@@ -78,6 +83,15 @@ const Integrator& findIntegrator(ContextImpl& context) {
     return compound == nullptr ? integrator : compound->getIntegrator(compound->getCurrentIntegrator());
 }
 
+/** Whether an integrator keeps velocities of half a step ago and gives them the kick of a whole step at once. */
+bool isLeapfrog(const Integrator& integrator) {
+    return dynamic_cast<const VerletIntegrator*>(&integrator) != nullptr ||
+        dynamic_cast<const LangevinMiddleIntegrator*>(&integrator) != nullptr ||
+        dynamic_cast<const NoseHooverIntegrator*>(&integrator) != nullptr ||
+        dynamic_cast<const DPDIntegrator*>(&integrator) != nullptr ||
+        dynamic_cast<const QTBIntegrator*>(&integrator) != nullptr;
+}
+
 /**
  * Whether an integrator writes parameters of the Context during a step, from copies that it made at the step's
  * beginning: Reference's CustomIntegrator always does, others if they compute parameters.
@@ -127,6 +141,10 @@ void MonteCarloBondFlipImpl::initialize(ContextImpl& context) {
         membrane.reset();
         throw;
     }
+    const vector<int>& corners = owner.getTriangles();
+    for (int particle : std::set<int>(corners.begin(), corners.end()))
+        if (double mass = context.getSystem().getParticleMass(particle))
+            inverseMasses.emplace_back(particle, 1 / mass);
     int seed = owner.getRandomNumberSeed();
     state.flips.key[0] = (uint32_t) (seed == 0 ? osrngseed() : seed);
     state.flips.key[1] = KEY + findNumber(context.getSystem(), owner);
@@ -187,14 +205,29 @@ void MonteCarloBondFlipImpl::updateContextState(ContextImpl& context, bool& forc
         context.getPositions(positions);
     const vector<Vec3>& now =
         inPlace ? *static_cast<ReferencePlatform::PlatformData*>(context.getPlatformData())->positions : positions;
-    int groups = findIntegrator(context).getIntegrationForceGroups();
-    if (membrane->flip(owner.getTypeName(), context, groups, now, rules, attempts, state.flips) > 0) {
+    const Integrator& integrator = findIntegrator(context);
+    vector<Vec3>* wanted = isLeapfrog(integrator) ? &forceChange : nullptr;
+    if (membrane->flip(owner.getTypeName(), context, integrator.getIntegrationForceGroups(), now, rules, attempts,
+                       state.flips, wanted) > 0) {
         forcesInvalid = true;
+        if (wanted != nullptr)
+            shareKick(context, integrator.getStepSize());
         // What a step begins with is what the integrator may set back.
         double before = getAnnounced(context);
         announceConnectivity(context);
         replaced = before;
     }
+}
+
+void MonteCarloBondFlipImpl::shareKick(ContextImpl& context, double stepSize) {
+    if (!inPlace)
+        context.getVelocities(velocities);
+    vector<Vec3>& now =
+        inPlace ? *static_cast<ReferencePlatform::PlatformData*>(context.getPlatformData())->velocities : velocities;
+    for (const auto& [particle, inverseMass] : inverseMasses)
+        now[particle] -= forceChange[particle] * (0.5 * stepSize * inverseMass);
+    if (!inPlace)
+        context.setVelocities(velocities);
 }
 
 double MonteCarloBondFlipImpl::calcForcesAndEnergy(ContextImpl& context, bool, bool, int) {

@@ -72,6 +72,12 @@ private:
     double getAnnounced(OpenMM::ContextImpl& context);
     /** The time since the last update, ps, or 0 if time has jumped. */
     double getTimeSinceUpdate(OpenMM::ContextImpl& context) const;
+    /**
+     * Give velocities of half a step ago half of the kick of the forces before the flips, in place of that of the
+     * forces after them, which the integrator will give for the whole step: as if the flips came between two half
+     * kicks.
+     */
+    void shareKick(OpenMM::ContextImpl& context, double stepSize);
     /** kT of the bath, kJ/mol. */
     double getThermalEnergy(OpenMM::ContextImpl& context) const;
 
@@ -83,7 +89,11 @@ private:
     double attemptsPerEdge;
     /** Whether positions are OpenMM's own array of doubles. */
     bool inPlace;
-    std::vector<OpenMM::Vec3> positions;
+    std::vector<OpenMM::Vec3> positions, velocities;
+    /** Of the particles that move. */
+    std::vector<std::pair<int, double>> inverseMasses;
+    /** By how much flips have changed forces, kJ/mol/nm. */
+    std::vector<OpenMM::Vec3> forceChange;
     /** Where OpenMM keeps that parameter, once it is there. */
     const double* announced;
     /** What it should be, and what it was before, which it may become again: see mayRevert. */

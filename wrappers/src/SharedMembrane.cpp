@@ -152,12 +152,18 @@ double SharedMembrane::evaluate(const string& subject, ContextImpl& context, int
 }
 
 int64_t SharedMembrane::flip(const string& subject, ContextImpl& context, int groups, const vector<Vec3>& positions,
-                             const HelfrichFlipRules& rules, int64_t attempts, HelfrichFlipState& state) {
+                             const HelfrichFlipRules& rules, int64_t attempts, HelfrichFlipState& state,
+                             vector<Vec3>* forceChange) {
     collect(context, groups);
     int64_t made = 0;
+    double* change = nullptr;
+    if (forceChange != nullptr) {
+        forceChange->resize(positions.size());
+        change = reinterpret_cast<double*>(forceChange->data());
+    }
     check(Helfrich_Membrane_flip(subject.c_str(), core, terms.data(), (int64_t) terms.size(),
                                  (int64_t) positions.size(), reinterpret_cast<const double*>(positions.data()), &rules,
-                                 attempts, &state, &made));
+                                 attempts, &state, &made, change));
     return made;
 }
 

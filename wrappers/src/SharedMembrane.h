@@ -70,11 +70,12 @@ public:
      * @param rules      what flips may do
      * @param attempts   how many to try
      * @param state      what has come of flips so far, and the random numbers
+     * @param forceChange  if it is not null and there are flips, gets by how much they change the forces, kJ/mol/nm
      * @return how many were made
      */
     int64_t flip(const std::string& subject, OpenMM::ContextImpl& context, int groups,
                  const std::vector<OpenMM::Vec3>& positions, const HelfrichFlipRules& rules, int64_t attempts,
-                 HelfrichFlipState& state);
+                 HelfrichFlipState& state, std::vector<OpenMM::Vec3>* forceChange);
     /** Refuse rules that make no sense, or that the present triangles violate. */
     void checkRules(const std::string& subject, const HelfrichFlipRules& rules) const {
         check(Helfrich_Membrane_checkFlips(subject.c_str(), core, &rules));

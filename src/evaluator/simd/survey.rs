@@ -1,12 +1,11 @@
 //! From the passes' tiles to a [`Survey`], whose elements have the order of the mesh.
 
-use super::layout::TILE;
 use super::sweep::Sweep;
 use super::tiles::{Column, TriangleTile, VertexTile};
 use crate::evaluator::{Survey, SurveyedTriangle, SurveyedVertex};
 use crate::mesh::geometry::{TriangleGeometry, Vec3, VertexGeometry};
 use crate::mesh::vertex_vectors::VertexVectors;
-use crate::potentials::{Needs, Triangles, Vertices};
+use crate::potentials::Needs;
 use crate::team::Parts;
 
 /// A survey that several threads fill, each with the elements of its tiles.
@@ -30,80 +29,52 @@ impl<'a> Findings<'a> {
 }
 
 impl Sweep<'_, '_> {
-    /// Note a tile of triangles, of which the columns are filled.
+    /// Note a tile of triangles, of which the columns are filled, with the energies of its potentials.
     pub fn survey_triangles(&self, index: usize, tile: &TriangleTile, findings: &Findings) {
         let range = self.layout.triangle_tile(index);
         let ids = &self.layout.triangle_ids[range.clone()];
-        let mut geometry = [TriangleGeometry::default(); TILE];
-        for (n, known) in geometry[..ids.len()].iter_mut().enumerate() {
+        for (n, &id) in ids.iter().enumerate() {
             let normal = vector(self.arrays.normals.at(4 * (range.start + n)));
-            let twice_area = tile.twice_area.0[n];
-            let dots = three(&tile.dots, n);
-            *known = TriangleGeometry { normal: normal * twice_area, twice_area, dots };
-        }
-        let geometry = &geometry[..ids.len()];
-        let mut energies = [0.0; TILE];
-        for term in self.terms {
-            if term.potential.needs(term).contains(Needs::TRIANGLES) {
-                let energies = &mut energies[..ids.len()];
-                term.potential.triangles(term, Triangles::Energies { ids, geometry, energies });
-            }
-        }
-        for ((&id, &geometry), energy) in ids.iter().zip(geometry).zip(energies) {
-            let id = id as usize;
+            let (twice_area, dots) = (tile.twice_area.0[n], three(&tile.dots, n));
+            let geometry = TriangleGeometry { normal: normal * twice_area, twice_area, dots };
             // SAFETY: a triangle belongs to one tile.
-            let place = unsafe { findings.triangles.part(id..id + 1) };
-            place[0] = SurveyedTriangle { geometry, energy };
+            let place = unsafe { findings.triangles.part(id as usize..id as usize + 1) };
+            place[0] = SurveyedTriangle { geometry, energy: tile.energies.sum.0[n] };
         }
     }
 
-    /// Note a tile of vertices, of which the columns are filled that terms need.
+    /// Note a tile of vertices, of which the columns are filled that terms need, with the energies of its potentials.
     pub fn survey_vertices(&self, index: usize, tile: &VertexTile, findings: &Findings) {
         let (known, needs) = (&tile.known, self.needs);
         let range = self.layout.vertex_tile(index);
         let ids = &self.layout.vertex_ids[range.clone()];
-        let count = ids.len();
-        let mut scalars = [VertexGeometry::default(); TILE];
-        let mut vectors = [VertexVectors::default(); TILE];
-        for (n, scalars) in scalars[..count].iter_mut().enumerate() {
-            scalars.area = known.area.0[n];
-            if needs.contains(Needs::CURVATURES) {
-                scalars.curvature = known.curvature.0[n];
-            }
-            if needs.contains(Needs::VECTORS) {
-                scalars.voronoi_area = known.voronoi_area.0[n];
-            }
+        let has = |what| needs.contains(what);
+        for (n, &id) in ids.iter().enumerate() {
+            let scalars = VertexGeometry {
+                area: known.area.0[n],
+                voronoi_area: if has(Needs::VECTORS) { known.voronoi_area.0[n] } else { 0.0 },
+                curvature: if has(Needs::CURVATURES) { known.curvature.0[n] } else { 0.0 },
+            };
+            let position = vector(self.arrays.positions.at(4 * (range.start + n)));
+            let id = id as usize;
+            // SAFETY: a vertex belongs to one tile.
+            let place = unsafe { findings.vertices.part(id..id + 1) };
+            place[0] = SurveyedVertex { position, scalars, energy: tile.energies.sum.0[n] };
         }
-        if needs.contains(Needs::CURVATURE_VECTORS) {
-            for (n, vectors) in vectors[..count].iter_mut().enumerate() {
-                vectors.cotangent = three(&known.cotangent, n).into();
-                vectors.umbrella = three(&known.umbrella, n).into();
-                if needs.contains(Needs::NORMALS) {
-                    vectors.normal_sum = three(&known.normal_sum, n).into();
-                }
-            }
-        }
-        let mut energies = [0.0; TILE];
-        let of_terms = if findings.has_vectors { &vectors[..count] } else { &[] };
-        for term in self.terms {
-            if term.potential.needs(term).contains(Needs::VERTICES) {
-                let (scalars, energies) = (&scalars[..count], &mut energies[..count]);
-                let total = self.layout.num_vertices;
-                let run = Vertices::Energies { total, ids, scalars, vectors: of_terms, energies };
-                term.potential.vertices(term, run);
-            }
+        if !findings.has_vectors {
+            return;
         }
         for (n, &id) in ids.iter().enumerate() {
-            let id = id as usize;
-            let position = vector(self.arrays.positions.at(4 * (range.start + n)));
-            let found = SurveyedVertex { position, scalars: scalars[n], energy: energies[n] };
-            // SAFETY: a vertex belongs to one tile.
-            unsafe {
-                findings.vertices.part(id..id + 1)[0] = found;
-                if findings.has_vectors {
-                    findings.vectors.part(id..id + 1)[0] = vectors[n];
-                }
+            let mut vectors = VertexVectors::default();
+            if has(Needs::CURVATURE_VECTORS) {
+                vectors.cotangent = three(&known.cotangent, n).into();
+                vectors.umbrella = three(&known.umbrella, n).into();
             }
+            if has(Needs::NORMALS) {
+                vectors.normal_sum = three(&known.normal_sum, n).into();
+            }
+            // SAFETY: as above.
+            unsafe { findings.vectors.part(id as usize..id as usize + 1)[0] = vectors };
         }
     }
 }

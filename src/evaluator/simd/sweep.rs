@@ -122,10 +122,11 @@ impl Sweep<'_, '_> {
             (true, false) => forward!(true false),
             (true, true) => forward!(true true),
         };
-        if let Some(findings) = &self.findings {
-            self.survey_triangles(index, tile, findings);
-        }
+        tile.energies.begin(self.findings.is_some());
         if !potentials {
+            if let Some(findings) = &self.findings {
+                self.survey_triangles(index, tile, findings);
+            }
             return TriangleSums { silent, ..sums };
         }
         tile.silent = true;
@@ -135,6 +136,9 @@ impl Sweep<'_, '_> {
                 let run = Triangles::Lanes { level, ids, tile };
                 *contribution = term.potential.triangles(term, run);
             }
+        }
+        if let Some(findings) = &self.findings {
+            self.survey_triangles(index, tile, findings);
         }
         // Zeros that follow zeros need not be written.
         if !(silent && tile.silent) {
@@ -166,13 +170,14 @@ impl Sweep<'_, '_> {
             (true, VECTORS) => forward!(true VECTORS),
             (true, _) => forward!(true NORMALS),
         }
-        if let Some(findings) = &self.findings {
-            self.survey_vertices(index, tile, findings);
-        }
         if lengths {
             self.edges(index, contributions);
         }
+        tile.energies.begin(self.findings.is_some());
         if !needs.contains(Needs::VERTICES) {
+            if let Some(findings) = &self.findings {
+                self.survey_vertices(index, tile, findings);
+            }
             return;
         }
         let range = layout.vertex_tile(index);
@@ -183,6 +188,9 @@ impl Sweep<'_, '_> {
                 let run = Vertices::Lanes { level, total: layout.num_vertices, ids, tile };
                 *contribution += term.potential.vertices(term, run);
             }
+        }
+        if let Some(findings) = &self.findings {
+            self.survey_vertices(index, tile, findings);
         }
         macro_rules! slopes {
             ($vectors:expr) => {{

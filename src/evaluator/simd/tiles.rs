@@ -47,6 +47,7 @@ pub struct TriangleTile {
     pub by_length_squared: [Column; 3],
     /// Whether no formula has acted, so that the derivatives are zero.
     pub silent: bool,
+    pub energies: Energies,
 }
 
 /// The quantities of vertices, or the derivatives of the energy with respect to them.
@@ -59,8 +60,34 @@ pub struct VertexColumns {
     pub normal_sum: [Column; 3],
 }
 
+/// The energy of each element, if somebody wants to know.
+pub struct Energies {
+    pub wanted: bool,
+    pub sum: Column,
+}
+
+impl Energies {
+    const UNWANTED: Self = Self { wanted: false, sum: Column::ZERO };
+
+    /// Begin a tile.
+    pub fn begin(&mut self, wanted: bool) {
+        self.wanted = wanted;
+        if wanted {
+            self.sum = Column::ZERO;
+        }
+    }
+
+    #[inline(always)]
+    fn add<S: Records>(&mut self, simd: S, index: usize, energy: Lane<S>) {
+        if self.wanted {
+            self.sum.store(index, self.sum.load(simd, index) + energy);
+        }
+    }
+}
+
 /// Vertices, and the derivatives of the energy with respect to them.
 pub struct VertexTile {
+    pub energies: Energies,
     pub known: VertexColumns,
     pub slopes: VertexColumns,
     /// tan(φ/2) / l and l² of the edges of a block, step by step.
@@ -87,6 +114,7 @@ impl TriangleTile {
         by_area: Column::ZERO,
         by_length_squared: [Column::ZERO; 3],
         silent: true,
+        energies: Energies::UNWANTED,
     };
 
     /// Apply a formula to the elements with these indices; returns the sum.
@@ -180,7 +208,8 @@ impl VertexTile {
     /// For rings of so many steps.
     pub fn new(steps: usize) -> Self {
         let (known, slopes) = (VertexColumns::ZERO, VertexColumns::ZERO);
-        Self { known, slopes, ring: vec![[[0.0; BLOCK]; 2]; steps] }
+        let energies = Energies::UNWANTED;
+        Self { energies, known, slopes, ring: vec![[[0.0; BLOCK]; 2]; steps] }
     }
 
     /// Apply a formula to the elements with these indices; returns the sum.
@@ -263,7 +292,9 @@ impl<F: TriangleFormula> WithLanes for InLanes<'_, TriangleTile, F> {
                 length_squared: load3(simd, &tile.by_length_squared, index),
             };
             let place = Place { term, ids: &ids[index..] };
-            sum.add(formula.apply(place, &triangle, &mut slopes), ids.len() - index);
+            let sums = formula.apply(place, &triangle, &mut slopes);
+            tile.energies.add(simd, index, sums.energy);
+            sum.add(sums, ids.len() - index);
             tile.by_area.store(index, slopes.area);
             for k in 0..3 {
                 tile.by_length_squared[k].store(index, slopes.length_squared[k]);
@@ -284,7 +315,9 @@ impl<F: VertexFormula> WithLanes for InLanes<'_, VertexTile, F> {
             let vertex = tile.known.load::<S, F>(simd, index);
             let mut slopes = tile.slopes.load::<S, F>(simd, index);
             let place = Place { term, ids: &ids[index..] };
-            sum.add(formula.apply(place, &vertex, &mut slopes), ids.len() - index);
+            let sums = formula.apply(place, &vertex, &mut slopes);
+            tile.energies.add(simd, index, sums.energy);
+            sum.add(sums, ids.len() - index);
             tile.slopes.store::<S, F>(index, slopes);
         }
         sum.total()
