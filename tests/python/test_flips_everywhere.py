@@ -329,9 +329,7 @@ class TestByHand:
         cfg = vcm.read(tmp_path / "run.txt")
         simulation = cfg.simulation("Reference")
         force = helfrich.BendingForce
-        (bending,) = (
-            force.cast(f) for f in simulation.system.getForces() if force.isinstance(f)
-        )
+        (bending,) = (force.cast(f) for f in simulation.system.getForces() if force.isinstance(f))
         start = cfg.membranes[0].mesh
         corners = start.triangles.copy()
         corners[[0, 1]] = corners[[1, 0]]
