@@ -7,6 +7,7 @@ VTK 9.3, ParaView 5.12 or newer ones to read it.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
@@ -14,12 +15,14 @@ from typing import NamedTuple
 import numpy as np
 
 from .._journal import JournaledFile
-from ._arrays import triangles_of
+from .._writing import naming
+from ._arrays import over_frames, triangles_of
 from .curvature import vertex_quantities
 from .elements import triangle_areas
 from .tables import import_h5py
+from .trajectories import Trajectory
 
-__all__ = ["SurfaceFrame", "SurfaceSeries", "components"]
+__all__ = ["SurfaceFrame", "SurfaceSeries", "components", "write_vtkhdf"]
 
 # Our own group, which VTK does not look at.
 _OURS = "openmm-helfrich"
@@ -30,6 +33,107 @@ _POINT_DATA = {"mean_curvature": "<f4", "area": "<f4", "neighbours": "<i4"}
 _CELL_DATA = {"area": "<f4"}
 # Rows of one chunk of a dataset, at least.
 _CHUNK = 256
+# Frames that are added at a time.
+_BATCH = 64
+
+
+def write_vtkhdf(path, vertices, triangles=None, times=None, steps=None) -> int:
+    """Write surfaces over time as VTKHDF, which ParaView opens: a finished run, or any frames.
+
+    `SurfaceSeries` says what is in the file.
+
+    Parameters
+    ----------
+    path : str or Path
+        ``.vtkhdf``; a file that is there is replaced when the new one is whole.
+    vertices : array_like, Quantity, Mesh, State, Context, Simulation, Trajectory or path
+        Shape (num_vertices, 3) for one frame or (num_frames, num_vertices, 3), nm.
+    triangles : array_like of int or Mesh, optional
+        Shape (num_triangles, 3), or (num_frames, num_triangles, 3) if each frame has its own;
+        counter-clockwise seen from outside, closed surfaces that all vertices belong to. Default:
+        those of ``<name>.triangles`` beside a trajectory.
+    times : array_like, optional
+        ps, ascending, shape (num_frames,). Default: those of an XTC file, or else 0, 1, 2, …
+    steps : array_like of int, optional
+        Steps of the simulation, shape (num_frames,), with defaults as for `times`.
+
+    Returns
+    -------
+    int
+        How many frames were written.
+
+    Raises
+    ------
+    ImportError
+        Without h5py.
+    ValueError
+        Another suffix, no triangles, numbers of frames that differ, times that do not ascend, or as
+        for `mean_curvature`.
+    OSError
+        If the system refuses; a file that was there is as before.
+
+    Examples
+    --------
+    >>> write_vtkhdf("run.vtkhdf", "run/run.xtc")  # with run/run.triangles beside it
+    """
+    path = Path(path)
+    if path.suffix.lower() != ".vtkhdf":
+        raise ValueError(f"write_vtkhdf: {path}: the suffix must be .vtkhdf")
+    if isinstance(vertices, (str, os.PathLike)):
+        vertices = Trajectory(vertices)
+    if isinstance(vertices, Trajectory):
+        triangles = vertices.triangles() if triangles is None else triangles
+        if vertices.suffix == ".xtc":
+            times = vertices.times() if times is None else times
+            steps = vertices.steps() if steps is None else steps
+    if triangles is None:
+        raise ValueError("write_vtkhdf: need triangles; there is no file of them to take")
+    fresh = path.with_name(f".{path.name}.{os.getpid()}.new")
+    series, batch = SurfaceSeries(fresh), []
+    stamps = _Stamps(times, steps)
+
+    def collect(frames, faces, first):
+        for number, frame in enumerate(frames, start=first):
+            batch.append(SurfaceFrame(*stamps.at(number), frame, faces))
+            if len(batch) == _BATCH:
+                series.add(batch)
+                batch.clear()
+        return np.zeros(len(frames))
+
+    try:
+        count = np.size(over_frames(collect, vertices, triangles))
+        series.add(batch)
+        stamps.check(count)
+        with naming(path):
+            os.replace(fresh, path)
+    finally:
+        series.remove()
+    return count
+
+
+class _Stamps:
+    """Steps and times of frames; the number of the frame where they are not given."""
+
+    def __init__(self, times, steps):
+        self._times = None if times is None else np.asarray(times, dtype=float).ravel()
+        self._steps = None if steps is None else np.asarray(steps).ravel()
+        if self._times is not None and not (np.diff(self._times) > 0).all():
+            raise ValueError("write_vtkhdf: the times of the frames do not ascend")
+
+    def at(self, number: int) -> tuple[int, float]:
+        """Step and time of a frame."""
+        self.check(number + 1, more=True)
+        step = number if self._steps is None else int(self._steps[number])
+        return step, float(number if self._times is None else self._times[number])
+
+    def check(self, count: int, more: bool = False) -> None:
+        """Raise a ValueError unless there are so many, or more if that is enough."""
+        for name, given in (("times", self._times), ("steps", self._steps)):
+            if given is not None and (len(given) < count or (len(given) > count and not more)):
+                raise ValueError(
+                    f"write_vtkhdf: there are {len(given)} {name}, but "
+                    f"{'more' if more else count} frames"
+                )
 
 
 class SurfaceFrame(NamedTuple):
