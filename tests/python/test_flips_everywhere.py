@@ -343,6 +343,8 @@ class TestAnalysis:
         meshes = [helfrich.Mesh.random_sphere(132, 400, seed=seed) for seed in range(3)]
         frames = np.array([mesh.vertices for mesh in meshes])
         own = np.array([mesh.triangles for mesh in meshes])
+        # Plain lists will do.
+        assert (analysis.triangle_areas(frames, own.tolist()) > 0).all()
         volumes = analysis.shape(frames, own).volume
         assert volumes == pytest.approx([mesh.volume for mesh in meshes], rel=1e-12)
         curvatures = analysis.mean_curvature(frames, own)

@@ -154,16 +154,21 @@ def test_an_unknown_format_is_refused(tmp_path):
 
 @pytest.mark.parametrize("kind", ["obj", "vtk"])
 def test_ovito_reads_the_frames(config, tmp_path, kind):
-    ovito = pytest.importorskip("ovito.io")
+    """One after another, and back, with the triangles of each."""
+    ovito = pytest.importorskip("ovito.io", reason="OVITO is not installed")
+    config.write_text(CONFIG.replace('name = "a"\n', 'name = "a"\nflips = 0.5\n'))
     job = Run(config, tmp_path / "out", frames=kind)
     job.advance(100)
     job.close()
     pattern = tmp_path / "out" / "frames" / f"pair_a_0*.{kind}"
     pipeline = ovito.import_file(str(pattern))
     assert pipeline.source.num_frames == 6
-    for number in range(6):
+    changed = []
+    for number in (0, 5, 3, 1, 4, 2):
         data = pipeline.compute(number)
         (surface,) = (o for o in data.objects if type(o).__name__ == "TriangleMesh")
         mesh = Mesh.read(tmp_path / "out" / "frames" / f"pair_a_{number:06d}.{kind}")
         assert np.allclose(surface.get_vertices(), mesh.vertices, rtol=1e-6)
         assert np.array_equal(surface.get_faces(), mesh.triangles)
+        changed.append(surface.get_faces().tolist())
+    assert changed[0] != changed[1]

@@ -76,6 +76,7 @@ def over_frames(work, vertices, triangles=None, cost=None):
             return (frames[first : first + size] for first in range(0, len(frames), size))
 
     if np.ndim(triangles) == 3:
+        triangles = np.asarray(triangles)
         work, faces, num_faces = _with_own_triangles(work, triangles, num_vertices)
     else:
         faces = None if triangles is None else triangles_of(triangles, num_vertices)
