@@ -27,7 +27,7 @@ from .forces import *  # noqa: E402, F403
 from .forces import __all__ as _force_names  # noqa: E402
 from .mesh import Mesh  # noqa: E402
 from .ramps import harden  # noqa: E402
-from .reporters import MembraneReporter, ModeReporter  # noqa: E402
+from .reporters import MembraneReporter, ModeReporter, VTKHDFReporter  # noqa: E402
 from .states import load_state, save_state  # noqa: E402
 from .vesicle import Vesicle  # noqa: E402
 
@@ -38,6 +38,7 @@ __all__ = [
     "Mesh",
     "MeshError",
     "ModeReporter",
+    "VTKHDFReporter",
     "Vesicle",
     "adapters",
     "analysis",

@@ -1,16 +1,39 @@
-"""Triangles as they are now in a Context, where bonds flip."""
+"""Triangles as they are now in a Context, where bonds flip or were connected by hand."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from .forces import MonteCarloBondFlip
+from .forces import MembraneForce, MonteCarloBondFlip
 
-__all__ = ["present_triangles"]
+__all__ = ["present_triangles", "surfaces_of"]
+
+_CLASSES = [MonteCarloBondFlip, *MembraneForce.__subclasses__()]
+
+
+def surfaces_of(context) -> list:
+    """One force on each of the triangulated surfaces of a Context, in their order.
+
+    It is the MonteCarloBondFlip of a surface where there is one.
+    """
+    found = {}
+    for plain in context.getSystem().getForces():
+        for cls in _CLASSES:
+            if cls.isinstance(plain):
+                force = cls.cast(plain)
+                corners = force._triangleBuffer()
+                if cls is MonteCarloBondFlip:
+                    found[corners] = force
+                found.setdefault(corners, force)
+                break
+    return list(found.values())
 
 
 def present_triangles(context, corners: np.ndarray) -> np.ndarray:
     """What has become of triangles with which a Context began.
+
+    It does not matter what has changed them: a MonteCarloBondFlip, or `setTrianglesInContext` of
+    any force.
 
     Parameters
     ----------
@@ -27,25 +50,27 @@ def present_triangles(context, corners: np.ndarray) -> np.ndarray:
     Raises
     ------
     ValueError
-        If bonds between these particles flip, but on other triangles.
+        If bonds between these particles flip, or have been changed, but on other triangles.
     """
     present = corners
     rows = None
-    for plain in context.getSystem().getForces():
-        if not MonteCarloBondFlip.isinstance(plain):
-            continue
-        mover = MonteCarloBondFlip.cast(plain)
-        initial = np.frombuffer(mover._triangleBuffer(), dtype=np.intc).reshape(-1, 3)
+    for force in surfaces_of(context):
+        initial = np.frombuffer(force._triangleBuffer(), dtype=np.intc).reshape(-1, 3)
         if not np.isin(initial, corners).any():
+            continue
+        now = force.getTrianglesInContext(context)
+        flips = isinstance(force, MonteCarloBondFlip)
+        if not flips and np.array_equal(now, initial):
             continue
         if rows is None:
             present = corners.copy()
             rows = {tuple(row): place for place, row in enumerate(corners.tolist())}
         places = [rows.get(tuple(row), -1) for row in initial.tolist()]
         if min(places) < 0:
+            does = "flips bonds" if flips else "acts, which have been changed"
             raise ValueError(
-                f"the triangles are not those on which {mover.getName()} flips bonds: its triangle "
+                f"the triangles are not those on which {force.getName()} {does}: its triangle "
                 f"{places.index(min(places))} is not among them; give the mesh that the forces have"
             )
-        present[places] = mover.getTrianglesInContext(context)
+        present[places] = now
     return present

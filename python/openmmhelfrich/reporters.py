@@ -1,8 +1,9 @@
-"""Reporters for OpenMM's Simulation: modes, energies per term, and shape, while it runs."""
+"""Reporters for OpenMM's Simulation: modes, energies per term, shape and surfaces as it runs."""
 
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 import numpy as np
 import openmm
@@ -13,9 +14,10 @@ from ._present import present_triangles
 from .analysis import mode_amplitudes, shape
 from .analysis._arrays import triangles_of
 from .analysis.tables import open_table
+from .analysis.vtkhdf import SurfaceFrame, SurfaceSeries
 from .forces import MonteCarloBondFlip
 
-__all__ = ["MembraneReporter", "ModeReporter"]
+__all__ = ["MembraneReporter", "ModeReporter", "VTKHDFReporter"]
 
 _ENERGY = unit.kilojoule_per_mole
 
@@ -39,11 +41,11 @@ class _NextReport(dict):
         raise KeyError(key)
 
 
-class _TableReporter:
-    """Rows of numbers about one membrane, to a CSV or HDF5 file.
+class _SurfaceReporter:
+    """What is asked for of one membrane at equal intervals.
 
-    Subclasses have `_include`, what they need of the State, `_columns`, the units of their columns
-    by name, and `_values`, a row, from positions and triangles of the moment.
+    Subclasses have `_include`, what they need of the State, `_begin`, which opens their file, and
+    `_write`, from time, positions and triangles of the moment.
     """
 
     _include = ("positions",)
@@ -52,13 +54,12 @@ class _TableReporter:
         name = type(self).__name__
         self._interval = whole_number(reportInterval, name, "reportInterval", 1)
         offset = whole_number(offset, name, "offset", 0)
-        self._file, self._append = file, append
+        self._file, self._append, self._begun = file, append, False
         corners = np.asarray(getattr(triangles, "triangles", triangles))
         highest = corners.max(initial=0) if corners.dtype.kind in "iu" else 0
         self._corners = triangles_of(corners, int(highest) + 1) + offset
         # Vertices in ascending order of particle index, as in the forces.
         self._particles = np.unique(self._corners)
-        self._table = None
 
     def describeNextReport(self, simulation):
         """When the next report is due, and what it needs, as OpenMM asks for it."""
@@ -68,7 +69,7 @@ class _TableReporter:
         return _NextReport(steps=steps, periodic=False, include=list(self._include))
 
     def report(self, simulation, state):
-        """Write one row; it is on disk when this returns."""
+        """Write a row, or a frame; it is on disk when this returns."""
         self._open(simulation)
         time = state.getTime().value_in_unit(unit.picosecond)
         positions = state.getPositions(asNumpy=True).value_in_unit(unit.nanometer)
@@ -78,11 +79,10 @@ class _TableReporter:
             raise ValueError(f"{type(self).__name__}: {reason}") from None
         triangles = np.searchsorted(self._particles, corners)
         vertices = np.asarray(positions)[self._particles]
-        values = self._values(simulation, state, vertices, triangles)
-        self._table.add([int(simulation.currentStep), time, *(float(value) for value in values)])
+        self._write(simulation, state, time, vertices, triangles)
 
     def _open(self, simulation):
-        if self._table is not None:
+        if self._begun:
             return
         count = simulation.system.getNumParticles()
         if self._particles[-1] >= count:
@@ -90,11 +90,27 @@ class _TableReporter:
                 f"{type(self).__name__}: the triangles name particle {self._particles[-1]}, but "
                 f"there are {count}"
             )
+        self._begin(simulation)
+        self._begun = True
+
+
+class _TableReporter(_SurfaceReporter):
+    """Rows of numbers about one membrane, to a CSV or HDF5 file.
+
+    Subclasses have `_columns`, the units of their columns by name, and `_values`, a row, from
+    positions and triangles of the moment.
+    """
+
+    def _begin(self, simulation):
         columns = {"step": "", "time": "ps", **self._columns(simulation)}
         table = open_table(self._file, columns, self._append)
         if self._append:
             table.cut(simulation.currentStep)
         self._table = table
+
+    def _write(self, simulation, state, time, vertices, triangles):
+        values = self._values(simulation, state, vertices, triangles)
+        self._table.add([int(simulation.currentStep), time, *(float(value) for value in values)])
 
 
 class ModeReporter(_TableReporter):
@@ -240,6 +256,66 @@ class MembraneReporter(_TableReporter):
             temperature,
             *shape(positions, triangles),
         ]
+
+
+class VTKHDFReporter(_SurfaceReporter):
+    """Writes the surface of a membrane while a Simulation runs, in one file that ParaView opens.
+
+    Each frame has its own positions and triangles, so that membranes whose bonds flip are shown as
+    they are. Vertices carry ``mean_curvature``, H = C1 + C2 by Jülicher's scheme (B13,
+    doi:10.1103/PhysRevE.108.015301), 1/nm; ``area``, a third of the triangles around, nm²;
+    ``neighbours``, how many there are; and ``component``, the number of their closed surface, from
+    0. Triangles carry ``area``, nm², and ``component``. Coordinates are in nm, times in ps. It
+    takes VTK 9.3, ParaView 5.12 or newer ones to read them.
+
+    Every frame is on disk when it has been written, and the file is closed in between: ParaView may
+    look at it during the run. A kill in the middle of a frame leaves ``<file>.journal``, from which
+    the next reporter with ``append=True`` makes the file whole.
+
+    Parameters
+    ----------
+    file : str or Path
+        ``.vtkhdf``. It needs h5py (``pip install openmm-helfrich[hdf5]``).
+    reportInterval : int
+        Steps between frames, 1 or more.
+    triangles : Mesh or array_like of int
+        As for `ModeReporter`; point i of the file is the i-th of their particles, in ascending
+        order.
+    offset : int
+        Added to the indices of the triangles. Default 0.
+    append : bool
+        As for `ModeReporter`: frames of later steps are dropped.
+
+    Raises
+    ------
+    ImportError
+        Without h5py.
+    ValueError
+        A number out of range, or another suffix; at the first report, a file that is none of this
+        reporter or has other numbers of vertices or triangles, or a surface that is not closed.
+
+    Examples
+    --------
+    >>> simulation.reporters.append(VTKHDFReporter("vesicle.vtkhdf", 500, vesicle.mesh))
+    >>> simulation.step(100_000)
+    """
+
+    def __init__(self, file, reportInterval, triangles, *, offset=0, append=False):
+        super().__init__(file, reportInterval, triangles, offset, append)
+        if Path(file).suffix.lower() != ".vtkhdf":
+            raise ValueError(f"VTKHDFReporter: {file}: the suffix must be .vtkhdf")
+        self._series = SurfaceSeries(file)
+
+    def _begin(self, simulation):
+        if self._append:
+            steps = self._series.steps()
+            self._series.cut(np.count_nonzero(steps <= simulation.currentStep))
+        else:
+            self._series.remove()
+
+    def _write(self, simulation, state, time, vertices, triangles):
+        step = int(simulation.currentStep)
+        self._series.add([SurfaceFrame(step, time, vertices, triangles)])
 
 
 def _group_names(system):

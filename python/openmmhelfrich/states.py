@@ -12,7 +12,7 @@ import numpy as np
 from openmm import unit
 
 from . import _blocks, _writing
-from .forces import MembraneForce, MonteCarloBondFlip
+from ._present import surfaces_of
 
 __all__ = ["load_state", "save_state"]
 
@@ -27,7 +27,6 @@ _KNOWN = {
     "connectivity": 1,
 }
 _NEEDED = sorted(_KNOWN.keys() - {"connectivity"})
-_CLASSES = [MonteCarloBondFlip, *MembraneForce.__subclasses__()]
 
 
 def save_state(context, path) -> None:
@@ -68,7 +67,7 @@ def save_state(context, path) -> None:
         "step": context.getStepCount(),
     }
     blocks["clock"] = _blocks.Block(clock)
-    for number, force in enumerate(_surfaces(context)):
+    for number, force in enumerate(surfaces_of(context)):
         blocks[f"connectivity/{number}"] = _blocks.Block(force._saveConnectivity(context))
     _writing.write_whole(path, _blocks.pack(_KIND, blocks))
 
@@ -105,7 +104,7 @@ def load_state(context, path) -> None:
         raise ValueError(f"load_state: {name} has no {', '.join(missing)}")
     values = {key: block.value for key, block in blocks.items()}
     parameters = {key: float.fromhex(text) for key, text in values["parameters"].items()}
-    surfaces = _surfaces(context)
+    surfaces = surfaces_of(context)
     connectivity = _in_order(values)
     _check(context, name, values["positions"], parameters, surfaces, connectivity)
     # First what may be refused.
@@ -148,15 +147,3 @@ def _check(context, name, positions, parameters, surfaces, connectivity) -> None
             f"load_state: {name} has {len(connectivity)} triangulated surfaces, but the forces of "
             f"the Context have {len(surfaces)}"
         )
-
-
-def _surfaces(context) -> list:
-    """One force on each of the triangulated surfaces of a Context, in their order."""
-    found = {}
-    for plain in context.getSystem().getForces():
-        for cls in _CLASSES:
-            if cls.isinstance(plain):
-                force = cls.cast(plain)
-                found.setdefault(force._triangleBuffer(), force)
-                break
-    return list(found.values())

@@ -8,6 +8,7 @@ import openmmhelfrich as helfrich
 import pytest
 from openmm import app
 from openmmhelfrich import MonteCarloBondFlip, analysis, vcm
+from openmmhelfrich.vcm.outputs import take_frame
 from run_files import contents, invoke
 
 MESH = helfrich.Mesh.random_sphere(252, 500, seed=5)
@@ -271,11 +272,79 @@ class TestReporters:
             simulation.step(10)
 
 
+class TestByHand:
+    """Triangles that `setTrianglesInContext` has set, with nothing in the System that flips."""
+
+    def flipped(self):
+        """The mesh with one edge turned, and what it was before."""
+        triangles = MESH.triangles.copy()
+        a, b = MESH.edges[40].tolist()
+        left, right = np.flatnonzero(np.isin(triangles, (a, b)).sum(axis=1) == 2).tolist()
+        c, d = (next(iter({*triangles[side].tolist()} - {a, b})) for side in (left, right))
+        triangles[left], triangles[right] = [d, c, a], [c, d, b]
+        return helfrich.Mesh(MESH.vertices, triangles)
+
+    def simulation(self, offset=0):
+        system = openmm.System()
+        for _ in range(offset):
+            system.addParticle(1)
+        vesicle = helfrich.Vesicle(MESH)
+        placement = vesicle.add_to(system)
+        result = app.Simulation(
+            app.Topology(), system, integrator(), openmm.Platform.getPlatformByName("Reference")
+        )
+        start = np.concatenate([np.zeros((offset, 3)), MESH.vertices])
+        result.context.setPositions(start)
+        return placement, result
+
+    @pytest.mark.parametrize("offset", [0, 5])
+    def test_reporters_and_meshes_follow(self, tmp_path, offset):
+        placement, simulation = self.simulation(offset)
+        path = tmp_path / "shape.csv"
+        reporter = helfrich.MembraneReporter(path, 1, MESH, offset=offset)
+        simulation.reporters.append(reporter)
+        simulation.step(1)
+        target = self.flipped()
+        # One force for all of the surface.
+        placement.area.setTrianglesInContext(simulation.context, target, offset=offset)
+        simulation.step(1)
+        volumes = analysis.read_table(path)["volume"]
+        now = helfrich.Mesh.from_context(simulation.context, placement.bending)
+        assert np.array_equal(now.triangles, target.triangles)
+        assert volumes[1] == pytest.approx(now.volume, rel=1e-12)
+        assert abs(helfrich.Mesh(now.vertices, MESH.triangles).volume / now.volume - 1) > 1e-7
+
+    def test_other_triangles_are_refused_once_they_have_changed(self, tmp_path):
+        placement, simulation = self.simulation()
+        turned = np.roll(MESH.triangles, 1, axis=1)
+        simulation.reporters.append(helfrich.MembraneReporter(tmp_path / "m.csv", 1, turned))
+        simulation.step(1)
+        placement.area.setTrianglesInContext(simulation.context, self.flipped())
+        with pytest.raises(ValueError, match="MembraneReporter: the triangles are not those on"):
+            simulation.step(1)
+
+    def test_frames_of_runs_follow(self, tmp_path):
+        helfrich.Mesh.random_sphere(132, 400, seed=2).write(tmp_path / "sphere.ply")
+        (tmp_path / "run.txt").write_text(VCM.format(more=""))
+        cfg = vcm.read(tmp_path / "run.txt")
+        simulation = cfg.simulation("Reference")
+        force = helfrich.BendingForce
+        (bending,) = (force.cast(f) for f in simulation.system.getForces() if force.isinstance(f))
+        start = cfg.membranes[0].mesh
+        corners = start.triangles.copy()
+        corners[[0, 1]] = corners[[1, 0]]
+        bending.setTrianglesInContext(simulation.context, corners)
+        (found,) = take_frame(cfg, simulation.context, 0).triangles
+        assert np.array_equal(found, corners) and not np.array_equal(found, start.triangles)
+
+
 class TestAnalysis:
     def test_frames_may_have_their_own_triangles(self):
         meshes = [helfrich.Mesh.random_sphere(132, 400, seed=seed) for seed in range(3)]
         frames = np.array([mesh.vertices for mesh in meshes])
         own = np.array([mesh.triangles for mesh in meshes])
+        # Plain lists will do.
+        assert (analysis.triangle_areas(frames, own.tolist()) > 0).all()
         volumes = analysis.shape(frames, own).volume
         assert volumes == pytest.approx([mesh.volume for mesh in meshes], rel=1e-12)
         curvatures = analysis.mean_curvature(frames, own)

@@ -5,7 +5,7 @@ import pytest
 from click.testing import CliRunner
 from openmmhelfrich import Mesh, analysis
 from openmmhelfrich.cli import main
-from openmmhelfrich.vcm.frames import MeshFrames
+from openmmhelfrich.vcm.frames import MeshFrames, frames_writer
 from openmmhelfrich.vcm.runner import Run
 
 CONFIG = """
@@ -132,36 +132,43 @@ def test_each_frame_has_its_own_triangles(tmp_path, lumpy, kind):
     triangles[right] = [c, d, b]
     flipped = Mesh(lumpy.vertices, triangles)
     assert {a, b} not in [set(edge) for edge in flipped.edges.tolist()]
-    writer = MeshFrames(tmp_path / "frames", "run", kind)
-    writer.write(0, "m", lumpy.vertices, lumpy.triangles)
-    writer.write(1, "m", flipped.vertices, flipped.triangles)
+    writer = MeshFrames(tmp_path / "frames", "run", kind, ["m"])
+    writer.write(0, 0, 0.0, [(lumpy.vertices, lumpy.triangles)])
+    writer.write(1, 1, 0.1, [(flipped.vertices, flipped.triangles)])
     for number, mesh in enumerate((lumpy, flipped)):
         path = tmp_path / f"frames/run_m_{number:06d}.{kind}"
         assert Mesh.read(path) == mesh
         if kind != "obj":
             expected = analysis.mean_curvature(mesh.vertices, mesh.triangles)
             assert np.allclose(table(path)["mean_curvature"], expected, rtol=1e-12)
-    writer.remove_from(1, ["m"])
+    writer.remove_from(1)
     assert [path.stem for path in (tmp_path / "frames").iterdir()] == ["run_m_000000"]
 
 
 def test_an_unknown_format_is_refused(tmp_path):
-    with pytest.raises(ValueError, match="frames must be one of none, ply, obj, vtk, got 'stl'"):
-        MeshFrames(tmp_path, "run", "stl")
+    with pytest.raises(
+        ValueError, match="frames must be one of none, ply, obj, vtk, vtkhdf, got 'stl'"
+    ):
+        frames_writer(tmp_path, "run", "stl", ["m"])
 
 
 @pytest.mark.parametrize("kind", ["obj", "vtk"])
 def test_ovito_reads_the_frames(config, tmp_path, kind):
-    ovito = pytest.importorskip("ovito.io")
+    """One after another, and back, with the triangles of each."""
+    ovito = pytest.importorskip("ovito.io", reason="OVITO is not installed")
+    config.write_text(CONFIG.replace('name = "a"\n', 'name = "a"\nflips = 0.5\n'))
     job = Run(config, tmp_path / "out", frames=kind)
     job.advance(100)
     job.close()
     pattern = tmp_path / "out" / "frames" / f"pair_a_0*.{kind}"
     pipeline = ovito.import_file(str(pattern))
     assert pipeline.source.num_frames == 6
-    for number in range(6):
+    changed = []
+    for number in (0, 5, 3, 1, 4, 2):
         data = pipeline.compute(number)
         (surface,) = (o for o in data.objects if type(o).__name__ == "TriangleMesh")
         mesh = Mesh.read(tmp_path / "out" / "frames" / f"pair_a_{number:06d}.{kind}")
         assert np.allclose(surface.get_vertices(), mesh.vertices, rtol=1e-6)
         assert np.array_equal(surface.get_faces(), mesh.triangles)
+        changed.append(surface.get_faces().tolist())
+    assert changed[0] != changed[1]

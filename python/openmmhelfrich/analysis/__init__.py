@@ -35,6 +35,7 @@ from .statistics import (
 )
 from .tables import Modes, read_modes, read_table
 from .trajectories import Trajectory, read_triangles
+from .vtkhdf import write_vtkhdf
 
 __all__ = [
     "Blocking",
@@ -79,4 +80,5 @@ __all__ = [
     "triangle_areas",
     "triangle_heights",
     "vertex_quantities",
+    "write_vtkhdf",
 ]

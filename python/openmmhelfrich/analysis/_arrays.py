@@ -66,6 +66,8 @@ def over_frames(work, vertices, triangles=None, cost=None):
     single = False
     if isinstance(vertices, Trajectory):
         num_vertices, chunks = vertices.num_vertices, vertices.chunks
+        if triangles is not None and np.ndim(triangles) != 3:
+            _refuse_triangles_of_the_start(vertices, triangles_of(triangles, num_vertices))
     else:
         frames, single = frames_of(vertices)
         num_vertices = frames.shape[1]
@@ -74,6 +76,7 @@ def over_frames(work, vertices, triangles=None, cost=None):
             return (frames[first : first + size] for first in range(0, len(frames), size))
 
     if np.ndim(triangles) == 3:
+        triangles = np.asarray(triangles)
         work, faces, num_faces = _with_own_triangles(work, triangles, num_vertices)
     else:
         faces = None if triangles is None else triangles_of(triangles, num_vertices)
@@ -94,6 +97,20 @@ def over_frames(work, vertices, triangles=None, cost=None):
         return joined[0] if single else joined
     joined = tuple(np.concatenate(column) for column in zip(*parts, strict=True))
     return tuple(column[0] for column in joined) if single else joined
+
+
+def _refuse_triangles_of_the_start(trajectory, faces: np.ndarray) -> None:
+    """Raise a ValueError if bonds on these triangles flipped during the trajectory."""
+    own = trajectory.triangles()
+    if own is None:
+        return
+    rows = np.isin(own[0], faces).any(axis=1)
+    if any((frame[rows] != own[0, rows]).any() for frame in own):
+        raise ValueError(
+            f"triangles: bonds flipped in {trajectory.path}, and each frame has triangles of its "
+            "own; pass those that Trajectory.triangles() returns, or, to take the same ones for "
+            "all frames nevertheless, the array that Trajectory.read() returns as vertices"
+        )
 
 
 def _with_own_triangles(work, triangles, num_vertices: int):

@@ -69,7 +69,8 @@ def mean_curvature(vertices, triangles, scheme="Julicher"):
     vertices : array_like, Quantity, Mesh, State, Context, Simulation, Trajectory or path
         Shape (num_vertices, 3) for one frame or (num_frames, num_vertices, 3), nm.
     triangles : array_like of int or Mesh
-        Shape (num_triangles, 3), counter-clockwise seen from outside, a closed surface.
+        Shape (num_triangles, 3), or (num_frames, num_triangles, 3) if each frame has its own;
+        counter-clockwise seen from outside, a closed surface.
     scheme : str or int
         A name of the table, or a constant of `BendingForce`.
 

@@ -13,7 +13,7 @@ def triangle_areas(vertices, triangles):
     vertices : array_like, Quantity, Mesh, State, Context, Simulation, Trajectory or path
         Shape (num_vertices, 3) for one frame or (num_frames, num_vertices, 3), nm.
     triangles : array_like of int or Mesh
-        Shape (num_triangles, 3).
+        Shape (num_triangles, 3), or (num_frames, num_triangles, 3) if each frame has its own.
 
     Returns
     -------

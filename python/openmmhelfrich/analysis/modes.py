@@ -51,7 +51,8 @@ def mode_amplitudes(vertices, triangles, lmax, quadrature="fit", centre=None):
     vertices : array_like, Quantity, Mesh, State, Context, Simulation, Trajectory or path
         Shape (num_vertices, 3) for one frame or (num_frames, num_vertices, 3), nm.
     triangles : array_like of int or Mesh
-        Shape (num_triangles, 3), counter-clockwise seen from outside, a closed surface.
+        Shape (num_triangles, 3), or (num_frames, num_triangles, 3) if each frame has its own;
+        counter-clockwise seen from outside, a closed surface.
     lmax : int
         Largest l, 0 or more. A mesh resolves l up to about √num_vertices / 2.
     quadrature : {"fit", "vertices", "surface"}

@@ -19,7 +19,8 @@ def solid_angles(vertices, triangles):
         Shape (num_vertices, 3) or (num_frames, num_vertices, 3), nm, from the centre of
         projection.
     triangles : array_like of int or Mesh
-        Shape (num_triangles, 3), counter-clockwise seen from outside.
+        Shape (num_triangles, 3), or (num_frames, num_triangles, 3) if each frame has its own;
+        counter-clockwise seen from outside.
 
     Returns
     -------

@@ -16,6 +16,7 @@ from .._writing import naming, write_whole
 __all__ = ["Modes", "open_table", "read_modes", "read_table"]
 
 _HDF5 = (".h5", ".hdf5")
+_INSTEAD = "or write .csv"
 _MODE = re.compile(r"u_(\d+)_(-?\d+)")
 
 # The unit of a column, in the last parentheses of its header: names may have others.
@@ -105,7 +106,7 @@ def read_table(path) -> dict[str, np.ndarray]:
     if not path.is_file():
         raise FileNotFoundError(f"read_table: there is no file {path}")
     if path.suffix.lower() in _HDF5:
-        with _h5py().File(path, "r") as file:
+        with import_h5py(_INSTEAD).File(path, "r") as file:
             names = list(file.attrs.get("columns", []))
             if not names or "rows" not in file:
                 raise ValueError(f"read_table: {path} has no rows of a reporter")
@@ -242,7 +243,7 @@ class _Hdf5:
     """An HDF5 file with the rows in one dataset, closed after every row."""
 
     def __init__(self, path, columns, append):
-        self.path, self.h5py = path, _h5py()
+        self.path, self.h5py = path, import_h5py(_INSTEAD)
         names = list(columns)
         if append and path.is_file():
             with self.h5py.File(path, "r") as file:
@@ -270,12 +271,13 @@ class _Hdf5:
             rows[-1] = values
 
 
-def _h5py():
+def import_h5py(otherwise):
+    """h5py, or an ImportError that says how to get it, and what to do otherwise."""
     try:
         import h5py
     except ImportError as reason:
         raise ImportError(
-            "HDF5 files need h5py; install it with 'pip install openmm-helfrich[hdf5]', or write "
-            f".csv ({reason})"
+            "HDF5 files need h5py; install it with 'pip install openmm-helfrich[hdf5]', "
+            f"{otherwise} ({reason})"
         ) from None
     return h5py

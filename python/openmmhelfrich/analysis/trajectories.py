@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from .._numbers import whole_number
+from .elements import edges_of
 
 __all__ = ["Trajectory", "read_triangles"]
 
@@ -42,6 +43,8 @@ def read_triangles(path, num_triangles: int) -> np.ndarray:
     --------
     >>> triangles = read_triangles("run/run.triangles", mesh.num_triangles)
     >>> modes = mode_amplitudes("run/run.xtc", triangles, lmax=10)
+
+    `Trajectory.triangles` finds the file beside its own, and needs no number.
     """
     path = Path(path)
     count = whole_number(num_triangles, "read_triangles", "num_triangles", 1)
@@ -58,7 +61,8 @@ class Trajectory:
     """Positions in an XTC, DCD or PDB file, which is read in chunks and never as a whole.
 
     All functions of this package that take vertices take a `Trajectory`, or the path of one, in
-    place of an array. XTC and DCD need no topology. The files are read by MDTraj, which is
+    place of an array, and refuse one set of triangles for all frames where bonds flipped: pass
+    `triangles()` then. XTC and DCD need no topology. The files are read by MDTraj, which is
     installed with ``pip install openmm-helfrich[trajectories]``; a PDB file is one chunk.
 
     Parameters
@@ -148,6 +152,104 @@ class Trajectory:
         """All frames at once, shape (num_frames, num_vertices, 3), nm."""
         return np.concatenate(list(self.chunks(256)))
 
+    def times(self) -> np.ndarray:
+        """The time of each frame, ps, shape (num_frames,).
+
+        Raises
+        ------
+        ValueError
+            The file is no XTC file; the others store none.
+        """
+        return self._column(1, "times").astype(float)
+
+    def steps(self) -> np.ndarray:
+        """The step of the simulation of each frame, shape (num_frames,); errors as for `times`."""
+        return self._column(2, "steps").astype(np.int64)
+
+    def _column(self, number: int, what: str) -> np.ndarray:
+        """What MDTraj returns at this place for each of the chosen frames of an XTC file."""
+        if self.suffix != ".xtc":
+            raise ValueError(f"Trajectory: {self.path} has no {what}; XTC files have them")
+        found = []
+        try:
+            with self._opened() as file:
+                while len(part := file.read(n_frames=256)[number]):
+                    found.append(part)
+        except (OSError, RuntimeError) as reason:
+            raise ValueError(f"Trajectory: {self.path} cannot be read: {reason}") from None
+        return np.concatenate(found)[self.start : self.stop : self.stride]
+
+    def triangles(self, num_triangles=None) -> np.ndarray | None:
+        """The triangles of each frame, from the file ``<name>.triangles`` beside this one.
+
+        Parameters
+        ----------
+        num_triangles : int, optional
+            Of all membranes together. Default: what the two files say.
+
+        Returns
+        -------
+        ndarray of int, or None
+            Shape (num_frames, num_triangles, 3), of the chosen frames, as indices among the chosen
+            particles; triangles of other particles are left out. None if there is no such file:
+            bonds did not flip.
+
+        Raises
+        ------
+        ValueError
+            It has another number of frames than the trajectory, or no closed surfaces; or only
+            some corners of a triangle are among the particles.
+
+        Examples
+        --------
+        >>> trajectory = Trajectory("run/run.xtc", stride=10)
+        >>> modes = mode_amplitudes(trajectory, trajectory.triangles(), lmax=10)
+        """
+        path = self.path.with_suffix(".triangles")
+        if not path.is_file():
+            return None
+        stored = self._num_stored()
+        count = num_triangles or path.stat().st_size // (12 * stored)
+        try:
+            found = read_triangles(path, max(1, count))
+            if len(found) != stored:
+                raise ValueError(f"it has the triangles of {len(found)} frames")
+            edges_of(found[0].astype(np.intp))
+        except ValueError as reason:
+            raise ValueError(
+                f"Trajectory: {path} does not match the {stored} frames of {self.path}: {reason}; "
+                "if the run was killed, go on with 'openmm-helfrich run … --resume', which makes "
+                "them match"
+            ) from None
+        return self._among_particles(found[self.start : self.stop : self.stride], path)
+
+    def _among_particles(self, triangles, path):
+        if self.particles is None:
+            if triangles[0].max() >= self.num_vertices:
+                raise ValueError(
+                    f"Trajectory: {path} names particle {triangles[0].max()}, but {self.path} has "
+                    f"{self.num_vertices}"
+                )
+            return triangles
+        particles = np.asarray(self.particles)
+        size = max(int(triangles[0].max()), int(particles.max())) + 1
+        places = np.full(size, -1)
+        places[particles] = np.arange(len(particles))
+        inside = places[triangles[0]] >= 0
+        # Flips leave each triangle on its surface.
+        rows = inside.all(axis=1)
+        if (inside.any(axis=1) != rows).any():
+            row = int(np.flatnonzero(inside.any(axis=1) != rows)[0])
+            raise ValueError(
+                f"Trajectory: only some corners of triangle {row} of {path}, "
+                f"{triangles[0, row].tolist()}, are among the particles; choose whole membranes"
+            )
+        return places[triangles[:, rows]]
+
+    def _num_stored(self) -> int:
+        """How many frames the file has, whichever were asked for."""
+        return sum(len(block) for block in self._blocks(256))
+
     def _select(self, frames):
         if self.particles is None:
             return frames.astype(float)
@@ -164,9 +266,8 @@ class Trajectory:
                 with formats.PDBTrajectoryFile(str(self.path)) as file:
                     yield np.asarray(file.positions) * _ANGSTROM
                 return
-            opened = {".xtc": formats.XTCTrajectoryFile, ".dcd": formats.DCDTrajectoryFile}
             scale = 1.0 if self.suffix == ".xtc" else _ANGSTROM
-            with opened[self.suffix](str(self.path)) as file:
+            with self._opened() as file:
                 while True:
                     positions = file.read(n_frames=size)[0]
                     if len(positions) == 0:
@@ -174,6 +275,11 @@ class Trajectory:
                     yield positions * scale
         except (OSError, RuntimeError) as reason:
             raise ValueError(f"Trajectory: {self.path} cannot be read: {reason}") from None
+
+    def _opened(self):
+        formats = _mdtraj_formats()
+        kinds = {".xtc": formats.XTCTrajectoryFile, ".dcd": formats.DCDTrajectoryFile}
+        return kinds[self.suffix](str(self.path))
 
 
 def _mdtraj_formats():

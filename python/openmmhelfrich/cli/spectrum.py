@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from .._writing import write_whole
+from .trajectory import open_trajectory
 
 __all__ = ["spectrum"]
 
@@ -19,7 +20,13 @@ _MODES = (".csv", ".h5", ".hdf5")
     "--mesh",
     "mesh_path",
     type=click.Path(path_type=Path, dir_okay=False),
-    help="Mesh whose triangles a trajectory has. Not for a file of modes.",
+    help="Mesh whose triangles a trajectory has, for one without NAME.triangles beside it. Not for "
+    "a file of modes.",
+)
+@click.option(
+    "--membrane",
+    type=click.IntRange(0),
+    help="Which closed surface of a trajectory with several, from 0 in the order of the particles.",
 )
 @click.option("--lmax", type=click.IntRange(2), help="Largest mode.  [default: 10, or the file's]")
 @click.option(
@@ -58,18 +65,19 @@ _MODES = (".csv", ".h5", ".hdf5")
 )
 @click.option("--csv", "table_path", type=click.Path(path_type=Path), help="Write the table too.")
 @click.option("--plot", type=click.Path(path_type=Path), help="Draw it: .png, .pdf, .svg …")
-def spectrum(source, mesh_path, lmax, kappa, young, radius, table_path, plot, **options):
+def spectrum(source, mesh_path, membrane, lmax, kappa, young, radius, table_path, plot, **options):
     """Print the fluctuation spectrum of SOURCE beside the theory.
 
-    SOURCE is a trajectory (.xtc, .dcd, .pdb), whose triangles --mesh has, or what a ModeReporter
-    wrote (.csv, .h5). The errors account for correlation in time.
+    SOURCE is a trajectory (.xtc, .dcd, .pdb) or what a ModeReporter wrote (.csv, .h5). Where bonds
+    flipped, the triangles of each frame of NAME.xtc are those in NAME.triangles beside it; without
+    that file --mesh has them. The errors account for correlation in time.
     """
     # The package takes a second to load, which --help need not wait for.
     from .. import analysis
     from ..errors import MeshError
 
     try:
-        amplitudes = _amplitudes(source, mesh_path, lmax, **options)
+        amplitudes = _amplitudes(source, mesh_path, membrane, lmax, **options)
         found = analysis.spectrum(amplitudes)
         l = found.l[2:]
         theory = analysis.theory.elastic_spectrum(l, kappa, young, radius)
@@ -86,14 +94,15 @@ def spectrum(source, mesh_path, lmax, kappa, young, radius, table_path, plot, **
         raise click.ClickException(str(reason)) from None
 
 
-def _amplitudes(source, mesh_path, lmax, skip, stride, quadrature, centre):
+def _amplitudes(source, mesh_path, membrane, lmax, skip, stride, quadrature, centre):
     """u_lm of all frames that are asked for, from either kind of file."""
     from .. import analysis
-    from ..mesh import Mesh
 
     if source.suffix.lower() in _MODES:
         if mesh_path is not None:
             raise click.UsageError("--mesh is for trajectories; a file of modes needs none")
+        if membrane is not None:
+            raise click.UsageError("--membrane is for trajectories; a file of modes is of one")
         amplitudes = analysis.read_modes(source).amplitudes[skip::stride]
         largest = round(amplitudes.shape[1] ** 0.5) - 1
         if largest < 2:
@@ -101,16 +110,8 @@ def _amplitudes(source, mesh_path, lmax, skip, stride, quadrature, centre):
         if lmax is not None and lmax > largest:
             raise ValueError(f"--lmax {lmax}: {source} has modes up to l = {largest} only")
         return amplitudes if lmax is None else amplitudes[:, : (lmax + 1) ** 2]
-    if mesh_path is None:
-        raise click.UsageError("a trajectory needs --mesh, which has its triangles")
-    trajectory = analysis.Trajectory(source, start=skip, stride=stride)
-    mesh = Mesh.read(mesh_path)
-    if mesh.num_vertices != trajectory.num_vertices:
-        raise ValueError(
-            f"{source} has {trajectory.num_vertices} particles, and {mesh_path} "
-            f"{mesh.num_vertices} vertices; cut out the membrane first"
-        )
-    return analysis.mode_amplitudes(trajectory, mesh, lmax or 10, quadrature, centre)
+    trajectory, triangles = open_trajectory(source, mesh_path, membrane, skip, stride)
+    return analysis.mode_amplitudes(trajectory, triangles, lmax or 10, quadrature, centre)
 
 
 def _lines(num_frames, kappa, young, rows):

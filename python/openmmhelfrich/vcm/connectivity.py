@@ -60,8 +60,6 @@ def movers(context: openmm.Context) -> list[MonteCarloBondFlip]:
 
 def present_triangles(cfg: Config, context: openmm.Context) -> tuple[np.ndarray, ...]:
     """The triangles of each membrane as they are now, shape (num_triangles, 3), from vertex 0."""
-    if not cfg.flows:
-        return tuple(membrane.mesh.triangles for membrane in cfg.membranes)
     return tuple(
         _present.present_triangles(context, membrane.mesh.triangles + membrane.offset)
         - membrane.offset

@@ -1,7 +1,9 @@
-"""The meshes of a run, a file per membrane and frame, for programs that draw surfaces."""
+"""The meshes of a run for programs that draw surfaces: a file for each, or one for all."""
 
 from __future__ import annotations
 
+import errno
+import os
 import re
 from collections.abc import Iterable
 from pathlib import Path
@@ -10,13 +12,90 @@ import numpy as np
 
 from .._mesh import files
 from ..analysis.curvature import vertex_quantities
+from ..analysis.vtkhdf import SurfaceFrame, SurfaceSeries
 
-__all__ = ["FRAMES", "MeshFrames"]
+__all__ = ["FRAMES", "MeshFrames", "SeriesFrames", "frames_writer"]
 
 #: What frames can be written as; "none" writes none.
-FRAMES = ("none", "ply", "obj", "vtk")
+FRAMES = ("none", "ply", "obj", "vtk", "vtkhdf")
 # Formats that have room for values of the vertices.
 _WITH_DATA = ("ply", "vtk")
+
+
+def frames_writer(folder: Path, name: str, kind: str, labels: Iterable[str]):
+    """What writes the meshes of a run in a format.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the run.
+    name : str
+        Of the run.
+    kind : str
+        One of `FRAMES`.
+    labels : iterable of str
+        Of the membranes.
+
+    Returns
+    -------
+    MeshFrames or SeriesFrames or None
+        None for "none".
+
+    Raises
+    ------
+    ValueError
+        If there is no such format.
+    ImportError
+        If VTKHDF is asked for without h5py.
+    """
+    if kind not in FRAMES:
+        raise ValueError(f"frames must be one of {', '.join(FRAMES)}, got {kind!r}")
+    if kind == "none":
+        return None
+    if kind == "vtkhdf":
+        return SeriesFrames(folder / f"{name}.vtkhdf")
+    return MeshFrames(folder / "frames", name, kind, labels)
+
+
+class SeriesFrames:
+    """One VTKHDF file with all membranes and all frames, see `SurfaceSeries`.
+
+    Parameters
+    ----------
+    path : Path
+        ``<name>.vtkhdf``.
+    """
+
+    def __init__(self, path: Path):
+        self._path = path
+        self._series = SurfaceSeries(path)
+
+    def write(
+        self,
+        number: int,
+        step: int,
+        time: float,
+        parts: list[tuple[np.ndarray, np.ndarray]],
+    ) -> None:
+        """Add a frame; arguments as for `MeshFrames.write`."""
+        if number and not self._path.exists():
+            # Not a new file where one was taken away.
+            raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(self._path))
+        vertices, triangles = joined(parts)
+        self._series.add([SurfaceFrame(step, time, vertices, triangles)])
+
+    def remove_from(self, number: int) -> None:
+        """Remove the frames of this number and later ones.
+
+        Raises
+        ------
+        ValueError
+            If there are fewer.
+        """
+        if number:
+            self._series.cut(number)
+        else:
+            self._series.remove()
 
 
 class MeshFrames:
@@ -32,51 +111,66 @@ class MeshFrames:
     name : str
         How all names begin.
     kind : str
-        One of `FRAMES`.
+        ``ply``, ``obj`` or ``vtk``.
+    labels : iterable of str
+        Of the membranes.
     """
 
-    def __init__(self, folder: Path, name: str, kind: str):
-        if kind not in FRAMES:
-            raise ValueError(f"frames must be one of {', '.join(FRAMES)}, got {kind!r}")
+    def __init__(self, folder: Path, name: str, kind: str, labels: Iterable[str]):
         self._folder = folder
         self._name = name
         self._kind = kind
+        self._labels = list(labels)
 
-    @property
-    def wanted(self) -> bool:
-        """Whether there is anything to write."""
-        return self._kind != "none"
-
-    def write(self, number: int, label: str, vertices: np.ndarray, triangles: np.ndarray) -> None:
-        """Write the mesh of one membrane in one frame.
+    def write(
+        self,
+        number: int,
+        step: int,
+        time: float,
+        parts: list[tuple[np.ndarray, np.ndarray]],
+    ) -> None:
+        """Write the meshes of one frame.
 
         Parameters
         ----------
         number : int
             Of the frame, from 0.
-        label : str
-            Of the membrane.
-        vertices : ndarray
-            Shape (num_vertices, 3), nm.
-        triangles : ndarray
-            Shape (num_triangles, 3), those of this frame.
+        step : int
+            Of the simulation.
+        time : float
+            ps.
+        parts : list of pairs of ndarray
+            Of each membrane the vertices, shape (num_vertices, 3), nm, and the triangles of this
+            frame, shape (num_triangles, 3).
         """
         self._folder.mkdir(exist_ok=True)
+        for label, (vertices, triangles) in zip(self._labels, parts, strict=True):
+            path = self._folder / f"{self._name}_{label}_{number:06d}.{self._kind}"
+            self._write(path, vertices, triangles)
+
+    def _write(self, path: Path, vertices: np.ndarray, triangles: np.ndarray) -> None:
         data = None
         if self._kind in _WITH_DATA:
             found = vertex_quantities(vertices, triangles)
             data = {"mean_curvature": found.mean_curvature(), "area": found.barycentric_area}
-        path = self._folder / f"{self._name}_{label}_{number:06d}.{self._kind}"
         files.write(path, vertices, triangles, data)
 
-    def remove_from(self, number: int, labels: Iterable[str]) -> None:
+    def remove_from(self, number: int) -> None:
         """Remove the frames of this number and later ones."""
-        if not self.wanted:
-            return
-        for label in labels:
+        for label in self._labels:
             # Nothing but digits may follow: one label may be the beginning of another.
             named = re.compile(re.escape(f"{self._name}_{label}_") + r"(\d+)")
             for path in self._folder.glob(f"*.{self._kind}"):
                 found = named.fullmatch(path.stem)
                 if found and int(found.group(1)) >= number:
                     path.unlink()
+
+
+def joined(parts: Iterable[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
+    """Several surfaces as one: their vertices one after another, and all triangles."""
+    vertices, triangles, count = [], [], 0
+    for points, corners in parts:
+        vertices.append(points)
+        triangles.append(corners + count)
+        count += len(points)
+    return np.concatenate(vertices), np.concatenate(triangles)

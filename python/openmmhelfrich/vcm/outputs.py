@@ -23,7 +23,7 @@ from .._writing import in_memory, naming
 from ..analysis import mean_curvature
 from ..wireframe import write_psf
 from .connectivity import present_triangles
-from .frames import MeshFrames
+from .frames import frames_writer
 
 if TYPE_CHECKING:
     from .config import Config
@@ -136,15 +136,16 @@ class Outputs:
     xtc : bool
         Write ``<name>.xtc`` too.
     frames : str
-        One of `frames.FRAMES`: what to write ``frames/<name>_<label>_<number>`` as, a mesh per
-        membrane and frame.
+        One of `frames.FRAMES`: what to write meshes as, ``frames/<name>_<label>_<number>`` for each
+        membrane and frame, or ``<name>.vtkhdf`` for all.
     """
 
     def __init__(self, cfg: Config, folder, xtc: bool = True, frames: str = "none"):
         self._cfg = cfg
         self._folder = Path(folder)
         self._names = [atom.name for atom in cfg.topology().atoms()]
-        self._frames = MeshFrames(self._folder / "frames", cfg.name, frames)
+        labels = [membrane.label for membrane in cfg.membranes]
+        self._frames = frames_writer(self._folder, cfg.name, frames, labels)
         self._num_frames = 0
         text, binary = cfg.general["TextOutputs"], cfg.general["BinOutputs"]
         double = cfg.general["Precision"] == "double"
@@ -178,10 +179,6 @@ class Outputs:
         return list(self._writers)
 
     @property
-    def _labels(self) -> list[str]:
-        return [membrane.label for membrane in self._cfg.membranes]
-
-    @property
     def num_frames(self) -> int:
         """How many frames have been written."""
         return self._num_frames
@@ -190,7 +187,8 @@ class Outputs:
         """Make empty files, and the PSF file."""
         for path in self.paths:
             path.write_bytes(b"")
-        self._frames.remove_from(0, self._labels)
+        if self._frames is not None:
+            self._frames.remove_from(0)
         if "PSF" in self._cfg.general["TextOutputs"]:
             psf = self._folder / f"{self._cfg.name}.psf"
             with naming(psf):
@@ -210,9 +208,9 @@ class Outputs:
             with naming(path), path.open("r+b") as file:
                 file.seek(0, os.SEEK_END)
                 file.write(encode(frame))
-        if self._frames.wanted:
-            for membrane, vertices, triangles in self._parts(frame):
-                self._frames.write(self._num_frames, membrane.label, vertices, triangles)
+        if self._frames is not None:
+            parts = [part[1:] for part in self._parts(frame)]
+            self._frames.write(self._num_frames, frame.step, frame.time, parts)
         self._num_frames += 1
 
     def state(self) -> dict:
@@ -244,10 +242,11 @@ class Outputs:
                 raise ValueError(
                     f"{path} had {sizes[path.name]} bytes at the checkpoint and has {length} now"
                 )
+        if self._frames is not None:
+            self._frames.remove_from(state["frames"])
         for path in self.paths:
             os.truncate(path, sizes[path.name])
         self._num_frames = state["frames"]
-        self._frames.remove_from(self._num_frames, self._labels)
 
     def _xyz(self, frame: Frame, values: np.ndarray) -> bytes:
         """A frame in the XYZ format, with VCM's comment line; coordinates in nm."""

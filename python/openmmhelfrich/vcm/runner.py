@@ -130,7 +130,10 @@ class Run:
         except openmm.OpenMMException as reason:
             where = "" if saved is None else f" on the platform {platform} of the checkpoint"
             raise RunError(f"OpenMM cannot start{where}: {reason}") from None
-        self.outputs = Outputs(cfg, self.folder, self._options["xtc"], self._options["frames"])
+        try:
+            self.outputs = Outputs(cfg, self.folder, self._options["xtc"], self._options["frames"])
+        except ImportError as reason:
+            raise RunError(f"--frames {self._options['frames']}: {reason}") from None
         self.resumed = saved is not None
         self.step = 0 if saved is None else saved.step
         if saved is not None:
