@@ -70,6 +70,8 @@ bench: build ## race evaluations, time steps and the paper's Table III; BENCH=--
 	@$(CARGO) bench -q --locked --bench evaluate -- --output-format bencher $(if $(findstring --quick,$(BENCH)),--quick,\
 	    --warm-up-time 0.5 --measurement-time 2)
 	@$(CARGO) bench -q --locked --bench gpu
+	@$(CARGO) bench -q --locked --bench flips
+	@$(VENV)/bin/python benches/flip_steps.py $(findstring --quick,$(BENCH))
 	@$(VENV)/bin/python benches/steps.py $(BENCH)
 	@$(VENV)/bin/python benches/table3.py $(findstring --quick,$(BENCH))
 
