@@ -7,10 +7,9 @@ over,
 - with flips that a demon pays for (ensemble Microcanonical): energy of the System and the demon,
 - with flips at a temperature (ensemble Canonical): kinetic temperature,
 
-under OpenMM's VerletIntegrator and under velocity Verlet. The two differ with flips only:
-VerletIntegrator knows velocities half a step before a flip, and gives them all of the step's kick
-with the forces after it; velocity Verlet gives half a kick with the forces before the flip, and
-half with those after it, so that the flip finds the velocities of its own moment.
+under OpenMM's VerletIntegrator and under velocity Verlet, which has half a kick at each end of a
+step. VerletIntegrator kicks once a step; the mover changes velocities so that flips come between two
+half kicks there, too.
 
 A jump is a change of the energy by more than 10 kBT from one frame to the next. Where triangles
 fold over until an angle between normals passes through π, the energy of bending is not continuous,

@@ -12,7 +12,7 @@ from reports import Report
 from settings import SETTINGS, with_flips
 
 VERTEX_STEPS = 1e8
-SEEDS = 8
+SEEDS = 4
 FRAMES = 30  # for each τ_2
 FACTORS = (1.0, 1.5)
 
