@@ -8,8 +8,8 @@ over,
 - with flips at a temperature (ensemble Canonical): kinetic temperature,
 
 under OpenMM's VerletIntegrator and under velocity Verlet, which has half a kick at each end of a
-step. VerletIntegrator kicks once a step; the mover changes velocities so that flips come between two
-half kicks there, too.
+step. VerletIntegrator kicks once a step; there the mover changes velocities so that flips come
+between two half kicks, too.
 
 A jump is a change of the energy by more than 10 kBT from one frame to the next. Where triangles
 fold over until an angle between normals passes through π, the energy of bending is not continuous,

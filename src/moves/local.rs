@@ -96,9 +96,8 @@ impl LocalEnergy {
     ) -> Result<()> {
         survey(&mut self.survey)?;
         self.acting = Acting::new(terms);
-        let on_vertices = at(terms, &self.acting.vertices);
         self.vertices_never_negative =
-            on_vertices.fold(true, |all, term| all && term.potential.is_never_negative(term));
+            at(terms, &self.acting.vertices).all(|term| term.potential.is_never_negative(term));
         self.totals_energy = self.energy_of_totals(terms, &self.survey.totals);
         Ok(())
     }
