@@ -188,7 +188,14 @@ def accept_arrays(force: type) -> None:
     def set_triangles_in_context(self, context, given, *, offset=0):
         """Connect the particles of a Context in another way, for all forces on the same triangles.
 
-        Positions stay as they are.
+        Positions stay as they are, and so does the topology of the surface: each of its connected
+        parts keeps its particles and its number of triangles, hence of handles.
+
+        Only a MonteCarloBondFlip on the same triangles tells when positions of before come back: a
+        Context without one takes a State or checkpoint of before for one of the new triangles, and
+        has the triangles of the force again after ``Context.reinitialize()``. (Checkpoints of
+        platform Helfrich have the triangles themselves.) One of ``frequency=0`` flips nothing, and
+        tells.
 
         Parameters
         ----------

@@ -92,7 +92,7 @@ def load_state(context, path) -> None:
         other particles, surfaces or parameters. Nothing has changed then.
     openmm.OpenMMException
         If the connectivity is not one of these particles, or is not allowed by a
-        MonteCarloBondFlip.
+        MonteCarloBondFlip. Nothing has changed then.
     """
     name = Path(path)
     try:
@@ -108,8 +108,7 @@ def load_state(context, path) -> None:
     connectivity = _in_order(values)
     _check(context, name, values["positions"], parameters, surfaces, connectivity)
     # First what may be refused.
-    for force, saved in zip(surfaces, connectivity, strict=True):
-        force._restoreConnectivity(context, saved)
+    _restore(context, surfaces, connectivity)
     present = context.getParameters()
     for key, value in parameters.items():
         # Connectivity has set its own.
@@ -120,6 +119,20 @@ def load_state(context, path) -> None:
     context.setVelocities(values["velocities"])
     context.setTime(float.fromhex(values["clock"]["time"]))
     context.setStepCount(values["clock"]["step"])
+
+
+def _restore(context, surfaces: list, connectivity: list[bytes]) -> None:
+    """Restore the connectivity of all surfaces, or of none."""
+    before = [force._saveConnectivity(context) for force in surfaces]
+    done = []
+    try:
+        for force, saved, old in zip(surfaces, connectivity, before, strict=True):
+            force._restoreConnectivity(context, saved)
+            done.append((force, old))
+    except Exception:
+        for force, old in done:
+            force._restoreConnectivity(context, old)
+        raise
 
 
 def _in_order(values: dict) -> list[bytes]:

@@ -8,6 +8,7 @@ import openmmhelfrich as helfrich
 import pytest
 from openmm import app
 from openmmhelfrich import MonteCarloBondFlip, analysis, vcm
+from openmmhelfrich.vcm.bonded import find_bond_on
 from openmmhelfrich.vcm.outputs import take_frame
 from run_files import contents, invoke
 
@@ -209,6 +210,40 @@ class TestToml:
         assert "run.toml:12" in str(caught.value)
 
 
+def bonded_forces(i: int, j: int) -> list[openmm.Force]:
+    """Forces with bonds of particles that are far from the mesh, and one of i and j."""
+    a, b = 60, 61
+    bond, angle = openmm.HarmonicBondForce(), openmm.HarmonicAngleForce()
+    bond.addBond(a, b, 1, 1)
+    bond.addBond(i, j, 1, 1)
+    angle.addAngle(i, a, j, 1, 1)
+    periodic, ryckaert = openmm.PeriodicTorsionForce(), openmm.RBTorsionForce()
+    periodic.addTorsion(i, a, b, j, 1, 1, 1)
+    ryckaert.addTorsion(a, i, b, j, 1, 1, 1, 1, 1, 1)
+    custom_bond = openmm.CustomBondForce("r")
+    custom_bond.addBond(j, i)
+    custom_angle = openmm.CustomAngleForce("theta")
+    custom_angle.addAngle(a, j, i)
+    custom_torsion = openmm.CustomTorsionForce("theta")
+    custom_torsion.addTorsion(i, j, a, b)
+    compound = openmm.CustomCompoundBondForce(3, "distance(p1, p3)")
+    compound.addBond([a, b, 62], [])
+    compound.addBond([i, a, j], [])
+    centroid = openmm.CustomCentroidBondForce(2, "distance(g1, g2)")
+    for particle in (i, j):
+        centroid.addGroup([particle])
+    centroid.addBond([0, 1], [])
+    maps = openmm.CMAPTorsionForce()
+    maps.addTorsion(maps.addMap(2, [0] * 4), a, b, 62, i, j, 63, 64, 65)
+    inside = openmm.HarmonicBondForce()
+    inside.addBond(i, j, 1, 1)
+    variable, outer = openmm.CustomCVForce("x"), openmm.CustomCVForce("y")
+    variable.addCollectiveVariable("x", inside)
+    outer.addCollectiveVariable("y", variable)
+    simple = [bond, angle, periodic, ryckaert, custom_bond, custom_angle, custom_torsion]
+    return [*simple, compound, centroid, maps, outer]
+
+
 class TestVcm:
     def config(self, folder, more=""):
         helfrich.Mesh.random_sphere(132, 400, seed=2).write(folder / "sphere.ply")
@@ -227,8 +262,40 @@ class TestVcm:
     def test_what_would_not_follow_is_refused(self, tmp_path):
         path = self.config(tmp_path, "SpringModel H\nSpringCoeff 1")
         vcm.read(path)
-        with pytest.raises(vcm.ConfigError, match="acts on the edges or triangles that the mesh"):
+        with pytest.raises(
+            vcm.ConfigError,
+            match=r"\"springs\" acts on particles \d+ and \d+, which the mesh connects",
+        ):
             vcm.read(path, flips=0.05)
+
+    def test_pairs_left_out_by_edges_are_refused(self, tmp_path):
+        path = self.config(tmp_path)
+        text = path.read_text().replace("Seed 4", "Seed 4\nbondCutoff 2")
+        path.write_text(text)
+        assert vcm.read(path, flips=0.05).system().getNumForces()
+        path.write_text(text.replace("M0 0", "M0 EV"))
+        vcm.read(path).system()
+        with pytest.raises(vcm.ConfigError, match=r"bondCutoff: .*does not follow flips"):
+            vcm.read(path, flips=0.05)
+
+    def test_only_bonds_on_edges_are_refused(self):
+        mesh = helfrich.Mesh.icosphere(1, 100)
+        i, j = mesh.edges[5].tolist()
+        far = next(k for k in range(42) if all(sorted((i, k)) != e for e in mesh.edges.tolist()))
+        edges = {tuple(edge) for edge in np.sort(mesh.edges, axis=1).tolist()}
+        for on, bond in ((True, j), (False, far), (False, 50)):
+            pair = (min(i, bond), max(i, bond)) if on else None
+            for force in bonded_forces(bond, i):
+                assert find_bond_on(edges, force) == pair, force
+        assert find_bond_on(edges, openmm.NonbondedForce()) is None
+
+    def test_centres_of_patches_are_no_bonds(self):
+        force = openmm.CustomCentroidBondForce(2, "distance(g1, g2)")
+        for group in ([0, 1, 2], [3, 4], [1]):
+            force.addGroup(group)
+        force.addBond([0, 1], [])
+        force.addBond([2, 1], [])
+        assert find_bond_on({(0, 1), (2, 3), (1, 3)}, force) is None
 
     def test_a_toml_file_says_it_itself(self, tmp_path):
         result = invoke("run", toml(tmp_path, 0.1), "--flips", 0.1)

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <istream>
 #include <ostream>
+#include <sstream>
 
 using namespace HelfrichPlugin;
 using namespace OpenMM;
@@ -202,7 +203,21 @@ void HelfrichUpdateStateDataKernel::createCheckpoint(ContextImpl& context, std::
 }
 
 void HelfrichUpdateStateDataKernel::loadCheckpoint(ContextImpl& context, std::istream& stream) {
-    reference.loadCheckpoint(context, stream);
+    // What is refused leaves all as it was but the Context's parameters, which OpenMM has read before.
+    std::stringstream before(std::ios::in | std::ios::out | std::ios::binary);
+    reference.createCheckpoint(context, before);
+    vector<HelfrichStream> streams(data.streams.begin(), data.streams.end());
+    try {
+        reference.loadCheckpoint(context, stream);
+        loadOurs(context, stream);
+    } catch (...) {
+        reference.loadCheckpoint(context, before);
+        std::copy(streams.begin(), streams.end(), data.streams.begin());
+        throw;
+    }
+}
+
+void HelfrichUpdateStateDataKernel::loadOurs(ContextImpl& context, std::istream& stream) {
     auto mark = read<uint32_t>(stream);
     if (mark != CHECKPOINT_MARK && mark != CONNECTIVITY_MARK)
         throw OpenMMException("loadCheckpoint: the checkpoint has no random numbers of platform Helfrich; it is "

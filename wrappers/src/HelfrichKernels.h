@@ -66,6 +66,9 @@ public:
     void loadCheckpoint(OpenMM::ContextImpl& context, std::istream& stream);
 
 private:
+    /** Read what Reference's checkpoint does not have. */
+    void loadOurs(OpenMM::ContextImpl& context, std::istream& stream);
+
     HelfrichPlatform::PlatformData& data;
     OpenMM::Kernel kernel;
     /** What the kernel refers to. */

@@ -31,8 +31,8 @@ public:
     std::vector<std::pair<int, int>> getBondedParticles() const;
     std::vector<std::string> getKernelNames();
     void updateParametersInContext(OpenMM::ContextImpl& context);
-    std::vector<int> getTrianglesInContext() const {
-        return membrane->getPresentTriangles();
+    std::vector<int> getTrianglesInContext(OpenMM::ContextImpl& context) const {
+        return membrane->getPresentTriangles(context);
     }
     void setTrianglesInContext(OpenMM::ContextImpl& context, const std::vector<int>& corners) {
         membrane->setTriangles(owner.getTypeName(), context, corners);

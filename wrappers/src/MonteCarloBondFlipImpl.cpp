@@ -119,16 +119,18 @@ bool writesParameters(const Integrator& integrator, ContextImpl& context, bool o
 } // namespace
 
 MonteCarloBondFlipImpl::MonteCarloBondFlipImpl(const MonteCarloBondFlip& owner)
-    : owner(owner), state(), rules(), frequency(0), attemptsPerEdge(0), inPlace(false), announced(nullptr), present(0),
-      replaced(0), mayRevert(false), lastTime(0), lastStep(NEVER) {
+    : owner(owner), home(nullptr), state(), rules(), frequency(0), attemptsPerEdge(0), inPlace(false),
+      announced(nullptr), present(0), replaced(0), mayRevert(false), seenTime(0), seenStep(NEVER), lastTime(0),
+      lastStep(NEVER) {
 }
 
 MonteCarloBondFlipImpl::~MonteCarloBondFlipImpl() {
     if (membrane != nullptr)
-        membrane->leave(this);
+        membrane->leave(this, *home);
 }
 
 void MonteCarloBondFlipImpl::initialize(ContextImpl& context) {
+    home = &context;
     inPlace = dynamic_cast<const ReferencePlatform*>(&context.getPlatform()) != nullptr;
     refuseContained(owner, context);
     refuseCopies(owner, context.getIntegrator());
@@ -187,6 +189,8 @@ double MonteCarloBondFlipImpl::getThermalEnergy(ContextImpl& context) const {
 
 void MonteCarloBondFlipImpl::updateContextState(ContextImpl& context, bool& forcesInvalid) {
     checkConnectivity(context);
+    // To this the integrator may set the parameter back during the step.
+    replaced = getAnnounced(context);
     state.time += getTimeSinceUpdate(context);
     lastTime = context.getTime();
     lastStep = context.getStepCount();
@@ -212,8 +216,7 @@ void MonteCarloBondFlipImpl::updateContextState(ContextImpl& context, bool& forc
         forcesInvalid = true;
         if (wanted != nullptr)
             shareKick(context, integrator.getStepSize());
-        // What a step begins with is what the integrator may set back.
-        double before = getAnnounced(context);
+        double before = replaced;
         announceConnectivity(context);
         replaced = before;
     }
@@ -243,14 +246,29 @@ void MonteCarloBondFlipImpl::announceConnectivity(ContextImpl& context) {
         context.setParameter(owner.getConnectivityParameter(), present);
 }
 
-void MonteCarloBondFlipImpl::checkConnectivity(ContextImpl& context) {
+bool MonteCarloBondFlipImpl::isRight(ContextImpl& context) {
     double said = getAnnounced(context);
-    if (said == present || (mayRevert && said == replaced))
+    return said == present || (mayRevert && said == replaced && hasGoneOn(context));
+}
+
+void MonteCarloBondFlipImpl::checkConnectivity(ContextImpl& context) {
+    membrane->settle(context);
+    if (isRight(context)) {
+        seenTime = context.getTime();
+        seenStep = context.getStepCount();
         return;
+    }
     throw OpenMMException(owner.getTypeName() + ": the Context parameter " + owner.getConnectivityParameter() +
                           " says that positions belong to other triangles than the Context has: a State or checkpoint "
                           "was loaded, which does not hold the connectivity. Load what helfrich.save_state() has saved "
                           "with helfrich.load_state(), or give the Context the triangles with setTrianglesInContext()");
+}
+
+bool MonteCarloBondFlipImpl::hasGoneOn(ContextImpl& context) const {
+    // A user may have set one of the two to zero.
+    long long steps = context.getStepCount() - seenStep;
+    double time = context.getTime();
+    return steps == 0 || steps == 1 || time == seenTime || time == seenTime + context.getIntegrator().getStepSize();
 }
 
 double MonteCarloBondFlipImpl::getTimeSinceUpdate(ContextImpl& context) const {
@@ -271,14 +289,16 @@ void MonteCarloBondFlipImpl::setState(const MoverState& restored) {
     lastStep = NEVER;
 }
 
-void MonteCarloBondFlipImpl::updateParametersInContext(ContextImpl&) {
+void MonteCarloBondFlipImpl::updateParametersInContext(ContextImpl& context) {
     if (owner.getTriangles() != membrane->getTriangles())
         throw OpenMMException(owner.getTypeName() + ": the triangles have changed since the Context was made; call " +
                               "Context::reinitialize()");
+    membrane->settle(context);
     copyValues();
 }
 
 map<string, double> MonteCarloBondFlipImpl::getStatistics(ContextImpl& context) const {
+    membrane->settle(context);
     const HelfrichFlipState& flips = state.flips;
     double time = getState(context).time;
     auto ratio = [](double above, double below) {

@@ -41,8 +41,8 @@ public:
     }
     void updateParametersInContext(OpenMM::ContextImpl& context);
     std::map<std::string, double> getStatistics(OpenMM::ContextImpl& context) const;
-    std::vector<int> getTrianglesInContext() const {
-        return membrane->getPresentTriangles();
+    std::vector<int> getTrianglesInContext(OpenMM::ContextImpl& context) const {
+        return membrane->getPresentTriangles(context);
     }
     void setTrianglesInContext(OpenMM::ContextImpl& context, const std::vector<int>& corners) {
         membrane->setTriangles(owner.getTypeName(), context, corners);
@@ -62,14 +62,22 @@ public:
     void setState(const MoverState& restored);
     /** Let the Context's parameter say which triangles there are. */
     void announceConnectivity(OpenMM::ContextImpl& context);
+    /** The Context's parameter for the triangles. */
+    double getAnnounced(OpenMM::ContextImpl& context);
+    /** Whether the parameter is that of the present triangles, or one that the integrator has set back. */
+    bool isRight(OpenMM::ContextImpl& context);
+    /** Whether positions are OpenMM's own array of doubles. */
+    bool isInPlace() const {
+        return inPlace;
+    }
 
 private:
     /** Copy the values of the force; if they are refused, everything stays as it was. */
     void copyValues();
     /** Refuse to go on if the parameter says that the Context's State belongs to other triangles. */
     void checkConnectivity(OpenMM::ContextImpl& context);
-    /** The Context's parameter for the triangles. */
-    double getAnnounced(OpenMM::ContextImpl& context);
+    /** Whether the Context has been stepped from when the parameter was found right, and no State was loaded. */
+    bool hasGoneOn(OpenMM::ContextImpl& context) const;
     /** The time since the last update, ps, or 0 if time has jumped. */
     double getTimeSinceUpdate(OpenMM::ContextImpl& context) const;
     /**
@@ -82,6 +90,8 @@ private:
     double getThermalEnergy(OpenMM::ContextImpl& context) const;
 
     const MonteCarloBondFlip& owner;
+    /** Where the forces are; null before they have been initialised. */
+    OpenMM::ContextImpl* home;
     std::shared_ptr<SharedMembrane> membrane;
     MoverState state;
     HelfrichFlipRules rules;
@@ -96,10 +106,13 @@ private:
     std::vector<OpenMM::Vec3> forceChange;
     /** Where OpenMM keeps that parameter, once it is there. */
     const double* announced;
-    /** What it should be, and what it was before, which it may become again: see mayRevert. */
+    /** What it should be, and what it was when a step began, which it may become again: see mayRevert. */
     double present, replaced;
     /** Whether the integrator sets parameters back that change during a step. */
     bool mayRevert;
+    /** When the parameter was last found right. */
+    double seenTime;
+    long long seenStep;
     /** When the Context's state was last updated. */
     double lastTime;
     long long lastStep;

@@ -2,6 +2,8 @@
 #include "MonteCarloBondFlipImpl.h"
 #include "SharedMembrane.h"
 
+#include <openmm/reference/ReferencePlatform.h>
+
 #include <algorithm>
 #include <cstring>
 
@@ -36,8 +38,14 @@ uint64_t findChecksum(const char* data, size_t size) {
     return sum;
 }
 
-uint64_t findChecksum(const vector<int>& corners) {
-    return findChecksum(reinterpret_cast<const char*>(corners.data()), corners.size() * sizeof(int));
+template <class T>
+uint64_t findChecksum(const vector<T>& values) {
+    return findChecksum(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+}
+
+/** OpenMM's own array, on Reference and what derives from it. */
+const vector<Vec3>& getPositions(ContextImpl& context) {
+    return *static_cast<ReferencePlatform::PlatformData*>(context.getPlatformData())->positions;
 }
 
 template <class T>
@@ -50,17 +58,17 @@ void put(string& bytes, const T& value) {
     put(bytes, &value, 1);
 }
 
+} // namespace
+
 /** Takes apart what was saved. */
-struct Saved {
+struct HelfrichPlugin::SavedConnectivity {
     uint64_t triangulation;
     int32_t smallest, numTriangles, numVertices;
-    int64_t flips;
-    vector<int> corners;
-    vector<uint32_t> order;
+    Connectivity connectivity;
     bool hasMover;
     MoverState mover;
 
-    Saved(const string& subject, const string& bytes) : hasMover(false), mover(), bytes(bytes), at(0) {
+    SavedConnectivity(const string& subject, const string& bytes) : hasMover(false), mover(), bytes(bytes), at(0) {
         uint64_t sum = 0;
         const size_t least = 3 * sizeof(int32_t) + 2 * sizeof(uint32_t) + 2 * sizeof(int64_t) + sizeof(sum);
         if (bytes.size() >= least)
@@ -75,11 +83,11 @@ struct Saved {
         take(&smallest, 1);
         take(&numTriangles, 1);
         take(&numVertices, 1);
-        take(&flips, 1);
-        corners.resize(3 * (size_t) numTriangles);
-        take(corners.data(), corners.size());
-        order.resize((size_t) numVertices);
-        take(order.data(), order.size());
+        take(&connectivity.flips, 1);
+        connectivity.corners.resize(3 * (size_t) numTriangles);
+        take(connectivity.corners.data(), connectivity.corners.size());
+        connectivity.order.resize((size_t) numVertices);
+        take(connectivity.order.data(), connectivity.order.size());
         take(&moves, 1);
         hasMover = moves != 0;
         if (hasMover)
@@ -98,8 +106,6 @@ private:
     size_t at;
 };
 
-} // namespace
-
 int SharedMembrane::getSmallestParticle() const {
     return *std::min_element(triangles.begin(), triangles.end());
 }
@@ -108,19 +114,18 @@ bool SharedMembrane::needsSaving() const {
     return mover != nullptr || getFingerprint() != 0;
 }
 
-string SharedMembrane::save(ContextImpl& context) const {
-    vector<int> corners = getPresentTriangles();
-    vector<uint32_t> order(Helfrich_Membrane_numVertices(core));
-    int64_t flips = Helfrich_Membrane_order(core, order.data());
+string SharedMembrane::save(ContextImpl& context) {
+    settle(context);
+    Connectivity present = getConnectivity();
     string bytes;
     put(bytes, MARK);
     put(bytes, findChecksum(triangles));
     put(bytes, (int32_t) getSmallestParticle());
-    put(bytes, (int32_t) (corners.size() / 3));
-    put(bytes, (int32_t) order.size());
-    put(bytes, flips);
-    put(bytes, corners.data(), corners.size());
-    put(bytes, order.data(), order.size());
+    put(bytes, (int32_t) (present.corners.size() / 3));
+    put(bytes, (int32_t) present.order.size());
+    put(bytes, present.flips);
+    put(bytes, present.corners.data(), present.corners.size());
+    put(bytes, present.order.data(), present.order.size());
     put(bytes, (uint32_t) (mover != nullptr));
     if (mover != nullptr)
         put(bytes, mover->getState(context));
@@ -128,56 +133,81 @@ string SharedMembrane::save(ContextImpl& context) const {
     return bytes;
 }
 
-template <class Change>
-void SharedMembrane::change(const string& subject, ContextImpl& context, Change make) {
-    vector<int> corners = getPresentTriangles();
-    vector<uint32_t> order(Helfrich_Membrane_numVertices(core));
-    int64_t flips = Helfrich_Membrane_order(core, order.data());
-    make();
+Connectivity SharedMembrane::getConnectivity() const {
+    Connectivity present;
+    present.corners.resize(triangles.size());
+    Helfrich_Membrane_triangles(core, present.corners.data());
+    present.order.resize(Helfrich_Membrane_numVertices(core));
+    present.flips = Helfrich_Membrane_order(core, present.order.data());
+    return present;
+}
+
+void SharedMembrane::setConnectivity(const string& subject, const Connectivity& connectivity) {
+    check(Helfrich_Membrane_restore(subject.c_str(), core, connectivity.corners.data(), connectivity.order.data(),
+                                    connectivity.flips));
+}
+
+void SharedMembrane::checkMover(const string& subject, const Connectivity& before) {
+    if (mover == nullptr)
+        return;
+    try {
+        checkRules(mover->getOwner().getTypeName(), mover->getRules());
+    } catch (...) {
+        setConnectivity(subject, before);
+        throw;
+    }
+}
+
+void SharedMembrane::take(const string& subject, const SavedConnectivity& saved) {
+    if (saved.smallest != getSmallestParticle() || saved.connectivity.corners.size() != triangles.size() ||
+        (int64_t) saved.connectivity.order.size() != Helfrich_Membrane_numVertices(core))
+        throw OpenMMException(subject + ": the saved connectivity is that of " + std::to_string(saved.numTriangles) +
+                              " triangles of " + std::to_string(saved.numVertices) + " particles from " +
+                              std::to_string(saved.smallest) + " on, not that of this membrane");
+    Connectivity before = getConnectivity();
+    setConnectivity(subject, saved.connectivity);
+    checkMover(subject, before);
+}
+
+void SharedMembrane::announce(ContextImpl& context, const SavedConnectivity* saved) {
+    inherited.reset();
     if (mover != nullptr) {
-        try {
-            checkRules(mover->getOwner().getTypeName(), mover->getRules());
-        } catch (...) {
-            check(Helfrich_Membrane_restore(subject.c_str(), core, corners.data(), order.data(), flips));
-            throw;
-        }
         mover->announceConnectivity(context);
+        if (saved != nullptr && saved->hasMover)
+            mover->setState(saved->mover);
     }
     context.systemChanged();
 }
 
 void SharedMembrane::setTriangles(const string& subject, ContextImpl& context, const vector<int>& corners) {
-    change(subject, context, [&] {
-        check(Helfrich_Membrane_setTriangles(subject.c_str(), core, corners.data(), (int64_t) corners.size() / 3));
-    });
+    Connectivity before = getConnectivity();
+    check(Helfrich_Membrane_setTriangles(subject.c_str(), core, corners.data(), (int64_t) corners.size() / 3));
+    checkMover(subject, before);
+    announce(context, nullptr);
 }
 
 void SharedMembrane::restore(const string& subject, ContextImpl& context, const string& bytes) {
-    Saved saved(subject, bytes);
-    if (saved.smallest != getSmallestParticle() || saved.corners.size() != triangles.size() ||
-        (int64_t) saved.order.size() != Helfrich_Membrane_numVertices(core))
-        throw OpenMMException(subject + ": the saved connectivity is that of " + std::to_string(saved.numTriangles) +
-                              " triangles of " + std::to_string(saved.numVertices) + " particles from " +
-                              std::to_string(saved.smallest) + " on, not that of this membrane");
-    change(subject, context, [&] {
-        check(Helfrich_Membrane_restore(subject.c_str(), core, saved.corners.data(), saved.order.data(), saved.flips));
-    });
-    if (mover != nullptr && saved.hasMover)
-        mover->setState(saved.mover);
+    SavedConnectivity saved(subject, bytes);
+    take(subject, saved);
+    announce(context, &saved);
 }
 
 vector<string> SharedMembrane::saveAll(ContextImpl& context) {
     vector<string> saved;
-    for (const auto& membrane : findAll(context))
+    for (const auto& membrane : findAll(context)) {
+        membrane->settle(context);
         if (membrane->needsSaving())
             saved.push_back(membrane->save(context));
+    }
     return saved;
 }
 
 void SharedMembrane::restoreAll(const string& subject, ContextImpl& context, const vector<string>& saved) {
     vector<std::shared_ptr<SharedMembrane>> left = findAll(context), found;
+    vector<SavedConnectivity> wanted;
     for (const string& bytes : saved) {
-        Saved one(subject, bytes);
+        wanted.emplace_back(subject, bytes);
+        const SavedConnectivity& one = wanted.back();
         auto match = std::find_if(left.begin(), left.end(), [&](const std::shared_ptr<SharedMembrane>& membrane) {
             return findChecksum(membrane->triangles) == one.triangulation;
         });
@@ -188,9 +218,80 @@ void SharedMembrane::restoreAll(const string& subject, ContextImpl& context, con
         found.push_back(*match);
         left.erase(match);
     }
-    for (size_t i = 0; i < saved.size(); i++)
-        found[i]->restore(subject, context, saved[i]);
+    vector<Connectivity> before;
+    try {
+        for (size_t i = 0; i < found.size(); i++) {
+            before.push_back(found[i]->getConnectivity());
+            found[i]->take(subject, wanted[i]);
+        }
+    } catch (...) {
+        for (size_t i = 0; i < before.size(); i++)
+            found[i]->setConnectivity(subject, before[i]);
+        throw;
+    }
+    for (size_t i = 0; i < found.size(); i++)
+        found[i]->announce(context, &wanted[i]);
+    // These have no mover, which could refuse the triangles of the System.
     for (const auto& membrane : left)
         if (membrane->getFingerprint() != 0)
             membrane->setTriangles(subject, context, membrane->triangles);
+}
+
+/*
+ * Context::reinitialize() destroys the forces' implementations and makes others, on the same thread, and may then load
+ * a checkpoint, which on most platforms does not hold the connectivity. So a mover's membrane leaves it behind, and the
+ * next membrane on the same triangles takes it up if its Context has come to the same fingerprint and number of steps
+ * (and to the same positions, where an integrator has set the fingerprint back). Each thread keeps what one Context has
+ * left.
+ */
+thread_local SharedMembrane::Estate SharedMembrane::estate;
+
+void SharedMembrane::leaveBehind(ContextImpl& context) {
+    try {
+        settle(context);
+        // Of several membranes each adds its own.
+        if (estate.context != &context)
+            estate = {&context, {}};
+        Left left = {triangles, mover->getAnnounced(context), context.getStepCount(), 0, ""};
+        // Every new Context would be taken for one in which nothing has happened; and a State may have been loaded.
+        if ((left.parameter == 0 && left.step == 0) || !mover->isRight(context))
+            return;
+        if (left.parameter != getFingerprint() && mover->isInPlace())
+            left.checksum = findChecksum(getPositions(context));
+        left.saved = save(context);
+        estate.left.push_back(std::move(left));
+    } catch (...) {
+        // A destructor must not throw. Without this, the State of the Context is refused by the next one.
+    }
+}
+
+void SharedMembrane::inherit() {
+    estate.context = nullptr;
+    for (Left& left : estate.left)
+        if (left.triangles == triangles) {
+            inherited.reset(new Left(std::move(left)));
+            left.triangles.clear();
+            return;
+        }
+}
+
+void SharedMembrane::settle(ContextImpl& context) {
+    std::lock_guard<std::mutex> lock(settling);
+    if (inherited == nullptr)
+        return;
+    if (isHeir(context)) {
+        const string& subject = mover->getOwner().getTypeName();
+        SavedConnectivity saved(subject, inherited->saved);
+        take(subject, saved);
+        mover->announceConnectivity(context);
+        mover->setState(saved.mover);
+    }
+    inherited.reset();
+}
+
+bool SharedMembrane::isHeir(ContextImpl& context) const {
+    if (context.getParameter(mover->getOwner().getConnectivityParameter()) != inherited->parameter ||
+        context.getStepCount() != inherited->step)
+        return false;
+    return inherited->checksum == 0 || inherited->checksum == findChecksum(getPositions(context));
 }

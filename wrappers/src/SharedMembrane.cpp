@@ -103,11 +103,14 @@ void SharedMembrane::join(MonteCarloBondFlipImpl* joining, ContextImpl& context)
         if (other.get() != this)
             refuseOthers(subject, *this, *other);
     mover = joining;
+    inherit();
 }
 
-void SharedMembrane::leave(MonteCarloBondFlipImpl* leaving) {
-    if (mover == leaving)
-        mover = nullptr;
+void SharedMembrane::leave(MonteCarloBondFlipImpl* leaving, ContextImpl& context) {
+    if (mover != leaving)
+        return;
+    leaveBehind(context);
+    mover = nullptr;
 }
 
 bool SharedMembrane::isLeader(const MembraneForceImpl& member, int groups) const {
@@ -132,6 +135,7 @@ void SharedMembrane::collect(ContextImpl& context, int groups) {
 
 double SharedMembrane::evaluate(const string& subject, ContextImpl& context, int groups, const vector<Vec3>& positions,
                                 bool includeEnergy, vector<Vec3>* forces, std::map<string, double>* derivatives) {
+    settle(context);
     collect(context, groups);
     bool wantsDerivatives = derivatives != nullptr &&
         std::any_of(terms.begin(), terms.end(), [](const HelfrichTerm& term) { return term.wantsDerivatives != 0; });
@@ -165,12 +169,6 @@ int64_t SharedMembrane::flip(const string& subject, ContextImpl& context, int gr
                                  (int64_t) positions.size(), reinterpret_cast<const double*>(positions.data()), &rules,
                                  attempts, &state, &made, change));
     return made;
-}
-
-vector<int> SharedMembrane::getPresentTriangles() const {
-    vector<int> corners(triangles.size());
-    Helfrich_Membrane_triangles(core, corners.data());
-    return corners;
 }
 
 vector<std::pair<int, int>> SharedMembrane::getEdges() const {

@@ -7,6 +7,8 @@
 #include <openmm/internal/ContextImpl.h>
 
 #include <memory>
+#include <mutex>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -14,6 +16,17 @@ namespace HelfrichPlugin {
 
 class MembraneForceImpl;
 class MonteCarloBondFlipImpl;
+struct SavedConnectivity;
+
+/** What decides the bits of evaluations beside positions. */
+struct Connectivity {
+    /** The particles at the corners of the triangles, three for each. */
+    std::vector<int> corners;
+    /** The vertices, in the order in which sums are formed. */
+    std::vector<uint32_t> order;
+    /** How many flips there have been since the order was made. */
+    int64_t flips;
+};
 
 /**
  * A mesh in one Context, shared by all forces on the same triangles, so that the geometry is computed
@@ -41,7 +54,7 @@ public:
     void leave(MembraneForceImpl* member);
     /** Add what flips edges, of which there can be one. */
     void join(MonteCarloBondFlipImpl* mover, OpenMM::ContextImpl& context);
-    void leave(MonteCarloBondFlipImpl* mover);
+    void leave(MonteCarloBondFlipImpl* mover, OpenMM::ContextImpl& context);
     /** Whether a member is the first whose force group is among those asked for. */
     bool isLeader(const MembraneForceImpl& member, int groups) const;
     /**
@@ -80,8 +93,17 @@ public:
     void checkRules(const std::string& subject, const HelfrichFlipRules& rules) const {
         check(Helfrich_Membrane_checkFlips(subject.c_str(), core, &rules));
     }
+    /**
+     * Take up what a Context before this one has left, if its State is the one that this Context has: so
+     * Context::reinitialize() loses nothing. OpenMM tells no force when it has loaded a State; so this comes before the
+     * first use of the connectivity, whichever that is, and from then on nothing is waiting.
+     */
+    void settle(OpenMM::ContextImpl& context);
     /** The corners of the triangles as they are now. */
-    std::vector<int> getPresentTriangles() const;
+    std::vector<int> getPresentTriangles(OpenMM::ContextImpl& context) {
+        settle(context);
+        return getConnectivity().corners;
+    }
     /** Go on with other triangles; if they are refused, everything stays as it was. */
     void setTriangles(const std::string& subject, OpenMM::ContextImpl& context, const std::vector<int>& corners);
     /** A number that tells the present triangles from others, 0 for those of the System. */
@@ -91,12 +113,15 @@ public:
     /** Whether something has to be saved to go on with the same bits. */
     bool needsSaving() const;
     /** What restore() takes; SavedConnectivity.cpp has the format. */
-    std::string save(OpenMM::ContextImpl& context) const;
+    std::string save(OpenMM::ContextImpl& context);
     /** Go on with what had been saved; if it is refused, everything stays as it was. */
     void restore(const std::string& subject, OpenMM::ContextImpl& context, const std::string& saved);
     /** Save all membranes of a Context that need it. */
     static std::vector<std::string> saveAll(OpenMM::ContextImpl& context);
-    /** Restore all membranes of a Context. Those that had nothing to save have the triangles of the System again. */
+    /**
+     * Restore all membranes of a Context. Those that had nothing to save have the triangles of the System again. If one
+     * is refused, all stay as they were.
+     */
     static void restoreAll(const std::string& subject, OpenMM::ContextImpl& context,
                            const std::vector<std::string>& saved);
     /** Choose what computes the forces, for one that joins; `backend` is empty if it does not mind. */
@@ -117,6 +142,23 @@ public:
     std::vector<std::pair<int, int>> getEdges() const;
 
 private:
+    /** What a membrane leaves to the next Context, and how to tell the State that it belongs to. */
+    struct Left {
+        std::vector<int> triangles;
+        /** The Context's parameter for the connectivity. */
+        double parameter;
+        long long step;
+        /** Of the positions, where an integrator has set the parameter back; otherwise 0. */
+        uint64_t checksum;
+        std::string saved;
+    };
+    /** What the Context that this thread has destroyed last has left. */
+    struct Estate {
+        const OpenMM::ContextImpl* context = nullptr;
+        std::vector<Left> left;
+    };
+    static thread_local Estate estate;
+
     SharedMembrane(const std::string& subject, OpenMM::ContextImpl& context, const std::vector<int>& triangles);
 
     /**
@@ -128,9 +170,20 @@ private:
     static void refuseOthers(const std::string& subject, const SharedMembrane& one, const SharedMembrane& other);
     /** Note the members in some force groups, and their terms. */
     void collect(OpenMM::ContextImpl& context, int groups);
-    /** Go on with other triangles, or back to the old ones if the mover cannot go on from there. */
-    template <class Change>
-    void change(const std::string& subject, OpenMM::ContextImpl& context, Change make);
+    Connectivity getConnectivity() const;
+    void setConnectivity(const std::string& subject, const Connectivity& connectivity);
+    /** Refuse the present triangles if the mover cannot go on from there, and go back to others. */
+    void checkMover(const std::string& subject, const Connectivity& before);
+    /** Take what has been saved of these triangles, or stay as before. The Context does not know yet. */
+    void take(const std::string& subject, const SavedConnectivity& saved);
+    /** Tell the Context of other triangles, and let the mover go on from what has been saved, if anything. */
+    void announce(OpenMM::ContextImpl& context, const SavedConnectivity* saved);
+    /** Leave the connectivity to a Context that goes on with the same State. */
+    void leaveBehind(OpenMM::ContextImpl& context);
+    /** Let what has been left of this membrane wait for settle(). */
+    void inherit();
+    /** Whether a Context has the State that belongs to what has been left. */
+    bool isHeir(OpenMM::ContextImpl& context) const;
     /** The smallest index of a particle, which stands for the membrane in what is saved. */
     int getSmallestParticle() const;
 
@@ -139,6 +192,10 @@ private:
     std::vector<MembraneForceImpl*> members;
     /** What flips edges, or null. */
     MonteCarloBondFlipImpl* mover;
+    /** What waits to be taken up, or null. */
+    std::unique_ptr<Left> inherited;
+    /** OpenCL and CUDA evaluate on a thread of their own. */
+    std::mutex settling;
     std::vector<MembraneForceImpl*> active;
     std::vector<HelfrichTerm> terms;
     std::vector<HelfrichContribution> contributions;

@@ -9,6 +9,7 @@ import openmm
 
 from .. import _present
 from ..forces import MonteCarloBondFlip
+from .bonded import find_bond_on
 from .grammar import ConfigError
 
 if TYPE_CHECKING:
@@ -26,16 +27,30 @@ def add_movers(cfg: Config, system: openmm.System) -> None:
     Raises
     ------
     ConfigError
-        If a force refers to edges or triangles as they are at the start, and would not follow.
+        If a force has a bond, an angle or a torsion on an edge of a mesh, which would not follow,
+        or leaves out what the edges join.
     """
+    if cfg.general["bondCutoff"] and any(
+        row[number] != "0" for number, row in enumerate(cfg.table)
+    ):
+        raise cfg.general.error(
+            "bondCutoff",
+            "vertices near each other on the mesh do not interact, by the edges that it starts "
+            "with, and that does not follow flips; leave out the flips, set it to 0, or let no "
+            "membrane interact with itself",
+        )
+    edges = {
+        (i, j)
+        for membrane in cfg.membranes
+        for i, j in np.sort(membrane.mesh.edges + membrane.offset, axis=1).tolist()
+    }
     for force in system.getForces():
-        bonds = isinstance(force, (openmm.HarmonicBondForce, openmm.CustomBondForce))
-        angles = isinstance(force, (openmm.CustomCompoundBondForce, openmm.CustomTorsionForce))
-        if bonds or angles:
+        pair = find_bond_on(edges, force)
+        if pair is not None:
             raise ConfigError(
-                f'{cfg.path}: flips: the potential "{force.getName()}" acts on the edges or '
-                "triangles that the mesh starts with, and does not follow flips; leave out one of "
-                "the two"
+                f'{cfg.path}: flips: the potential "{force.getName()}" acts on particles {pair[0]} '
+                f"and {pair[1]}, which the mesh connects, and does not follow flips; leave out one "
+                "of the two"
             )
     for membrane in cfg.membranes:
         mover = MonteCarloBondFlip(

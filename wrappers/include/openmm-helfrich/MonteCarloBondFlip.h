@@ -45,9 +45,13 @@ namespace HelfrichPlugin {
  * its checkpoints do on platform Helfrich only. A fingerprint of the triangles in a parameter of the Context
  * (getConnectivityParameter(); 0 for those that the System has) tells when a State with other connectivity is loaded:
  * the next step or evaluation is refused. Use saveConnectivity() and restoreConnectivity(), or in Python save_state()
- * and load_state(). On the platforms Reference, CPU and Helfrich, and where it computes parameters of the Context, a
- * CustomIntegrator sets back what changes during its steps: there the fingerprint of the triangles before the last
- * flips is taken for the present one, and set right by evaluations between steps.
+ * and load_state(). Context::reinitialize() that preserves the state preserves the connectivity on all platforms.
+ *
+ * On the platforms Reference, CPU and Helfrich, and where it computes parameters of the Context, a CustomIntegrator
+ * sets back what changes during its steps. So after them the fingerprint is that of the last evaluation between steps,
+ * until the next one sets it right: let States that shall be loaded elsewhere come with the energy. The old fingerprint
+ * is taken for the present one as long as time or number of steps go on; a State from the beginning of the very step in
+ * which bonds have flipped is therefore not refused. If both are set anew in the Context, ask for the energy before.
  */
 class MonteCarloBondFlip : public TriangulatedForce {
 public:

@@ -65,7 +65,13 @@ public:
     std::vector<int> getTrianglesInContext(OpenMM::Context& context) const;
     /**
      * Connect the particles of a surface in a Context in another way, for all forces on the same triangles. Positions
-     * stay as they are.
+     * stay as they are, and so does the topology: each connected part of the surface keeps its particles and its number
+     * of triangles.
+     *
+     * Only a MonteCarloBondFlip on the same triangles tells when positions of before come back: a Context without one
+     * takes a State or checkpoint of before for one of the new triangles, and has the triangles of the force again
+     * after Context::reinitialize(). (Checkpoints of platform Helfrich have the triangles themselves.) One of frequency
+     * 0 flips nothing, and tells.
      *
      * @param context  the Context
      * @param corners  the particle indices of the corners, three for each triangle: as many triangles of the same
@@ -149,7 +155,7 @@ inline ConnectivityImpl& TriangulatedForce::getConnectivityImpl(OpenMM::Context&
 }
 
 inline std::vector<int> TriangulatedForce::getTrianglesInContext(OpenMM::Context& context) const {
-    return getConnectivityImpl(context).getTrianglesInContext();
+    return getConnectivityImpl(context).getTrianglesInContext(getContextImpl(context));
 }
 
 inline void TriangulatedForce::setTrianglesInContext(OpenMM::Context& context, const std::vector<int>& corners) const {

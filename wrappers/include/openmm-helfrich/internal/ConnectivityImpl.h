@@ -15,7 +15,7 @@ class ConnectivityImpl {
 public:
     virtual ~ConnectivityImpl() {
     }
-    virtual std::vector<int> getTrianglesInContext() const = 0;
+    virtual std::vector<int> getTrianglesInContext(OpenMM::ContextImpl& context) const = 0;
     virtual void setTrianglesInContext(OpenMM::ContextImpl& context, const std::vector<int>& corners) = 0;
     virtual std::string saveConnectivity(OpenMM::ContextImpl& context) const = 0;
     virtual void restoreConnectivity(OpenMM::ContextImpl& context, const std::string& saved) = 0;
