@@ -70,10 +70,10 @@ class Report:
             progress=compute,
         )
 
-    def table(self, columns, rows):
-        """Write NAME.csv, and print it."""
+    def table(self, columns, rows, suffix=""):
+        """Write NAMESUFFIX.csv, and print it."""
         self.tables.mkdir(parents=True, exist_ok=True)
-        path = self.tables / f"{self._name}.csv"
+        path = self.tables / f"{self._name}{suffix}.csv"
         with path.open("w", encoding="utf-8", newline="") as file:
             writer = csv.writer(file, lineterminator="\n")
             for row in [columns, *rows]:

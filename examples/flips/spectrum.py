@@ -28,7 +28,7 @@ sys.path.append(str(Path(__file__).resolve().parents[1] / "paper"))
 from mesh_corrections import bending_ratio, shear_ratio
 
 L = np.arange(2, 9)
-SEEDS = {0.037: 5, 0.15: 6, 0.33: 12, 0.59: 4}
+SEEDS = {0.037: 12, 0.15: 12, 0.33: 12, 0.59: 12}
 FIXED_SEEDS = 4
 
 
@@ -55,7 +55,8 @@ def main():
             about = (options.vertices, softness, "flips" if flips else "fixed", int(l))
             rows.append((*about, *map(float, numbers), float(y), float(y_error), length, kelvin))
     columns = "N Ξ bonds l ratio error scatter corrected corrected_error y y_error periods T"
-    report.table(columns.split(), rows)
+    suffix = "" if options.vertices == 1002 else f"_{options.vertices}"
+    report.table(columns.split(), rows, suffix)
     print(f"c = {c:.2f} ± {c_error:.2f}, χ² per degree of freedom {quality:.2f}")
     if options.picture:
         draw(rows, options.picture)
