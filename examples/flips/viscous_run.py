@@ -41,7 +41,9 @@ def rotate(
     Velocities are displacements from frame to frame over the time between: their correlations add
     up to those of the displacements over any longer time, and no vibration is sampled too seldom.
     They are those of an observer who turns with the whole, whose memory of shear would else be lost
-    as it turns. A driven run adds the acceleration a Φ_20 to all vertices, which turns the two halves of the
+    as it turns.
+
+    A driven run adds the acceleration a Φ_20 to all vertices, which turns the two halves of the
     vesicle against each other, as a kick a Φ_20 Δt of the velocities at each frame.
 
     Parameters
