@@ -1,6 +1,6 @@
 """What flips add to the friction of undulations: damping of u_lm under Newton's equations.
 
-Velocity Verlet and a demon that pays for flips, N = 1002, Ξ = 0.33. The damped oscillation
+Velocity Verlet and a demon that pays for flips, N = 492, Ξ = 0.33. The damped oscillation
 (A35–A37) of doi:10.1103/PhysRevE.108.015301 is fitted to the autocorrelations of u_lm over three
 periods of each l, as `../paper/sm09_damping.py` does for Ξ = 0.037. Without flips neighbours are
 those that flips have left at the start.
@@ -91,7 +91,7 @@ def undulate(num_vertices, share, periods, seed):
 
 def main():
     report = Report("undulation_friction", __doc__)
-    num_vertices, periods, seeds = (252, 6, 2) if report.quick else (1002, 15, 4)
+    num_vertices, periods, seeds = (252, 6, 2) if report.quick else (492, 12, 4)
     rows = []
     for share in (0.0, 1.0) if report.quick else SHARES:
         points = [

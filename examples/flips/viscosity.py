@@ -50,7 +50,7 @@ SHARES = {
 """By N and Ξ, flips over the usual ones."""
 
 SEEDS, DRIVEN_SEEDS = 6, 4
-PERIODS = {252: (300, 150), 1002: (75, 40)}
+PERIODS = {252: (300, 150), 1002: (40, 30)}
 """Length of a run at rest, and of a driven one, τ_2."""
 
 
