@@ -3,7 +3,7 @@
 Velocity Verlet and a demon that pays for flips, N = 492, Ξ = 0.33. The damped oscillation
 (A35–A37) of doi:10.1103/PhysRevE.108.015301 is fitted to the autocorrelations of u_lm over three
 periods of each l, as `../paper/sm09_damping.py` does for Ξ = 0.037. Without flips neighbours are
-those that flips have left at the start.
+those that flips have left at the start, and u_lm is that about its mean.
 """
 
 import sys
@@ -116,7 +116,11 @@ def dampings(runs, num_vertices):
     for l in L:
         omega = frequency_of(l, num_vertices)
         lags = int(FIT_PERIODS * 2 * np.pi / omega / runs[0]["interval"]) + 1
-        series = modes_in(runs, l), runs[0]["interval"], lags
+        modes = modes_in(runs, l)
+        if not runs[0]["flips"]:
+            # What flips have left has a shape of its own, which neighbours that stay do not forget.
+            modes -= modes.mean(axis=0)
+        series = modes, runs[0]["interval"], lags
         try:
             fit = fit_damping(*series)
         except RuntimeError:  # overdamped: one rate alone can be told
