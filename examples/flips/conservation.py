@@ -52,6 +52,60 @@ class VelocityVerletIntegrator(openmm.CustomIntegrator):
 INTEGRATORS = {"Verlet": openmm.VerletIntegrator, "velocity Verlet": VelocityVerletIntegrator}
 
 
+def without_bath(
+    vesicle, kind, integrator, time_step, seed, every=10, attempts=0.1, friction=0.01, periods=2
+):
+    """A Context in equilibrium, whose bath has just been taken away.
+
+    Parameters
+    ----------
+    vesicle : Vesicle
+    kind, integrator : str
+        See CASES.
+    time_step : float
+        ps.
+    seed : int
+        Of velocities, noise and flips.
+    every : int
+        Steps between rounds of flips.
+    attempts : float
+        For each edge and round; with the bath, the usual ones.
+    friction : float
+        γ of the bath, LangevinMiddle, 1/ps.
+    periods : float
+        How long it is there, τ_2.
+
+    Returns
+    -------
+    tuple
+        The Context, and its mover or None.
+    """
+
+    def mover_of(ensemble, *rate):
+        mover = MonteCarloBondFlip(vesicle.mesh, TEMPERATURE, *rate, maxDegree=MAX_DEGREE)
+        mover.setRandomNumberSeed(seed)
+        mover.setEnsemble(ensemble)
+        return mover
+
+    bath = openmm.LangevinMiddleIntegrator(TEMPERATURE, friction, time_step)
+    bath.setRandomNumberSeed(seed)
+    settling = mover_of(MonteCarloBondFlip.Canonical)
+    before = simulated(vesicle, bath, settling)
+    before.setVelocitiesToTemperature(TEMPERATURE, seed)
+    bath.step(round(periods * vesicle.tau_2 / time_step))
+
+    mover = None
+    if kind != "none":
+        mover = mover_of(getattr(MonteCarloBondFlip, kind), every, attempts)
+    context = simulated(vesicle, INTEGRATORS[integrator](time_step), mover)
+    state = before.getState(getPositions=True, getVelocities=True)
+    triangles = settling.getTrianglesInContext(before)
+    vesicle.placement.forces["bending"].setTrianglesInContext(context, triangles)
+    context.setPositions(state.getPositions())
+    context.setVelocities(state.getVelocities())
+    return context, mover
+
+
 def conserve(softness, kind, integrator, time_step, periods, frames, seed, dihedrals=0.0):
     """Dynamics without a bath, after equilibrium.
 
@@ -80,28 +134,8 @@ def conserve(softness, kind, integrator, time_step, periods, frames, seed, dihed
         says; "flips", accepted for each edge and τ_2.
     """
     vesicle = vesicle_of(NUM_VERTICES, softness, seed, dihedrals)
-
-    def mover_of(ensemble):
-        mover = MonteCarloBondFlip(vesicle.mesh, TEMPERATURE, maxDegree=MAX_DEGREE)
-        mover.setRandomNumberSeed(seed)
-        mover.setEnsemble(ensemble)
-        return mover
-
-    bath = openmm.LangevinMiddleIntegrator(TEMPERATURE, 0.01, time_step)
-    bath.setRandomNumberSeed(seed)
-    settling = mover_of(MonteCarloBondFlip.Canonical)
-    before = simulated(vesicle, bath, settling)
-    before.setVelocitiesToTemperature(TEMPERATURE, seed)
-    bath.step(round(2 * vesicle.tau_2 / time_step))
-
-    mover = None if kind == "none" else mover_of(getattr(MonteCarloBondFlip, kind))
-    dynamics = INTEGRATORS[integrator](time_step)
-    context = simulated(vesicle, dynamics, mover)
-    state = before.getState(getPositions=True, getVelocities=True)
-    triangles = settling.getTrianglesInContext(before)
-    vesicle.placement.forces["bending"].setTrianglesInContext(context, triangles)
-    context.setPositions(state.getPositions())
-    context.setVelocities(state.getVelocities())
+    context, mover = without_bath(vesicle, kind, integrator, time_step, seed)
+    dynamics = context.getIntegrator()
 
     stride = round(periods * vesicle.tau_2 / time_step / frames)
     rows, flips, failed = [], 0.0, False

@@ -2,8 +2,9 @@
 
 On a sphere free diffusion has ⟨r̂(0) · r̂(t)⟩ = exp(−2 D t), D in rad²/ps, so that −2 ln ⟨cos⟩ =
 4 D t at all times, the mean squared angle while it is small. The rotation of the whole is removed.
-D comes from a straight line through −2 ln ⟨cos⟩ from 1 to 5 τ_2; its error is the standard error
-from the differences between runs.
+D comes from a straight line through −2 ln ⟨cos⟩ from t to 5 t, t being τ_2 or, if that is longer,
+the time in which each edge flips once: before, vertices are in their cages. Its error is the
+standard error from the differences between runs.
 """
 
 import numpy as np
@@ -13,8 +14,9 @@ from settings import with_flips, without_flips
 
 SOFTNESS = 0.33
 
-# Of the usual flips, with the number of runs.
-SHARES = {0.03: 2, 0.1: 2, 0.3: 2, 1.0: 12}
+# Of the usual flips, with the number of runs and their length, τ_2.
+SHARES = {0.01: (2, 150), 0.03: (2, 50), 0.1: (2, 50), 0.3: (2, 50), 1.0: (12, 50)}
+QUICK = {0.3: (2, 8), 1.0: (2, 8)}
 
 LAGS = (0.5, 1, 2, 5, 10, 20)
 
@@ -22,8 +24,8 @@ LAGS = (0.5, 1, 2, 5, 10, 20)
 def main():
     report = Report("diffusion", __doc__)
     rows = []
-    for share, seeds in ({0.1: 2, 1.0: 2} if report.quick else SHARES).items():
-        size = {"num_vertices": 252, "periods": 8} if report.quick else {}
+    for share, (seeds, periods) in (QUICK if report.quick else SHARES).items():
+        size = {"num_vertices": 252 if report.quick else 1002, "periods": periods}
         points = with_flips(SOFTNESS, range(1, 1 + seeds), share=share, **size)
         rows += row_of(report.runs(flow, points, VERSION))
     size = {"num_vertices": 252, "periods": 8} if report.quick else {}
@@ -56,7 +58,10 @@ def row_of(runs):
 def slope(run):
     """D of one run, rad²/τ_2."""
     time = np.arange(len(run["cosine"])) * run["interval"] / run["period"]
-    inside = (time > 0.99) & (time < 5.01) & (run["cosine"] > 0.1)
+    start = 1.0
+    if run["rate"]:
+        start = max(start, 1 / (run["rate"] * run["period"]))
+    inside = (time > 0.99 * start) & (time < 5.01 * start) & (run["cosine"] > 0.1)
     return np.polyfit(time[inside], -2 * np.log(run["cosine"][inside]), 1)[0] / 4
 
 

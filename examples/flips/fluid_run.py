@@ -27,8 +27,8 @@ COUNTED = 16
 VERSION = 2
 
 
-def vesicle_of(num_vertices, softness, seed, dihedrals=0.0):
-    """The paper's vesicle without volume constraint (kV = 0), Jülicher, on a random mesh.
+def vesicle_of(num_vertices, softness, seed, dihedrals=0.0, volume_modulus=0.0):
+    """The paper's vesicle, Jülicher, on a random mesh.
 
     Parameters
     ----------
@@ -39,11 +39,13 @@ def vesicle_of(num_vertices, softness, seed, dihedrals=0.0):
         Of the mesh.
     dihedrals : float
         K of a quartic potential of the dihedral angles, K (1 − cos φ)², kBT.
+    volume_modulus : float
+        kV, kJ/mol/nm³; 0 for no constraint.
     """
     return Vesicle(
         Mesh.random_sphere(num_vertices, RADIUS, seed),
         rigidity=RIGIDITY * KBT,
-        volume_modulus=0,
+        volume_modulus=volume_modulus,
         softness=softness,
         dihedral_stiffness=dihedrals * KBT,
     )
@@ -164,6 +166,13 @@ def flow(
     return result
 
 
+def turn_onto(frame, last):
+    """The rotation R, shape (3, 3), after which frame @ R fits another frame best (Kabsch)."""
+    left, _, right = np.linalg.svd(frame.T @ last)
+    left[:, 2] *= np.linalg.det(left @ right)
+    return left @ right
+
+
 def cosines(positions, num_lags):
     """⟨r̂(0) · r̂(t)⟩ over vertices and starts for t = 0, 1, … frames, rotation of the whole removed.
 
@@ -185,9 +194,7 @@ def cosines(positions, num_lags):
     frames = np.array(positions, dtype=float)
     frames /= np.linalg.norm(frames, axis=2, keepdims=True)
     for last, frame in pairwise(frames):
-        left, _, right = np.linalg.svd(frame.T @ last)
-        left[:, 2] *= np.linalg.det(left @ right)
-        frame[:] = frame @ (left @ right)
+        frame[:] = frame @ turn_onto(frame, last)
     # Sums over starts of products are what a Fourier transform with as many zeros behind gives.
     length = len(frames)
     spectrum = np.zeros(length + 1)

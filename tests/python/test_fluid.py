@@ -8,7 +8,19 @@ import pytest
 from openmmhelfrich.analysis import theory
 
 FLIPS = Path(__file__).parents[2] / "examples" / "flips"
-MODULES = ("fluid_run", "settings", "reports", "conservation", "diffusion", "mesh_corrections")
+MODULES = (
+    "fluid_run",
+    "settings",
+    "reports",
+    "conservation",
+    "diffusion",
+    "viscous_run",
+    "viscosity",
+    "rotations",
+    "displacements",
+    "fluctuations",
+    "mesh_corrections",
+)
 
 
 @pytest.fixture(autouse=True)
@@ -72,6 +84,50 @@ class TestDiffusion:
         outward = 1 + random.normal(0, step, 200_000)
         each = np.mean(outward / np.sqrt(outward**2 + (along**2).sum(axis=1)))
         np.testing.assert_allclose(found[:21], each ** np.arange(21), atol=5e-3)
+
+
+class TestRotations:
+    def test_of_known_amplitude_come_back_from_velocities(self):
+        from rotations import Rotations, directions_of
+
+        rotations = Rotations(4)
+        random = np.random.default_rng(6)
+        positions = random.normal((5.0, -2.0, 1.0), 1.0, size=(20_000, 3))
+        x, y, z = directions_of(positions).T
+        # r̂ × ∇ of Y_20 = √(5/16π) (3z² − 1) and Y_11 = √(3/4π) x.
+        shear = np.sqrt(5 / (16 * np.pi)) * 6 * z * np.array([y, -x, 0 * x])
+        turn = np.sqrt(3 / (4 * np.pi)) * np.array([0 * x, z, -y])
+        np.testing.assert_allclose(
+            rotations.field(directions_of(positions), 2, 0), shear.T, atol=1e-8
+        )
+        np.testing.assert_allclose(
+            rotations.field(directions_of(positions), 1, 1), turn.T, atol=1e-8
+        )
+        found = rotations(positions[np.newaxis], (0.3 * shear - 0.2 * turn).T[np.newaxis])[0]
+        expected = np.zeros(25)
+        expected[6], expected[3] = 0.3, -0.2
+        # 20 000 random points on a sphere integrate it to some hundredths.
+        np.testing.assert_allclose(found, expected, atol=0.01)
+
+    def test_integral_of_a_memory_that_ends(self):
+        from viscosity import integrals
+
+        time = np.arange(400) * 2.0
+        columns = np.stack([np.exp(-time / 40), np.exp(-time / 60) * np.cos(time / 15)], axis=1)
+        expected = 40, (1 / 60) / (1 / 60**2 + 1 / 15**2)
+        np.testing.assert_allclose(integrals(columns, 2.0, 390), expected, rtol=0.01)
+
+    def test_flow_is_slower_the_fewer_bonds_flip(self):
+        from viscous_run import rotate
+
+        def driven(attempts):
+            return rotate(252, 0.33, attempts, 10, 3.2, 40, 3, 2e-4, acceleration=1e-4)
+
+        often, seldom, never = (driven(attempts) for attempts in (0.1, 0.02, 0.0))
+        assert often["rate"] == pytest.approx(5 * seldom["rate"], rel=0.1)
+        # η = 0.53 and 1.9 kBT τ/a² at these rates, with errors of 1 and 5 %; see docs/flips.md.
+        assert often["driven"] / seldom["driven"] == pytest.approx(3.3, abs=0.7)
+        assert abs(never["driven"]) < 0.2 * seldom["driven"]
 
 
 class TestVerlet:
