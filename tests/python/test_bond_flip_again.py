@@ -126,6 +126,28 @@ class TestMadeAnew:
         context.reinitialize(preserveState=True)
         assert measure(context)[0] == energy
 
+    @pytest.mark.parametrize("target", ANYWHERE, ids=str)
+    def test_without_the_mover(self, target):
+        context, mover = flowing(target)
+        triangles = mover.getTrianglesInContext(step(context, 10))
+        energy, _ = measure(context)
+        context.getSystem().removeForce(5)
+        context.reinitialize(preserveState=True)
+        assert measure(context)[0] == pytest.approx(energy, rel=1e-9)
+        bending = helfrich.BendingForce.cast(context.getSystem().getForce(0))
+        np.testing.assert_array_equal(bending.getTrianglesInContext(step(context, 10)), triangles)
+
+    def test_with_other_triangles(self):
+        context = step(flowing()[0], 10)
+        for _ in range(6):
+            context.getSystem().removeForce(0)
+        other = np.roll(start().triangles, 1, axis=0)
+        for force in (*forces_of(start(), other), helfrich.MonteCarloBondFlip(other, 300)):
+            context.getSystem().addForce(force)
+        context.reinitialize(preserveState=True)
+        with pytest.raises(mm.OpenMMException, match=FOREIGN):
+            measure(context)
+
     @pytest.mark.parametrize("target", [REFERENCE, CPU], ids=str)
     def test_with_triangles_set_by_hand(self, target):
         other, mover = flowing(seed=5)
@@ -259,3 +281,14 @@ class TestAllOrNothing:
             helfrich.load_state(other, tmp_path / "state")
         assert self.found(other, forces, mover) == before
         step(other, 3)
+
+
+def test_movers_of_two_temperatures_are_refused():
+    mesh = start()
+    second = mesh.triangles + mesh.num_vertices
+    movers = [mover_of(mesh), helfrich.MonteCarloBondFlip(second, 310)]
+    system = system_of(*movers)
+    for _ in range(mesh.num_vertices):
+        system.addParticle(50)
+    with pytest.raises(mm.OpenMMException, match="BondFlipTemperature"):
+        REFERENCE.context(system)

@@ -119,9 +119,9 @@ bool writesParameters(const Integrator& integrator, ContextImpl& context, bool o
 } // namespace
 
 MonteCarloBondFlipImpl::MonteCarloBondFlipImpl(const MonteCarloBondFlip& owner)
-    : owner(owner), home(nullptr), state(), rules(), frequency(0), attemptsPerEdge(0), inPlace(false),
-      announced(nullptr), present(0), replaced(0), mayRevert(false), seenTime(0), seenStep(NEVER), lastTime(0),
-      lastStep(NEVER) {
+    : owner(owner), home(nullptr), parameter(owner.getConnectivityParameter()), state(), rules(), frequency(0),
+      attemptsPerEdge(0), inPlace(false), announced(nullptr), present(0), replaced(0), mayRevert(false), seenTime(0),
+      nextTime(0), seenStep(NEVER), lastTime(0), lastStep(NEVER) {
 }
 
 MonteCarloBondFlipImpl::~MonteCarloBondFlipImpl() {
@@ -166,14 +166,13 @@ void MonteCarloBondFlipImpl::copyValues() {
 }
 
 map<string, double> MonteCarloBondFlipImpl::getDefaultParameters() {
-    return {{MonteCarloBondFlip::Temperature(), owner.getDefaultTemperature()},
-            {owner.getConnectivityParameter(), 0.0}};
+    return {{MonteCarloBondFlip::Temperature(), owner.getDefaultTemperature()}, {parameter, 0.0}};
 }
 
 double MonteCarloBondFlipImpl::getAnnounced(ContextImpl& context) {
     if (announced == nullptr) {
         // OpenMM makes the parameters after it has initialised the forces, and then keeps them in their places.
-        announced = &context.getParameters().at(owner.getConnectivityParameter());
+        announced = &context.getParameters().at(parameter);
         mayRevert = writesParameters(context.getIntegrator(), context, inPlace);
     }
     return *announced;
@@ -236,14 +235,14 @@ void MonteCarloBondFlipImpl::shareKick(ContextImpl& context, double stepSize) {
 double MonteCarloBondFlipImpl::calcForcesAndEnergy(ContextImpl& context, bool, bool, int) {
     checkConnectivity(context);
     if (getAnnounced(context) != present)
-        context.setParameter(owner.getConnectivityParameter(), present);
+        context.setParameter(parameter, present);
     return 0;
 }
 
 void MonteCarloBondFlipImpl::announceConnectivity(ContextImpl& context) {
     present = replaced = membrane->getFingerprint();
     if (getAnnounced(context) != present)
-        context.setParameter(owner.getConnectivityParameter(), present);
+        context.setParameter(parameter, present);
 }
 
 bool MonteCarloBondFlipImpl::isRight(ContextImpl& context) {
@@ -255,10 +254,11 @@ void MonteCarloBondFlipImpl::checkConnectivity(ContextImpl& context) {
     membrane->settle(context);
     if (isRight(context)) {
         seenTime = context.getTime();
+        nextTime = seenTime + context.getIntegrator().getStepSize();
         seenStep = context.getStepCount();
         return;
     }
-    throw OpenMMException(owner.getTypeName() + ": the Context parameter " + owner.getConnectivityParameter() +
+    throw OpenMMException(owner.getTypeName() + ": the Context parameter " + parameter +
                           " says that positions belong to other triangles than the Context has: a State or checkpoint "
                           "was loaded, which does not hold the connectivity. Load what helfrich.save_state() has saved "
                           "with helfrich.load_state(), or give the Context the triangles with setTrianglesInContext()");
@@ -268,7 +268,7 @@ bool MonteCarloBondFlipImpl::hasGoneOn(ContextImpl& context) const {
     // A user may have set one of the two to zero.
     long long steps = context.getStepCount() - seenStep;
     double time = context.getTime();
-    return steps == 0 || steps == 1 || time == seenTime || time == seenTime + context.getIntegrator().getStepSize();
+    return steps == 0 || steps == 1 || time == seenTime || time == nextTime;
 }
 
 double MonteCarloBondFlipImpl::getTimeSinceUpdate(ContextImpl& context) const {

@@ -66,6 +66,14 @@ public:
     double getAnnounced(OpenMM::ContextImpl& context);
     /** Whether the parameter is that of the present triangles, or one that the integrator has set back. */
     bool isRight(OpenMM::ContextImpl& context);
+    /** The name of that parameter. The force itself may be gone when a Context is destroyed. */
+    const std::string& getConnectivityParameter() const {
+        return parameter;
+    }
+    /** Whether any step or evaluation has looked at the parameter. */
+    bool isInUse() const {
+        return announced != nullptr;
+    }
     /** Whether positions are OpenMM's own array of doubles. */
     bool isInPlace() const {
         return inPlace;
@@ -92,6 +100,7 @@ private:
     const MonteCarloBondFlip& owner;
     /** Where the forces are; null before they have been initialised. */
     OpenMM::ContextImpl* home;
+    std::string parameter;
     std::shared_ptr<SharedMembrane> membrane;
     MoverState state;
     HelfrichFlipRules rules;
@@ -110,8 +119,8 @@ private:
     double present, replaced;
     /** Whether the integrator sets parameters back that change during a step. */
     bool mayRevert;
-    /** When the parameter was last found right. */
-    double seenTime;
+    /** When the parameter was last found right, and when the step thereafter ends. */
+    double seenTime, nextTime;
     long long seenStep;
     /** When the Context's state was last updated. */
     double lastTime;

@@ -245,18 +245,31 @@ void SharedMembrane::restoreAll(const string& subject, ContextImpl& context, con
  * left.
  */
 thread_local SharedMembrane::Estate SharedMembrane::estate;
+thread_local bool SharedMembrane::hasNoEstate = false;
+
+SharedMembrane::Estate::~Estate() {
+    hasNoEstate = true;
+}
 
 void SharedMembrane::leaveBehind(ContextImpl& context) {
+    if (hasNoEstate)
+        return;
     try {
-        settle(context);
         // Of several membranes each adds its own.
-        if (estate.context != &context)
-            estate = {&context, {}};
-        Left left = {triangles, mover->getAnnounced(context), context.getStepCount(), 0, ""};
-        // Every new Context would be taken for one in which nothing has happened; and a State may have been loaded.
-        if ((left.parameter == 0 && left.step == 0) || !mover->isRight(context))
+        if (estate.context != &context) {
+            estate.context = &context;
+            estate.left.clear();
+        }
+        if (inherited != nullptr)
+            estate.left.push_back(std::move(*inherited));
+        if (!mover->isInUse())
             return;
-        if (left.parameter != getFingerprint() && mover->isInPlace())
+        Left left = {
+            triangles, mover->getConnectivityParameter(), mover->getAnnounced(context), context.getStepCount(), 0, ""};
+        // Every new Context would be taken for one in which nothing has happened; and a State may have been loaded.
+        if ((left.value == 0 && left.step == 0) || !mover->isRight(context))
+            return;
+        if (left.value != getFingerprint() && mover->isInPlace())
             left.checksum = findChecksum(getPositions(context));
         left.saved = save(context);
         estate.left.push_back(std::move(left));
@@ -266,6 +279,8 @@ void SharedMembrane::leaveBehind(ContextImpl& context) {
 }
 
 void SharedMembrane::inherit() {
+    if (hasNoEstate)
+        return;
     estate.context = nullptr;
     for (Left& left : estate.left)
         if (left.triangles == triangles) {
@@ -280,18 +295,21 @@ void SharedMembrane::settle(ContextImpl& context) {
     if (inherited == nullptr)
         return;
     if (isHeir(context)) {
-        const string& subject = mover->getOwner().getTypeName();
-        SavedConnectivity saved(subject, inherited->saved);
-        take(subject, saved);
-        mover->announceConnectivity(context);
-        mover->setState(saved.mover);
+        SavedConnectivity saved("reinitialize", inherited->saved);
+        take("reinitialize", saved);
+        if (mover != nullptr) {
+            mover->announceConnectivity(context);
+            mover->setState(saved.mover);
+        }
     }
     inherited.reset();
 }
 
 bool SharedMembrane::isHeir(ContextImpl& context) const {
-    if (context.getParameter(mover->getOwner().getConnectivityParameter()) != inherited->parameter ||
-        context.getStepCount() != inherited->step)
+    // A checkpoint brings the parameter even where the mover has been removed.
+    const auto& parameters = context.getParameters();
+    auto found = parameters.find(inherited->parameter);
+    if (found == parameters.end() || found->second != inherited->value || context.getStepCount() != inherited->step)
         return false;
     return inherited->checksum == 0 || inherited->checksum == findChecksum(getPositions(context));
 }

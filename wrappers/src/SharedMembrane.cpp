@@ -72,6 +72,7 @@ SharedMembrane::SharedMembrane(const string& subject, ContextImpl& context, cons
                                    context.getSystem().getNumParticles(), &core));
     if (int threads = helfrichThreads(context))
         Helfrich_Membrane_setThreads(core, threads);
+    inherit();
 }
 
 SharedMembrane::~SharedMembrane() {
@@ -103,7 +104,6 @@ void SharedMembrane::join(MonteCarloBondFlipImpl* joining, ContextImpl& context)
         if (other.get() != this)
             refuseOthers(subject, *this, *other);
     mover = joining;
-    inherit();
 }
 
 void SharedMembrane::leave(MonteCarloBondFlipImpl* leaving, ContextImpl& context) {

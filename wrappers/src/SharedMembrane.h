@@ -146,7 +146,8 @@ private:
     struct Left {
         std::vector<int> triangles;
         /** The Context's parameter for the connectivity. */
-        double parameter;
+        std::string parameter;
+        double value;
         long long step;
         /** Of the positions, where an integrator has set the parameter back; otherwise 0. */
         uint64_t checksum;
@@ -156,8 +157,11 @@ private:
     struct Estate {
         const OpenMM::ContextImpl* context = nullptr;
         std::vector<Left> left;
+        ~Estate();
     };
     static thread_local Estate estate;
+    /** A Context may live longer, in a variable of the program. */
+    static thread_local bool hasNoEstate;
 
     SharedMembrane(const std::string& subject, OpenMM::ContextImpl& context, const std::vector<int>& triangles);
 

@@ -38,8 +38,8 @@ namespace HelfrichPlugin {
  * Context: all integrators of OpenMM do, a CustomIntegrator where it has addUpdateContextState(). RPMDIntegrator, whose
  * beads would share bonds, is refused. Forces must have the
  * same triangles in the same order to be on the same surface; other forces may not act on a triangulation of the same
- * particles. A surface has one MonteCarloBondFlip at most. Particles of mass 0 stay where they are, but their bonds
- * flip like others.
+ * particles. A surface has one MonteCarloBondFlip at most. Inside of a CustomCVForce, whose Context is never stepped,
+ * it does nothing. Particles of mass 0 stay where they are, but their bonds flip like others.
  *
  * Connectivity is part of the state of a Context, with positions and velocities, but OpenMM's State does not hold it;
  * its checkpoints do on platform Helfrich only. A fingerprint of the triangles in a parameter of the Context
