@@ -8,14 +8,15 @@ A contour is its tangent angle ψ from one pole, ψ = 0, to the other, ψ = π:
 
     ψ(u) = π u + Σ_n a_n sin(n π u) / n,    r' = cos ψ,    z' = sin ψ
 
-with even n only where the shape is its own image in the plane of the equator. Arc length is s = L u,
-but for stomatocytes s = L x(u), which gives half of all u to the lip, whose curvature is high. Of
+with even n only where the shape is its own image in the plane of the equator. Arc length is
+s = L u, but for stomatocytes s = L x(u), which gives half of all u to the lip, whose curvature is
+high. Of
 
     E = π κ ∫ (dψ/ds + sin ψ / r)² r ds,    A = 2π ∫ r ds,    V = π ∫ r² sin ψ ds
 
-E is least at A = 4π and V = ν 4π/3, under the condition that the contour ends on the axis. Integrals
-are Gauss–Legendre's, gradients are exact, the minimum is found by sequential quadratic programming.
-Each shape is the start of the next one along its branch.
+E is least at A = 4π and V = ν 4π/3, under the condition that the contour ends on the axis.
+Integrals are Gauss–Legendre's, gradients are exact, the minimum is found by sequential quadratic
+programming. Each shape is the start of the next one along its branch.
 """
 
 from functools import cache
@@ -118,7 +119,7 @@ class _Shapes:
         return np.append(amplitudes, length)
 
     def _radius(self, psi, length):
-        """r and its derivatives, the end of r and its derivatives."""
+        """Radii r and their derivatives, the end of r and its derivatives."""
         derivatives = np.column_stack([-np.sin(psi)[:, None] * self.sines * length, np.cos(psi)])
         r, end = length * (self.integral @ np.cos(psi)), length * self.weights @ np.cos(psi)
         d_r, d_end = self.integral @ derivatives, self.weights @ derivatives

@@ -1,20 +1,21 @@
 """Shapes of vesicles whose reduced volume is ramped down, beside the axisymmetric theory.
 
-Starts are ellipsoids, prolate or oblate, of reduced volume 0.9. The volume of each is ramped down
+Starts are spheroids, prolate or oblate, of reduced volume 0.9. The volume of each is ramped down
 to ν, where the branch of least energy may be another one. A run is hot at first: at 1500 K, where
-the rigidity κ is 4 kBT, a shape that flows finds its way over the barriers between branches. Then it
-is cooled to 1 K, and its energy minimised, so that what is left is the energy of the shape alone.
+the rigidity κ is 4 kBT, a shape that flows finds its way over the barriers between branches. Then
+it is cooled to 1 K, and its energy minimised, so that what is left is the energy of the shape.
 
-Without fluctuations a mesh makes use of its triangles: Jülicher's Σ c²/a of a curved strip is smaller
-the longer the triangles are along it, and a zigzag, whose angles cancel at each vertex, costs nothing.
-So on cooling the triangles become harder, Ξ = 0.33 to 0.5, which leaves no long ones, and a
-potential of the dihedral angles, K (1 − cos φ)² with K = 2 κ, that curvatures as small as those of the
-shapes hardly feel, takes zigzags away. The energy reported is that of bending alone.
+Without fluctuations a mesh makes use of its triangles: Jülicher's Σ c²/a of a curved strip is
+smaller the longer the triangles are along it, and a zigzag, whose angles cancel at each vertex,
+costs nothing. So on cooling the triangles become harder, Ξ = 0.33 to 0.5, which leaves no long
+ones, and a potential of the dihedral angles, K (1 − cos φ)² with K = 2 κ, that curvatures as small
+as those of the shapes hardly feel, takes zigzags away. The energy reported is that of bending
+alone.
 
 "deviation" is relative to the axisymmetric shape (`axisymmetric.py`) on the branch that was found,
-"above" to that of least energy, both at the mesh's own ν and in per cent. "crossing" is the share of
-vertices whose side is no longer the inside of the surface alone: nothing keeps distant parts of a
-surface from passing through each other.
+"above" to that of least energy, both at the mesh's own ν and in per cent. "crossing" is the share
+of vertices whose inner side is not inside the surface, or is so twice: nothing keeps distant parts
+of a surface from passing through each other.
 """
 
 from pathlib import Path
