@@ -18,6 +18,7 @@ of vertices whose inner side is not inside the surface, or is so twice: nothing 
 of a surface from passing through each other.
 """
 
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -246,17 +247,16 @@ def points_of(quick):
             }
             for flips in (True, False)
         ]
+    # Large meshes take long: one start for each ν.
+    small = [
+        (1002, start, volume) for volume in (0.8, 0.59, 0.3) for start in ("prolate", "oblate")
+    ]
+    large = [(2502, "oblate", 0.3), (2502, "prolate", 0.59), (2502, "prolate", 0.8)]
+    runs = [(*each, flips) for flips in (True, False) for each in small]
+    names = ("num_vertices", "start", "reduced_volume", "flips")
     return [
-        {
-            "num_vertices": num_vertices,
-            "start": start,
-            "reduced_volume": volume,
-            "flips": flips,
-            "seed": 1,
-        }
-        for num_vertices, flips in ((1002, True), (1002, False), (2502, True))
-        for volume in (0.8, 0.59, 0.3)
-        for start in ("prolate", "oblate")
+        dict(zip(names, each, strict=True), seed=1)
+        for each in runs + [(*each, True) for each in large]
     ]
 
 
@@ -270,17 +270,22 @@ def main():
     report.table(names.split(), rows)
     if report.options.picture:
         draw(rows, report.options.picture)
+    if report.options.meshes:
+        smallest = min(point["num_vertices"] for point, _ in found)
+        few = [each for each in found if each[0]["num_vertices"] == smallest]
+        draw_shapes(few, report.options.meshes)
 
 
 def add_arguments(parser):
-    parser.add_argument("--picture", type=Path, help="PNG to draw")
+    parser.add_argument("--picture", type=Path, help="PNG of the energies to draw")
+    parser.add_argument("--meshes", type=Path, help="PNG of the meshes to draw")
 
 
 COLOURS = {"prolate": "C0", "oblate": "C1", "stomatocyte": "C2"}
 
 
 def draw(rows, path):
-    """Energies on the reference's lines: filled with flips, open without."""
+    """Energies on the reference's lines, starts side by side: filled with flips, open without."""
     import matplotlib.pyplot as plt
 
     page, axes = plt.subplots(figsize=(6, 4), layout="constrained")
@@ -293,8 +298,9 @@ def draw(rows, path):
         num_vertices, _, start, bonds, _, branch, volume, energy, *_ = row
         if branch != "failed":
             label = f"N = {num_vertices}, {bonds}, start {start}"
+            marker, aside = ("^", -0.008) if start == "prolate" else ("s", 0.008)
             axes.plot(
-                volume, energy, "^" if start == "prolate" else "s", color=COLOURS[branch],
+                volume + aside, energy, marker, color=COLOURS[branch],
                 mfc=COLOURS[branch] if bonds == "flips" else "white", ls="", mec="black",
                 ms=5 if num_vertices < 2000 else 8, mew=0.7,
                 label=None if label in drawn else label,
@@ -303,6 +309,20 @@ def draw(rows, path):
     axes.set(xlabel="ν", ylabel="E / 8πκ", xlim=(0.2, 1), ylim=(0.95, 3))
     axes.legend(fontsize=6)
     page.savefig(path, dpi=110)
+
+
+def draw_shapes(found, path):
+    """The meshes, side by side."""
+    sys.path.append(str(Path(__file__).resolve().parents[1] / "paper"))
+    from _snapshots import along_axes, draw_meshes
+
+    panels = []
+    for point, run in found:
+        bonds = "flips" if point["flips"] else "fixed"
+        title = f"N = {point['num_vertices']}, ν = {point['reduced_volume']:g}, "
+        mesh = along_axes(Mesh(run["vertices"], run["triangles"]))
+        panels.append((f"{title}{bonds}, start {point['start']}", mesh, None))
+    draw_meshes(path, panels, 6 if len(panels) > 6 else len(panels), size=260)
 
 
 if __name__ == "__main__":
