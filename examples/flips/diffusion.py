@@ -15,7 +15,7 @@ from settings import with_flips, without_flips
 SOFTNESS = 0.33
 
 # Of the usual flips, with the number of runs and their length, τ_2.
-SHARES = {0.01: (2, 150), 0.03: (2, 50), 0.1: (2, 50), 0.3: (2, 50), 1.0: (12, 50)}
+SHARES = {0.01: (4, 150), 0.03: (6, 50), 0.1: (6, 50), 0.3: (2, 50), 1.0: (12, 50)}
 QUICK = {0.3: (2, 8), 1.0: (2, 8)}
 
 LAGS = (0.5, 1, 2, 5, 10, 20)
