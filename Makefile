@@ -87,10 +87,12 @@ help: ## list these targets
 check-tools:
 	@PYTHON="$(PYTHON)" $(SHELL) .ci/check-tools.sh
 
-# Made of the Python that was asked for; one that is asked for by name replaces another.
+# Made of the Python that was asked for; one that is asked for by name replaces another. Its own Python, as in a shell
+# where it is active, is no other.
 $(VENV)/.python: check-tools FORCE
-	@if [ ! -x $(VENV)/bin/python ] || \
-	    { [ "$(origin PYTHON)" != file ] && [ "$(PYTHON)" != "$$(cat $@ 2>/dev/null)" ]; }; then \
+	@folder=$$(cd "$$(dirname "$$(command -v $(firstword $(PYTHON)))")" && pwd); \
+	if [ ! -x $(VENV)/bin/python ] || { [ "$$folder" != $(VENV)/bin ] && \
+	    [ "$(origin PYTHON)" != file ] && [ "$(PYTHON)" != "$$(cat $@ 2>/dev/null)" ]; }; then \
 	    echo "== Making .venv of $(PYTHON)"; \
 	    rm -rf $(VENV) && $(PYTHON) -m venv $(VENV) && echo "$(PYTHON)" > $@; \
 	elif [ ! -e $@ ]; then echo "$(PYTHON)" > $@; fi

@@ -43,6 +43,7 @@ pub mod moves;
 pub mod openmm;
 pub mod potentials;
 pub mod real;
+mod remembered;
 pub mod team;
 
 #[cfg(test)]

@@ -8,7 +8,8 @@ use crate::mesh::orientation::is_inside_out;
 use crate::mesh::{Topology, Triangulation};
 use crate::moves::local::LocalEnergy;
 use crate::moves::{FlipRules, FlipState, flips};
-use crate::potentials::{Contribution, Element, MAX_PARAMETERS, Term};
+use crate::potentials::{Contribution, Element, Term};
+use crate::remembered::Remembered;
 use std::sync::atomic::{AtomicI64, Ordering};
 
 /// How many membranes there are, which tells whether forces share them and whether any are left over.
@@ -36,52 +37,6 @@ pub struct Membrane {
     num_particles: usize,
     /// Whether the surface has been looked at and is not inside out.
     has_outside: bool,
-}
-
-/// Forces of some terms at some positions.
-#[derive(Default)]
-struct Remembered {
-    is_there: bool,
-    terms: Vec<RememberedTerm>,
-    positions: Vec<f64>,
-    forces: Vec<f64>,
-}
-
-/// All of a term that forces depend on.
-struct RememberedTerm {
-    name: &'static str,
-    form: usize,
-    switches: u32,
-    values: [f64; MAX_PARAMETERS],
-    fields: [Vec<f64>; MAX_PARAMETERS],
-}
-
-impl Remembered {
-    fn is_of(&self, terms: &[Term], positions: &[f64]) -> bool {
-        self.is_there
-            && self.terms.len() == terms.len()
-            && self.terms.iter().zip(terms).all(|(known, term)| known.is(term))
-            && self.positions == positions
-    }
-}
-
-impl RememberedTerm {
-    fn new(term: &Term) -> Self {
-        Self {
-            name: term.potential.name(),
-            form: term.form,
-            switches: term.switches,
-            values: term.values,
-            fields: term.fields.map(<[f64]>::to_vec),
-        }
-    }
-
-    fn is(&self, term: &Term) -> bool {
-        self.name == term.potential.name()
-            && (self.form, self.switches) == (term.form, term.switches)
-            && self.values == term.values
-            && self.fields.iter().zip(term.fields).all(|(known, field)| known == field)
-    }
 }
 
 /// What decides the bits of evaluations beside positions: the connectivity, and in which order sums are formed.
@@ -180,7 +135,7 @@ impl Membrane {
 
     fn take(&mut self, mesh: Triangulation, order: Vec<u32>, flips: u64) -> Result<()> {
         (self.mesh, self.order, self.flips_of_order) = (mesh, order, flips);
-        self.remembered.is_there = false;
+        self.remembered.clear();
         self.evaluator.connectivity_changed(Present { mesh: &self.mesh, order: &self.order })
     }
 
@@ -189,8 +144,8 @@ impl Membrane {
     /// have changed the forces; it is left alone if there were none.
     ///
     /// # Errors
-    /// Rules that make no sense, a term as [`Self::evaluate`] refuses it, a mesh without geometry. Nothing has
-    /// changed then.
+    /// Rules that make no sense, a term as [`Self::evaluate`] refuses it, a mesh without geometry: nothing has
+    /// changed then. A GPU that fails to compute the forces after the flips, which have been made.
     pub fn flip(
         &mut self,
         terms: &[Term],
@@ -209,7 +164,7 @@ impl Membrane {
         for term in terms {
             self.check(term)?;
         }
-        self.remembered.is_there = false;
+        self.remembered.clear();
         let before = force_change.as_ref().map(|_| {
             self.before.clear();
             self.before.resize(positions.len(), 0.0);
@@ -242,19 +197,13 @@ impl Membrane {
         positions: &[f64],
         change: &mut [f64],
     ) -> Result<()> {
-        let mut forces = std::mem::take(&mut self.remembered.forces);
-        forces.clear();
-        forces.resize(positions.len(), 0.0);
-        self.evaluate(terms, positions, &mut [], Some(&mut forces))?;
-        for ((change, after), before) in change.iter_mut().zip(&forces).zip(&self.before) {
+        let present = Present { mesh: &self.mesh, order: &self.order };
+        let after = self.remembered.fill(terms, positions, |forces| {
+            self.evaluator.evaluate(present, terms, positions, &mut [], Some(forces))
+        })?;
+        for ((change, after), before) in change.iter_mut().zip(after).zip(&self.before) {
             *change = after - before;
         }
-        let known = &mut self.remembered;
-        known.terms.clear();
-        known.terms.extend(terms.iter().map(RememberedTerm::new));
-        known.positions.clear();
-        known.positions.extend_from_slice(positions);
-        (known.forces, known.is_there) = (forces, true);
         Ok(())
     }
 
@@ -295,11 +244,9 @@ impl Membrane {
         if !self.has_outside {
             self.look_for_outside(terms, positions)?;
         }
-        let remembers = contributions.is_empty() && self.remembered.is_of(terms, positions);
-        self.remembered.is_there = false;
-        if let (true, Some(forces)) = (remembers, &mut forces) {
-            let known = &self.remembered.forces;
-            forces.iter_mut().zip(known).for_each(|(sum, force)| *sum += force);
+        if let (true, Some(forces)) = (contributions.is_empty(), &mut forces)
+            && self.remembered.add_once(terms, positions, forces)
+        {
             return Ok(());
         }
         let present = Present { mesh: &self.mesh, order: &self.order };

@@ -62,6 +62,39 @@ def simulated(vesicle, integrator, mover=None):
     return context
 
 
+def in_bath(vesicle, friction, time_step, attempts, every, seed):
+    """A Context of a vesicle under LangevinMiddle, and what flips its bonds.
+
+    Parameters
+    ----------
+    vesicle : Vesicle
+    friction : float
+        γ, 1/ps.
+    time_step : float
+        ps.
+    attempts : float
+        Flips that are tried for each edge every `every` steps; 0 for a mesh that keeps its
+        neighbours, and no mover.
+    every : int
+        Steps.
+    seed : int
+        Of velocities, noise and flips.
+
+    Returns
+    -------
+    (openmm.Context, MonteCarloBondFlip or None)
+    """
+    integrator = openmm.LangevinMiddleIntegrator(TEMPERATURE, friction, time_step)
+    integrator.setRandomNumberSeed(seed)
+    mover = None
+    if attempts:
+        mover = MonteCarloBondFlip(vesicle.mesh, TEMPERATURE, every, attempts, maxDegree=MAX_DEGREE)
+        mover.setRandomNumberSeed(seed)
+    context = simulated(vesicle, integrator, mover)
+    context.setVelocitiesToTemperature(TEMPERATURE, seed)
+    return context, mover
+
+
 def flow(
     num_vertices,
     softness,
@@ -112,16 +145,9 @@ def flow(
         frames; "period", τ_2, ps; "rate", accepted flips for each edge and ps, and "acceptance".
     """
     vesicle = vesicle_of(num_vertices, softness, seed, dihedrals)
-    integrator = openmm.LangevinMiddleIntegrator(
-        TEMPERATURE, friction * 2 * np.pi / vesicle.tau_2, time_step
-    )
-    integrator.setRandomNumberSeed(seed)
-    mover = None
-    if attempts:
-        mover = MonteCarloBondFlip(vesicle.mesh, TEMPERATURE, every, attempts, maxDegree=MAX_DEGREE)
-        mover.setRandomNumberSeed(seed)
-    context = simulated(vesicle, integrator, mover)
-    context.setVelocitiesToTemperature(TEMPERATURE, seed)
+    friction *= 2 * np.pi / vesicle.tau_2
+    context, mover = in_bath(vesicle, friction, time_step, attempts, every, seed)
+    integrator = context.getIntegrator()
     integrator.step(round(settle_periods * vesicle.tau_2 / time_step))
 
     stride = max(1, round(vesicle.tau_2 / frames_per_period / time_step))

@@ -1,10 +1,8 @@
 """One run of a vesicle whose vertices flow along it, at rest or driven, for `viscosity.py`."""
 
 import numpy as np
-import openmm
-from fluid_run import MAX_DEGREE, TEMPERATURE, simulated, turn_onto, vesicle_of
+from fluid_run import in_bath, turn_onto, vesicle_of
 from openmm import unit
-from openmmhelfrich import MonteCarloBondFlip
 from openmmhelfrich.analysis import autocorrelation
 from rotations import Rotations, directions_of
 
@@ -78,14 +76,8 @@ def rotate(
         "rate", accepted flips for each edge and ps.
     """
     vesicle = vesicle_of(num_vertices, softness, seed, volume_modulus=volume_modulus)
-    integrator = openmm.LangevinMiddleIntegrator(TEMPERATURE, friction, time_step)
-    integrator.setRandomNumberSeed(seed)
-    mover = None
-    if attempts:
-        mover = MonteCarloBondFlip(vesicle.mesh, TEMPERATURE, every, attempts, maxDegree=MAX_DEGREE)
-        mover.setRandomNumberSeed(seed)
-    context = simulated(vesicle, integrator, mover)
-    context.setVelocitiesToTemperature(TEMPERATURE, seed)
+    context, mover = in_bath(vesicle, friction, time_step, attempts, every, seed)
+    integrator = context.getIntegrator()
     rotations = Rotations(LMAX)
     stride = round(INTERVAL / time_step)
     interval = stride * time_step

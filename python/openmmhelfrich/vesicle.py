@@ -5,21 +5,20 @@ Farnudi, Ejtehadi and Everaers, *Dynamics of fluid bilayer vesicles*, Phys. Rev.
 """
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 import openmm
 from openmm import app, unit
 
 from . import platforms
+from ._placement import Placement
 from ._quantities import checked_field, checked_number
+from ._vesicle_flips import bath_of, checked_flips, mover_of
 from .analysis import theory, triangle_areas
 from .forces import (
     BendingForce,
     DihedralForce,
     EnclosedVolumeForce,
-    MembraneForce,
     MonteCarloBondFlip,
     PlaquetteAreaForce,
     SurfaceAreaForce,
@@ -34,20 +33,6 @@ KBT = theory.BOLTZMANN * 300
 
 _ENERGY = unit.kilojoule_per_mole
 _NUM_GROUPS = 32
-# The paper's, K.
-_TEMPERATURE = 300.0
-# Steps from one round of flips to the next, where only a rate is given.
-_FLIP_STEPS = 10
-_FLIP_ARGUMENTS = (
-    "temperature",
-    "frequency",
-    "attemptsPerEdge",
-    "minDegree",
-    "maxDegree",
-    "maxEdgeLength",
-    "randomNumberSeed",
-    "ensemble",
-)
 
 
 class Vesicle:
@@ -185,7 +170,7 @@ class Vesicle:
         else:
             raise ValueError("Vesicle: give either volume or reduced_volume, not both")
         self._volume = checked_number("volume", volume, nm**3, zero=False)
-        self._flips = None if flips is None else _checked_flips(flips)
+        self._flips = None if flips is None else checked_flips(flips)
         self._placement = None
         # The forces refuse a scheme or form that does not exist: now, not when they are used.
         self._forces(0)
@@ -309,8 +294,9 @@ class Vesicle:
             system.addParticle(self._mass)
         for force in forces.values():
             system.addForce(force)
-        mover = self._mover(offset)
-        if mover is not None:
+        mover = None
+        if self._flips is not None:
+            mover = mover_of(self._flips, self._mesh, offset)
             system.addForce(mover)
         placement = Placement(system, offset, self._mesh.num_vertices, forces, mover)
         self._placement = placement
@@ -348,7 +334,7 @@ class Vesicle:
         simulation = app.Simulation(self._mesh.topology(), system, integrator, platform)
         simulation.context.setPositions(self._mesh.vertices)
         if self._flips is not None and "temperature" not in self._flips:
-            temperature = _bath_of(integrator)
+            temperature = bath_of(integrator)
             simulation.context.setParameter(MonteCarloBondFlip.Temperature(), temperature)
         return simulation
 
@@ -385,19 +371,6 @@ class Vesicle:
         """
         return self.placement.energies(context)
 
-    def _mover(self, offset):
-        """The mover of bonds for particles that start at `offset`, or None."""
-        if self._flips is None:
-            return None
-        arguments = {"temperature": _TEMPERATURE, **self._flips}
-        seed = arguments.pop("randomNumberSeed", 0)
-        ensemble = arguments.pop("ensemble", MonteCarloBondFlip.Canonical)
-        mover = MonteCarloBondFlip(self._mesh, **arguments, offset=offset)
-        mover.setName("flips")
-        mover.setRandomNumberSeed(seed)
-        mover.setEnsemble(ensemble)
-        return mover
-
     def _forces(self, offset):
         """The forces by name, for particles that start at `offset`."""
         mesh, at = self._mesh, {"offset": offset}
@@ -428,83 +401,3 @@ class Vesicle:
                 mesh, self._min_triangle_area, self._epsilon, **at
             )
         return forces
-
-
-def _bath_of(integrator):
-    """The temperature of an integrator's bath, K; 300 K if it has none that can be asked for."""
-    if isinstance(integrator, openmm.CompoundIntegrator):
-        count = integrator.getNumIntegrators()
-        found = {_bath_of(integrator.getIntegrator(number)) for number in range(count)}
-        if len(found) > 1:
-            raise ValueError(
-                f"Vesicle: the integrators have the temperatures {', '.join(map(str, found))}; "
-                "give the flips one of their own, flips={'temperature': …}"
-            )
-        return found.pop()
-    if hasattr(integrator, "getTemperature"):
-        temperature = integrator.getTemperature()
-        return temperature / unit.kelvin if unit.is_quantity(temperature) else float(temperature)
-    if isinstance(integrator, openmm.CustomIntegrator):
-        names = [
-            integrator.getGlobalVariableName(number)
-            for number in range(integrator.getNumGlobalVariables())
-        ]
-        # As OpenMM's own, such as MTSLangevinIntegrator, call it.
-        if "kT" in names:
-            return integrator.getGlobalVariableByName("kT") / theory.BOLTZMANN
-    return _TEMPERATURE
-
-
-def _checked_flips(flips):
-    """The arguments of the mover by name."""
-    if not isinstance(flips, Mapping):
-        rate = checked_number("flips", flips, unit.dimensionless)
-        return {"frequency": _FLIP_STEPS, "attemptsPerEdge": _FLIP_STEPS * rate}
-    for name in flips:
-        if name not in _FLIP_ARGUMENTS:
-            raise ValueError(
-                f"Vesicle: flips has no argument {name!r}; known are {', '.join(_FLIP_ARGUMENTS)}"
-            )
-    return dict(flips)
-
-
-@dataclass(frozen=True)
-class Placement:
-    """Where one vesicle is in a System, and the forces that act on it."""
-
-    system: openmm.System
-    """The System; kept here because the forces live as long as it does."""
-    offset: int
-    """Index of the particle that is vertex 0."""
-    num_vertices: int
-    """Number of particles."""
-    forces: Mapping[str, MembraneForce]
-    """The forces by name: "area", "volume", "bending", "heights", and those switched on."""
-    flips: MonteCarloBondFlip | None = None
-    """What flips bonds, if anything does."""
-
-    area = property(lambda self: self.forces["area"], doc="The `SurfaceAreaForce`.")
-    volume = property(lambda self: self.forces["volume"], doc="The `EnclosedVolumeForce`.")
-    bending = property(lambda self: self.forces["bending"], doc="The `BendingForce`.")
-    heights = property(lambda self: self.forces["heights"], doc="The `TriangleHeightForce`.")
-
-    @property
-    def particles(self):
-        """Indices of the particles, a range."""
-        return range(self.offset, self.offset + self.num_vertices)
-
-    def mesh(self, context):
-        """The `Mesh` as it is now in a Context of the System: positions and triangles."""
-        return Mesh.from_context(context, self.area)
-
-    def energies(self, context):
-        """Energy per term in a Context of the System, a dict of float, kJ/mol.
-
-        Each is the energy of the term's force group, and so holds other forces that share it.
-        """
-        return {
-            name: context.getState(getEnergy=True, groups={force.getForceGroup()})
-            .getPotentialEnergy()
-            .value_in_unit(_ENERGY)
-            for name, force in self.forces.items()
-        }

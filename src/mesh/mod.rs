@@ -3,6 +3,7 @@
 pub mod geometry;
 pub mod numbering;
 pub mod orientation;
+mod parts;
 pub mod topology;
 pub mod triangulation;
 pub mod vertex_vectors;

@@ -8,8 +8,9 @@
 use super::hinges::{HINGES, Hinges};
 use crate::error::Result;
 use crate::evaluator::{Survey, SurveyedTriangle};
-use crate::mesh::geometry::VertexGeometry;
-use crate::mesh::geometry::{EdgeGeometry, TotalPartials, Totals, TriangleGeometry, Vec3};
+use crate::mesh::geometry::{
+    EdgeGeometry, TotalPartials, Totals, TriangleGeometry, Vec3, VertexGeometry,
+};
 use crate::mesh::triangulation::{Quad, Triangulation, Turn, next, previous};
 use crate::mesh::vertex_vectors::{VertexVectors, add_corner};
 use crate::potentials::{Edges, Needs, Term, Triangles, Vertices};
@@ -119,44 +120,17 @@ impl LocalEnergy {
             + self.totals_energy
     }
 
-    /// Bring what an attempt will need near: first, of the triangle that it begins with.
-    #[inline(always)]
-    pub fn fetch_triangle(&self, mesh: &Triangulation, half: u32) {
-        let triangle = half as usize / 3;
-        fetch(&mesh.triangles()[triangle]);
-        fetch(&mesh.twins()[triangle]);
-        fetch(&self.survey.triangles[triangle]);
-    }
-
-    /// Then, of the other triangle and the vertices.
-    #[inline(always)]
-    pub fn fetch_quad(&self, mesh: &Triangulation, half: u32) {
-        self.fetch_triangle(mesh, mesh.twin(half));
-        fetch(&self.survey.triangles[mesh.twin(next(half)) as usize / 3]);
-        fetch(&self.survey.triangles[mesh.twin(previous(half)) as usize / 3]);
-        for half in [half, next(half), previous(half)] {
-            let vertex = mesh.origin(half) as usize;
-            fetch(&self.survey.vertices[vertex]);
-            fetch(&mesh.degrees()[vertex]);
-        }
-    }
-
-    /// At last, of what lies around the other triangle.
-    #[inline(always)]
-    pub fn fetch_rest(&self, mesh: &Triangulation, half: u32) {
-        let twin = mesh.twin(half);
-        fetch(&self.survey.triangles[mesh.twin(next(twin)) as usize / 3]);
-        fetch(&self.survey.triangles[mesh.twin(previous(twin)) as usize / 3]);
-        let vertex = mesh.origin(previous(twin)) as usize;
-        fetch(&self.survey.vertices[vertex]);
-        fetch(&mesh.degrees()[vertex]);
-    }
-
     /// The square of the length, nm², that the edge kl would have.
     #[inline]
     pub fn new_length_squared(&self, quad: &Quad) -> f64 {
         let [_, _, k, l] = quad.vertices;
         (self.position(k) - self.position(l)).norm_squared()
+    }
+
+    /// All elements as they are.
+    #[inline(always)]
+    pub(super) fn survey(&self) -> &Survey {
+        &self.survey
     }
 
     #[inline(always)]
@@ -400,19 +374,4 @@ impl LocalEnergy {
 fn turned(triangle: &TriangleGeometry, first: usize) -> TriangleGeometry {
     let dots = std::array::from_fn(|k| triangle.dots[(k + first) % 3]);
     TriangleGeometry { dots, ..*triangle }
-}
-
-/// Ask for the cache lines of something that will be needed soon.
-#[inline(always)]
-fn fetch<T>(what: &T) {
-    #[cfg(target_arch = "x86_64")]
-    // SAFETY: a prefetch has no effect but on caches.
-    unsafe {
-        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-        let first = std::ptr::from_ref(what).cast::<i8>();
-        _mm_prefetch::<_MM_HINT_T0>(first);
-        _mm_prefetch::<_MM_HINT_T0>(first.wrapping_add(size_of::<T>() - 1));
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    let _ = what;
 }

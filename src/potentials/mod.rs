@@ -10,6 +10,7 @@ mod dihedral;
 mod elements;
 mod enclosed_volume;
 mod plaquette_area;
+mod runs;
 mod surface_area;
 mod triangle_area;
 mod triangle_area_repulsion;
@@ -20,6 +21,7 @@ use crate::mesh::geometry::{TotalPartials, Totals};
 use crate::real::Real;
 pub use codes::{Contribution, MAX_PARAMETERS, Needs};
 pub use elements::*;
+pub use runs::*;
 use std::ffi::CStr;
 
 /// All potentials, by the names of their OpenMM classes.

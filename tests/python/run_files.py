@@ -25,6 +25,39 @@ SurfaceConstraintCoeff 40
 VolumeConstraint G
 VolumeConstraintCoeff 40"""
 
+#: A membrane that flows, and beside it one that keeps its neighbours.
+FLUID_AND_SOLID = """
+[simulation]
+duration = {duration}
+seed = 3
+{platform}
+[integrator]
+time_step = 0.4
+[output]
+interval = {interval}
+frames = "{frames}"
+[[vesicle]]
+name = "fluid"
+flips = {flips}
+[vesicle.mesh]
+random = 132
+radius = 400
+[[vesicle]]
+name = "solid"
+[vesicle.mesh]
+random = 92
+radius = 300
+translate = [2000, 0, 0]
+"""
+
+
+def fluid_and_solid(duration, interval, frames, flips=0.05, platform=None):
+    """The TOML of these two."""
+    platform = f'platform = "{platform}"' if platform else ""
+    return FLUID_AND_SOLID.format(
+        duration=duration, interval=interval, frames=frames, flips=flips, platform=platform
+    )
+
 
 def config(folder, integrator="LM", more="", **replaced):
     """A configuration in a `Folder`, with other words after some keys."""

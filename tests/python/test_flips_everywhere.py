@@ -10,32 +10,9 @@ from openmm import app
 from openmmhelfrich import MonteCarloBondFlip, analysis, vcm
 from openmmhelfrich.vcm.bonded import find_bond_on
 from openmmhelfrich.vcm.outputs import take_frame
-from run_files import contents, invoke
+from run_files import contents, fluid_and_solid, invoke
 
 MESH = helfrich.Mesh.random_sphere(252, 500, seed=5)
-
-TOML = """
-[simulation]
-duration = 16
-seed = 3
-[integrator]
-time_step = 0.4
-[output]
-interval = 4
-frames = "vtk"
-[[vesicle]]
-name = "fluid"
-flips = {flips}
-[vesicle.mesh]
-random = 132
-radius = 400
-[[vesicle]]
-name = "solid"
-[vesicle.mesh]
-random = 132
-radius = 400
-translate = [2000, 0, 0]
-"""
 
 VCM = """-GeneralParameters
 ProjectName run
@@ -59,7 +36,7 @@ M0 0
 
 def toml(folder, flips):
     path = folder / "run.toml"
-    path.write_text(TOML.format(flips=flips))
+    path.write_text(fluid_and_solid(16, 4, "vtk", flips))
     return path
 
 

@@ -5,34 +5,12 @@ import openmmhelfrich as helfrich
 import pytest
 from openmmhelfrich import analysis
 from openmmhelfrich.analysis.vtkhdf import SurfaceSeries
-from run_files import invoke
+from run_files import fluid_and_solid, invoke
 from vtkhdf_files import check_layout, read
 
 pytest.importorskip("mdtraj")
 
-TOML = """
-[simulation]
-duration = 32
-seed = 3
-platform = "Helfrich"
-[integrator]
-time_step = 0.4
-[output]
-interval = 1.6
-frames = "ply"
-[[vesicle]]
-name = "fluid"
-flips = 0.05
-[vesicle.mesh]
-random = 132
-radius = 400
-[[vesicle]]
-name = "solid"
-[vesicle.mesh]
-random = 92
-radius = 300
-translate = [2000, 0, 0]
-"""
+TOML = fluid_and_solid(duration=32, interval=1.6, frames="ply", platform="Helfrich")
 FRAMES = 21
 
 

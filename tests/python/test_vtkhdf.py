@@ -15,35 +15,13 @@ from openmmhelfrich import VTKHDFReporter, analysis
 from openmmhelfrich._journal import JournaledFile
 from openmmhelfrich.analysis.vtkhdf import SurfaceFrame, SurfaceSeries
 from openmmhelfrich.vcm.runner import Run, RunError
-from run_files import invoke
+from run_files import fluid_and_solid, invoke
 from vtkhdf_files import check_layout, read
 
 h5py = pytest.importorskip("h5py")
 
 MESH = helfrich.Mesh.random_sphere(132, 400, seed=5)
-TOML = """
-[simulation]
-duration = 16
-seed = 3
-platform = "Reference"
-[integrator]
-time_step = 0.4
-[output]
-interval = 1.6
-frames = "vtkhdf"
-[[vesicle]]
-name = "fluid"
-flips = 0.05
-[vesicle.mesh]
-random = 132
-radius = 400
-[[vesicle]]
-name = "solid"
-[vesicle.mesh]
-random = 92
-radius = 300
-translate = [2000, 0, 0]
-"""
+TOML = fluid_and_solid(duration=16, interval=1.6, frames="vtkhdf", platform="Reference")
 #: The last step of such a run.
 END = 40
 

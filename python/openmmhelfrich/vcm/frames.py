@@ -16,6 +16,9 @@ from ..analysis.vtkhdf import SurfaceFrame, SurfaceSeries
 
 __all__ = ["FRAMES", "MeshFrames", "SeriesFrames", "frames_writer"]
 
+#: Vertices, shape (num_vertices, 3), nm, and triangles, shape (num_triangles, 3), of a membrane.
+Part = tuple[np.ndarray, np.ndarray]
+
 #: What frames can be written as; "none" writes none.
 FRAMES = ("none", "ply", "obj", "vtk", "vtkhdf")
 # Formats that have room for values of the vertices.
@@ -70,13 +73,7 @@ class SeriesFrames:
         self._path = path
         self._series = SurfaceSeries(path)
 
-    def write(
-        self,
-        number: int,
-        step: int,
-        time: float,
-        parts: list[tuple[np.ndarray, np.ndarray]],
-    ) -> None:
+    def write(self, number: int, step: int, time: float, parts: list[Part]) -> None:
         """Add a frame; arguments as for `MeshFrames.write`."""
         if number and not self._path.exists():
             # Not a new file where one was taken away.
@@ -122,13 +119,7 @@ class MeshFrames:
         self._kind = kind
         self._labels = list(labels)
 
-    def write(
-        self,
-        number: int,
-        step: int,
-        time: float,
-        parts: list[tuple[np.ndarray, np.ndarray]],
-    ) -> None:
+    def write(self, number: int, step: int, time: float, parts: list[Part]) -> None:
         """Write the meshes of one frame.
 
         Parameters
@@ -139,9 +130,8 @@ class MeshFrames:
             Of the simulation.
         time : float
             ps.
-        parts : list of pairs of ndarray
-            Of each membrane the vertices, shape (num_vertices, 3), nm, and the triangles of this
-            frame, shape (num_triangles, 3).
+        parts : list of Part
+            Of each membrane, as it is in this frame.
         """
         self._folder.mkdir(exist_ok=True)
         for label, (vertices, triangles) in zip(self._labels, parts, strict=True):
@@ -166,7 +156,7 @@ class MeshFrames:
                     path.unlink()
 
 
-def joined(parts: Iterable[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
+def joined(parts: Iterable[Part]) -> Part:
     """Several surfaces as one: their vertices one after another, and all triangles."""
     vertices, triangles, count = [], [], 0
     for points, corners in parts:

@@ -123,12 +123,6 @@ impl Sweep<'_, '_> {
             (true, true) => forward!(true true),
         };
         tile.energies.begin(self.findings.is_some());
-        if !potentials {
-            if let Some(findings) = &self.findings {
-                self.survey_triangles(index, tile, findings);
-            }
-            return TriangleSums { silent, ..sums };
-        }
         tile.silent = true;
         let ids = &layout.triangle_ids[layout.triangle_tile(index)];
         for (term, contribution) in self.terms.iter().zip(contributions) {
@@ -139,6 +133,9 @@ impl Sweep<'_, '_> {
         }
         if let Some(findings) = &self.findings {
             self.survey_triangles(index, tile, findings);
+        }
+        if !potentials {
+            return TriangleSums { silent, ..sums };
         }
         // Zeros that follow zeros need not be written.
         if !(silent && tile.silent) {
@@ -174,14 +171,11 @@ impl Sweep<'_, '_> {
             self.edges(index, contributions);
         }
         tile.energies.begin(self.findings.is_some());
-        if !needs.contains(Needs::VERTICES) {
-            if let Some(findings) = &self.findings {
-                self.survey_vertices(index, tile, findings);
-            }
-            return;
-        }
+        let potentials = needs.contains(Needs::VERTICES);
         let range = layout.vertex_tile(index);
-        tile.slopes.clear(needs, range.len());
+        if potentials {
+            tile.slopes.clear(needs, range.len());
+        }
         let ids = &layout.vertex_ids[range];
         for (term, contribution) in self.terms.iter().zip(contributions) {
             if term.potential.needs(term).contains(Needs::VERTICES) {
@@ -191,6 +185,9 @@ impl Sweep<'_, '_> {
         }
         if let Some(findings) = &self.findings {
             self.survey_vertices(index, tile, findings);
+        }
+        if !potentials {
+            return;
         }
         macro_rules! slopes {
             ($vectors:expr) => {{

@@ -1,0 +1,56 @@
+"""Where a vesicle is in a System, and the forces that act on it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import openmm
+from openmm import unit
+
+from .forces import MembraneForce, MonteCarloBondFlip
+from .mesh import Mesh
+
+__all__ = ["Placement"]
+
+_ENERGY = unit.kilojoule_per_mole
+
+
+@dataclass(frozen=True)
+class Placement:
+    """Where one vesicle is in a System, and the forces that act on it."""
+
+    system: openmm.System
+    """The System; kept here because the forces live as long as it does."""
+    offset: int
+    """Index of the particle that is vertex 0."""
+    num_vertices: int
+    """Number of particles."""
+    forces: Mapping[str, MembraneForce]
+    """The forces by name: "area", "volume", "bending", "heights", and those switched on."""
+    flips: MonteCarloBondFlip | None = None
+    """What flips bonds, if anything does."""
+
+    area = property(lambda self: self.forces["area"], doc="The `SurfaceAreaForce`.")
+    volume = property(lambda self: self.forces["volume"], doc="The `EnclosedVolumeForce`.")
+    bending = property(lambda self: self.forces["bending"], doc="The `BendingForce`.")
+    heights = property(lambda self: self.forces["heights"], doc="The `TriangleHeightForce`.")
+
+    @property
+    def particles(self):
+        """Indices of the particles, a range."""
+        return range(self.offset, self.offset + self.num_vertices)
+
+    def mesh(self, context):
+        """The `Mesh` as it is now in a Context of the System: positions and triangles."""
+        return Mesh.from_context(context, self.area)
+
+    def energies(self, context):
+        """Energy per term in a Context of the System, a dict of float, kJ/mol.
+
+        Each is the energy of the term's force group, and so holds other forces that share it.
+        """
+        return {
+            name: context.getState(getEnergy=True, groups={force.getForceGroup()})
+            .getPotentialEnergy()
+            .value_in_unit(_ENERGY)
+            for name, force in self.forces.items()
+        }

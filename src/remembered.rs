@@ -1,0 +1,88 @@
+//! Forces that were computed a moment before somebody asks for them.
+
+use crate::error::Result;
+use crate::potentials::{MAX_PARAMETERS, Term};
+
+/// Forces of some terms at some positions.
+#[derive(Default)]
+pub struct Remembered {
+    is_there: bool,
+    terms: Vec<RememberedTerm>,
+    positions: Vec<f64>,
+    forces: Vec<f64>,
+}
+
+/// All of a term that forces depend on.
+struct RememberedTerm {
+    name: &'static str,
+    form: usize,
+    switches: u32,
+    values: [f64; MAX_PARAMETERS],
+    fields: [Vec<f64>; MAX_PARAMETERS],
+}
+
+impl Remembered {
+    /// Forget.
+    pub fn clear(&mut self) {
+        self.is_there = false;
+    }
+
+    /// Remember these forces, kJ/mol/nm, which `compute` finds: it is to add them to zeros.
+    ///
+    /// # Errors
+    /// Those of `compute`; nothing is remembered then.
+    pub fn fill(
+        &mut self,
+        terms: &[Term],
+        positions: &[f64],
+        compute: impl FnOnce(&mut [f64]) -> Result<()>,
+    ) -> Result<&[f64]> {
+        self.is_there = false;
+        self.forces.clear();
+        self.forces.resize(positions.len(), 0.0);
+        compute(&mut self.forces)?;
+        self.terms.clear();
+        self.terms.extend(terms.iter().map(RememberedTerm::new));
+        self.positions.clear();
+        self.positions.extend_from_slice(positions);
+        self.is_there = true;
+        Ok(&self.forces)
+    }
+
+    /// Add the forces, if they are of these terms at these positions. What is asked for next is something else, so they
+    /// are forgotten in any case.
+    pub fn add_once(&mut self, terms: &[Term], positions: &[f64], forces: &mut [f64]) -> bool {
+        let known = self.is_of(terms, positions);
+        self.is_there = false;
+        if known {
+            forces.iter_mut().zip(&self.forces).for_each(|(sum, force)| *sum += force);
+        }
+        known
+    }
+
+    fn is_of(&self, terms: &[Term], positions: &[f64]) -> bool {
+        self.is_there
+            && self.terms.len() == terms.len()
+            && self.terms.iter().zip(terms).all(|(known, term)| known.is(term))
+            && self.positions == positions
+    }
+}
+
+impl RememberedTerm {
+    fn new(term: &Term) -> Self {
+        Self {
+            name: term.potential.name(),
+            form: term.form,
+            switches: term.switches,
+            values: term.values,
+            fields: term.fields.map(<[f64]>::to_vec),
+        }
+    }
+
+    fn is(&self, term: &Term) -> bool {
+        self.name == term.potential.name()
+            && (self.form, self.switches) == (term.form, term.switches)
+            && self.values == term.values
+            && self.fields.iter().zip(term.fields).all(|(known, field)| known == field)
+    }
+}
