@@ -174,7 +174,8 @@ class Vesicle:
         self._placement = None
         # The forces refuse a scheme or form that does not exist: now, not when they are used.
         self._forces(0)
-        self._mover(0)
+        if self._flips is not None:
+            mover_of(self._flips, mesh, 0)
 
     def __repr__(self):
         return (

@@ -29,8 +29,7 @@ VolumeConstraintCoeff 40"""
 FLUID_AND_SOLID = """
 [simulation]
 duration = {duration}
-seed = 3
-{platform}
+seed = 3{platform}
 [integrator]
 time_step = 0.4
 [output]
@@ -53,7 +52,7 @@ translate = [2000, 0, 0]
 
 def fluid_and_solid(duration, interval, frames, flips=0.05, platform=None):
     """The TOML of these two."""
-    platform = f'platform = "{platform}"' if platform else ""
+    platform = f'\nplatform = "{platform}"' if platform else ""
     return FLUID_AND_SOLID.format(
         duration=duration, interval=interval, frames=frames, flips=flips, platform=platform
     )
