@@ -1,7 +1,8 @@
 //! Time of attempts to flip a bond: `cargo bench --bench flips`.
 //!
 //! For each size of a vesicle with the paper's forces: the pass over the whole mesh that begins a batch of attempts, an
-//! attempt, the renewed layout after a batch, and the forces of an evaluation to compare with, µs; the shortest of several runs.
+//! attempt and how many are accepted, the same of plain code, the renewed layout after a batch, and the forces of an
+//! evaluation to compare with, µs; the shortest of several runs.
 
 use openmm_helfrich::evaluator::{CpuEvaluator, InstructionSet, Survey};
 use openmm_helfrich::mesh::numbering::breadth_first;
@@ -13,8 +14,12 @@ use std::f64::consts::PI;
 use std::hint::black_box;
 use std::time::Instant;
 
+#[path = "plain_flips.rs"]
+mod plain_flips;
 #[path = "spheres.rs"]
 mod spheres;
+
+use plain_flips::{Model, PlainFlips};
 
 fn shortest(runs: usize, mut body: impl FnMut() -> f64) -> f64 {
     (0..runs).map(|_| body()).fold(f64::INFINITY, f64::min)
@@ -29,7 +34,7 @@ fn timed<T>(body: impl FnOnce() -> T) -> f64 {
 fn main() {
     let large = std::env::args().any(|argument| argument == "--large");
     let sizes = [5, 10, 20, 64, 316];
-    println!("vertices  begin  attempt  accepted  layout  forces");
+    println!("vertices  begin  attempt  accepted  plain  accepted  layout  forces");
     for &n in &sizes[..if large { 5 } else { 4 }] {
         let (positions, triangles) = spheres::sphere(n);
         let count = positions.len() / 3;
@@ -75,6 +80,20 @@ fn main() {
         });
         let accepted =
             (state.accepted - before.accepted) as f64 / (state.attempts - before.attempts) as f64;
+        let model = Model {
+            rigidity: 50.0,
+            area: [1.3, area],
+            volume: [0.04, area * radius / 3.0],
+            heights: [20.0, 9.977],
+            temperature: rules.temperature,
+            max_degree: rules.max_degree as usize,
+        };
+        let mut plain = PlainFlips::new(model, &positions, &triangles);
+        plain.attempt(10 * edges);
+        plain.accepted = 0;
+        let few = runs.min(10);
+        let plain_attempt = shortest(few, || timed(|| plain.attempt(edges)) / edges as f64);
+        let plain_accepted = plain.accepted as f64 / (few as u64 * edges) as f64;
         let layout = shortest(runs, || timed(|| evaluator.lay_out(&mesh, &order)));
         let evaluation = shortest(runs, || {
             timed(|| {
@@ -82,7 +101,8 @@ fn main() {
             })
         });
         println!(
-            "{count:8} {begin:6.1} {attempt:8.4} {accepted:9.3} {layout:7.1} {evaluation:7.1}"
+            "{count:8} {begin:6.1} {attempt:8.4} {accepted:9.3} {plain_attempt:6.3} \
+             {plain_accepted:9.3} {layout:7.1} {evaluation:7.1}"
         );
     }
 }
