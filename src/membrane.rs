@@ -144,8 +144,8 @@ impl Membrane {
     /// have changed the forces; it is left alone if there were none.
     ///
     /// # Errors
-    /// Rules that make no sense, a term as [`Self::evaluate`] refuses it, a mesh without geometry: nothing has
-    /// changed then. A GPU that fails to compute the forces after the flips, which have been made.
+    /// Rules that make no sense, a term as [`Self::evaluate`] refuses it, a mesh without geometry: nothing has changed
+    /// then. A GPU that was asked for and fails: the flips have been made.
     pub fn flip(
         &mut self,
         terms: &[Term],

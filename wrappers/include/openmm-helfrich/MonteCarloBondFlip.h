@@ -17,7 +17,7 @@ namespace HelfrichPlugin {
  * Makes a membrane fluid: now and then it tries to flip edges of the mesh, so that neighbours change during a
  * simulation.
  *
- * The edge ij of two triangles (i, j, k) and (j, i, l) becomes kl, at fixed positions and velocities. An edge is chosen
+ * The edge ij of two triangles (i, j, k) and (j, i, l) becomes kl, at fixed positions and momenta. An edge is chosen
  * uniformly among all; the flip is refused if a vertex would have fewer neighbours than minDegree or more than
  * maxDegree, if kl would be longer than maxEdgeLength or exists already, or if a new triangle would have no area.
  * Otherwise it is accepted with probability
@@ -33,6 +33,11 @@ namespace HelfrichPlugin {
  * Without a thermostat, choose the ensemble Microcanonical: a demon (M. Creutz, doi:10.1103/PhysRevLett.50.1411), whose
  * energy is never below zero, pays for flips and takes what they set free, so that the energy of the System and the
  * demon together is conserved.
+ *
+ * Integrators that kick once a step (VerletIntegrator, LangevinMiddleIntegrator, LangevinIntegrator,
+ * NoseHooverIntegrator, DPDIntegrator, QTBIntegrator) keep velocities of half a step ago. There v changes by
+ * -dt (F_after - F_before) / 2m, so that flips come between two half kicks and leave no heat; that takes one more
+ * evaluation of the forces each time. With variable time steps each flip leaves a little heat, of second order.
  *
  * Like a barostat, this class has neither energy nor forces, and acts whenever an integrator updates the state of the
  * Context: all integrators of OpenMM do, a CustomIntegrator where it has addUpdateContextState(). RPMDIntegrator, whose
