@@ -1,5 +1,6 @@
 //! Triangulated closed surfaces: their topology, their orientation and their geometry.
 
+pub mod cell;
 pub mod geometry;
 pub mod numbering;
 pub mod orientation;
@@ -8,5 +9,6 @@ pub mod topology;
 pub mod triangulation;
 pub mod vertex_vectors;
 
+pub use cell::Cell;
 pub use topology::Topology;
 pub use triangulation::Triangulation;

@@ -1,0 +1,127 @@
+//! The periodic box: nearest images and shifts.
+
+use super::geometry::Vec3;
+use crate::error::{Error, Result};
+
+/// A periodic box in OpenMM's reduced form: a along x, b in the xy plane, c anywhere; none of them leans over by
+/// more than half of another's length.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cell {
+    /// a, b and c, nm.
+    vectors: [Vec3; 3],
+    /// Half of the least distance between opposite faces, nm.
+    half_width: f64,
+}
+
+/// How many times each of the box vectors.
+pub type Image = [i32; 3];
+
+impl Cell {
+    /// A box of three vectors.
+    ///
+    /// # Errors
+    /// Vectors that are not finite, or not of OpenMM's form.
+    pub fn new([a, b, c]: [[f64; 3]; 3]) -> Result<Self> {
+        let finite = [a, b, c].as_flattened().iter().all(|x| x.is_finite());
+        let form = a[1] == 0.0 && a[2] == 0.0 && b[2] == 0.0;
+        if !finite || !form || !(a[0] > 0.0 && b[1] > 0.0 && c[2] > 0.0) {
+            return Err(Error::Contract(format!(
+                "the periodic box needs vectors (ax, 0, 0), (bx, by, 0) and (cx, cy, cz) with ax, by and cz above zero, \
+                 got {a:?}, {b:?} and {c:?} nm"
+            )));
+        }
+        let vectors = [a, b, c].map(Vec3::from);
+        let volume = a[0] * b[1] * c[2];
+        let width = |k: usize| volume / vectors[(k + 1) % 3].cross(&vectors[(k + 2) % 3]).norm();
+        let half_width = 0.5 * width(0).min(width(1)).min(width(2));
+        Ok(Self { vectors, half_width })
+    }
+
+    /// a, b and c, nm.
+    pub fn vectors(&self) -> &[Vec3; 3] {
+        &self.vectors
+    }
+
+    /// Half of the least distance between opposite faces, nm: what is shorter has one image that is that short, which
+    /// [`Self::nearest`] finds.
+    pub fn half_width(&self) -> f64 {
+        self.half_width
+    }
+
+    /// The vector of an image, nm.
+    #[inline]
+    pub fn shift(&self, image: Image) -> Vec3 {
+        let [a, b, c] = &self.vectors;
+        a * f64::from(image[0]) + b * f64::from(image[1]) + c * f64::from(image[2])
+    }
+
+    /// What to add to a separation so that it becomes its shortest image; of a long one, some short image.
+    #[inline]
+    pub fn nearest(&self, separation: &Vec3) -> Image {
+        self.image(separation, |x| -x.round_ties_even())
+    }
+
+    /// What to add to a position so that it lies in the box that begins at the origin.
+    #[inline]
+    pub fn wrap(&self, position: &Vec3) -> Image {
+        self.image(position, |x| -x.floor())
+    }
+
+    #[inline]
+    fn image(&self, vector: &Vec3, count: impl Fn(f64) -> f64) -> Image {
+        let [a, b, c] = &self.vectors;
+        let mut rest = *vector;
+        let k = count(rest.z / c.z);
+        rest += c * k;
+        let j = count(rest.y / b.y);
+        rest += b * j;
+        let i = count(rest.x / a.x);
+        [i as i32, j as i32, k as i32]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const TRICLINIC: [[f64; 3]; 3] = [[5.0, 0.0, 0.0], [1.5, 6.0, 0.0], [-2.0, 2.5, 7.0]];
+
+    proptest! {
+        #[test]
+        fn short_separations_are_found(
+            direction in prop::array::uniform3(-1.0..1.0f64), length in 0.01..0.99f64,
+            image in prop::array::uniform3(-3..4i32),
+        ) {
+            let cell = Cell::new(TRICLINIC).unwrap();
+            let short = Vec3::from(direction).normalize() * length * cell.half_width();
+            let found = cell.nearest(&(short + cell.shift(image)));
+            prop_assert_eq!(found, image.map(|k| -k));
+        }
+
+        #[test]
+        fn wrapped_positions_are_inside(position in prop::array::uniform3(-30.0..30.0f64)) {
+            let cell = Cell::new(TRICLINIC).unwrap();
+            let position = Vec3::from(position);
+            let inside = position + cell.shift(cell.wrap(&position));
+            let matrix = nalgebra::Matrix3::from_columns(cell.vectors());
+            let shares = matrix.try_inverse().unwrap() * inside;
+            prop_assert!(shares.iter().all(|x| (-1e-12..1.0 + 1e-12).contains(x)), "{shares}");
+        }
+    }
+
+    #[test]
+    fn the_width_is_that_between_faces() {
+        let cell = Cell::new([[4.0, 0.0, 0.0], [0.0, 6.0, 0.0], [0.0, 0.0, 10.0]]).unwrap();
+        assert_eq!(cell.half_width(), 2.0);
+    }
+
+    #[test]
+    fn what_is_no_box_is_refused() {
+        for (row, column, value) in [(0, 0, 0.0), (1, 1, -6.0), (0, 1, 0.1), (2, 2, f64::NAN)] {
+            let mut vectors = TRICLINIC;
+            vectors[row][column] = value;
+            assert!(Cell::new(vectors).is_err());
+        }
+    }
+}
