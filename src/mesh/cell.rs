@@ -61,7 +61,8 @@ impl Cell {
         self.image(separation, |x| -x.round_ties_even())
     }
 
-    /// What to add to a position so that it lies in the box that begins at the origin.
+    /// What to add to a position so that it lies in the brick of sides ax, by and cz that begins at the origin, as OpenMM
+    /// wraps.
     #[inline]
     pub fn wrap(&self, position: &Vec3) -> Image {
         self.image(position, |x| -x.floor())
@@ -104,9 +105,10 @@ mod tests {
             let cell = Cell::new(TRICLINIC).unwrap();
             let position = Vec3::from(position);
             let inside = position + cell.shift(cell.wrap(&position));
-            let matrix = nalgebra::Matrix3::from_columns(cell.vectors());
-            let shares = matrix.try_inverse().unwrap() * inside;
-            prop_assert!(shares.iter().all(|x| (-1e-12..1.0 + 1e-12).contains(x)), "{shares}");
+            for axis in 0..3 {
+                let share = inside[axis] / cell.vectors()[axis][axis];
+                prop_assert!((-1e-12..1.0 + 1e-12).contains(&share), "{inside}");
+            }
         }
     }
 
