@@ -46,7 +46,11 @@ def library() -> ctypes.CDLL:
         loaded = ctypes.CDLL(str(LIBRARY_PATH))
     except OSError as reason:
         raise ImportError(f"openmmhelfrich: cannot load {LIBRARY_PATH}: {reason}") from reason
-    loaded.Helfrich_Mesh_orient.argtypes = [ctypes.c_int64, _DOUBLES, ctypes.c_int64, _INDICES]
+    loaded.Helfrich_Mesh_orient.argtypes = [
+        *(ctypes.c_int64, _DOUBLES),
+        *(ctypes.c_int64, _INDICES),
+        ctypes.c_void_p,
+    ]
     loaded.Helfrich_Mesh_orient.restype = ctypes.c_int
     loaded.Helfrich_lastError.argtypes = [ctypes.c_char_p, ctypes.c_int64]
     loaded.Helfrich_lastError.restype = ctypes.c_int64
@@ -64,7 +68,7 @@ def last_error() -> str:
         size = length + 1
 
 
-def orient(vertices: np.ndarray, triangles: np.ndarray) -> None:
+def orient(vertices: np.ndarray, triangles: np.ndarray, box: np.ndarray | None = None) -> None:
     """Validate a mesh and turn its triangles outward, in place.
 
     Parameters
@@ -73,13 +77,18 @@ def orient(vertices: np.ndarray, triangles: np.ndarray) -> None:
         Shape (num_vertices, 3), float64, C-contiguous, nm.
     triangles : ndarray
         Shape (num_triangles, 3), int64, C-contiguous, writeable. Triangles are reversed where
-        needed, so that neighbours agree and every component encloses a positive volume.
+        needed, so that neighbours agree and every component that encloses a volume has a positive
+        one; others keep the orientation of their first triangle.
+    box : ndarray, optional
+        Periodic box, shape (3, 3), float64, C-contiguous, nm: corners are nearest images.
 
     Raises
     ------
     MeshError
-        With the core's message, if the mesh is not closed, 2-manifold, orientable and free of
-        repeated, unused and degenerate elements.
+        With the core's message, if the mesh is not 2-manifold, orientable and free of repeated,
+        unused and degenerate elements; if an edge is not shorter than half the width of the box.
     """
-    if library().Helfrich_Mesh_orient(len(vertices), vertices, len(triangles), triangles) != 0:
+    cell = None if box is None else box.ctypes.data
+    arrays = len(vertices), vertices, len(triangles), triangles
+    if library().Helfrich_Mesh_orient(*arrays, cell) != 0:
         raise MeshError(last_error())

@@ -1,4 +1,4 @@
-"""Closed triangulated surfaces: validated, oriented outward, immutable."""
+"""Triangulated surfaces, closed, open or periodic: validated, oriented, immutable."""
 
 from __future__ import annotations
 
@@ -8,20 +8,34 @@ import math
 import numpy as np
 
 from . import _core
-from ._mesh import files, fluctuate, generate, geometry, inputs, on_openmm, transform
-from ._units import length
+from ._mesh import (
+    files,
+    fluctuate,
+    generate,
+    geometry,
+    inputs,
+    lattices,
+    on_openmm,
+    periodic,
+    transform,
+)
+from ._units import length as _length
 from .errors import MeshError
 
 __all__ = ["Mesh", "MeshError"]
 
 
 class Mesh:
-    """A closed, oriented, 2-manifold triangulation of one or several surfaces.
+    """An oriented, 2-manifold triangulation of one or several surfaces, closed or with borders.
 
-    Triangles are counter-clockwise seen from outside, so that normals point outward and the volume
-    is positive. Several closed components are allowed; each is oriented outward by itself, even
-    if it lies inside of another one, and areas and volumes are sums over the components. A mesh
+    Triangles of a closed surface are counter-clockwise seen from outside, so that normals point
+    outward and the volume is positive. Each connected part is oriented by itself, even if it lies
+    inside of another one; one with borders, or one that spans a periodic box, has no outside, and
+    keeps the orientation of its first triangle. Areas and volumes are sums over the parts. A mesh
     never changes: its arrays are read-only, and transformations return a new mesh.
+
+    In a periodic box a vertex stands for all of its images, and a triangle has those corners that
+    are nearest to each other. So vertices may be wrapped into the box or not, each by itself.
 
     Parameters
     ----------
@@ -30,20 +44,24 @@ class Mesh:
     triangles : array_like of int
         Vertex indices from 0, shape (num_triangles, 3), of any integer type, in any orientation:
         triangles are turned where needed.
+    box : array_like or Quantity, optional
+        Periodic box, rows a, b, c in OpenMM's reduced form, shape (3, 3), nm. Default: none.
 
     Raises
     ------
     MeshError
         If a shape, a type or a unit is wrong; if a coordinate is not finite or an index out of
         range; if a triangle repeats a vertex, repeats another triangle or has no area; if an edge
-        does not belong to exactly two triangles; if the triangles at a vertex form more than one
-        fan; if a vertex is unused or lies exactly on another one; if the surface cannot be oriented
-        or is empty. The message names the culprit.
+        belongs to more than two triangles; if the triangles at a vertex form more than one fan; if
+        a vertex is unused or lies exactly on another one; if the surface cannot be oriented or is
+        empty; if an edge is not shorter than half the width of the box, so that its nearest image
+        may be another one. The message names the culprit.
 
     Notes
     -----
     Equations (B…) and (29–31) in this class are those of doi:10.1103/PhysRevE.108.015301. Two
-    meshes are equal if they have the same vertices and triangles in the same order.
+    meshes are equal if they have the same vertices and triangles in the same order, and equal
+    boxes.
 
     Examples
     --------
@@ -53,16 +71,19 @@ class Mesh:
     >>> flat = mesh.oblate(reduced_volume=0.6)
     >>> round(flat.reduced_volume, 6)
     0.6
+    >>> Mesh.sheet(8, 8, spacing=5, periodic=True).is_closed
+    True
     """
 
-    def __init__(self, vertices, triangles):
+    def __init__(self, vertices, triangles, box=None):
         points = inputs.vertex_array(vertices)
         corners = inputs.triangle_array(triangles)
-        _core.orient(points, corners)
+        cell = None if box is None else inputs.box_array(box, "Mesh")
+        _core.orient(points, corners, cell)
         points.flags.writeable = False
         corners.flags.writeable = False
         # A view of an array that cannot be written to can never be made writeable.
-        self.__dict__.update(_vertices=points.view(), _triangles=corners.view())
+        self.__dict__.update(_vertices=points.view(), _triangles=corners.view(), _box=cell)
 
     def __setattr__(self, name, value):
         raise AttributeError(f"Mesh: cannot set {name}, a mesh is immutable; make a new one")
@@ -103,19 +124,22 @@ class Mesh:
             its mesh is not valid, see `Mesh`. The message names what would mend it.
         """
         if merge is not None:
-            merge = inputs.not_negative(length(merge, "Mesh.read", "merge"), "Mesh.read", "merge")
-        vertices, triangles = files.read(path, triangulate, merge, drop_unused)
+            merge = inputs.not_negative(_length(merge, "Mesh.read", "merge"), "Mesh.read", "merge")
+        vertices, triangles, box = files.read(path, triangulate, merge, drop_unused)
         try:
-            return cls(vertices, triangles)
+            mesh = cls(vertices, triangles, box)
         except MeshError as reason:
             raise files.explained(path, reason, vertices, triangles) from None
+        files.warn_of_cracks(path, mesh)
+        return mesh
 
     def write(self, path, *, point_data=None, binary=None) -> None:
         """Write a PLY, OBJ, STL, OFF, VTK, VTU or Gmsh (``.msh``) file, coordinates in nm.
 
         PLY, OBJ, OFF, STL and VTK are text by default, the others binary; all carry full double
         precision. VTK is legacy POLYDATA, which OVITO reads as text. STL stores no vertex numbers:
-        after reading, vertices are in the order of first appearance.
+        after reading, vertices are in the order of first appearance. The periodic box goes into a
+        comment of PLY, where `read` finds it; others have no place for it, see `unfolded`.
 
         Parameters
         ----------
@@ -131,8 +155,8 @@ class Mesh:
         Raises
         ------
         MeshError
-            If the extension is unknown, or the format has no room for values or no binary form; if
-            values have another shape, or a name has spaces.
+            If the extension is unknown, or the format has no room for values or the box or no
+            binary form; if values have another shape, or a name has spaces.
         OSError
             If the file cannot be written.
 
@@ -145,7 +169,7 @@ class Mesh:
         ...     curvature = mean_curvature(mesh.vertices, mesh.triangles)
         ...     mesh.write(f"{folder}/ball.vtk", point_data={"mean_curvature": curvature})
         """
-        files.write(path, self._vertices, self._triangles, point_data, binary)
+        files.write(path, self._vertices, self._triangles, point_data, binary, self._box)
 
     @classmethod
     def from_context(cls, context, force) -> Mesh:
@@ -160,6 +184,7 @@ class Mesh:
         Returns
         -------
         Mesh
+            With the box that the Context has now if the force is periodic.
         """
         return cls(*on_openmm.present(context, force))
 
@@ -182,7 +207,7 @@ class Mesh:
         MeshError
             If an argument is out of range.
         """
-        return cls(*generate.icosphere(n, length(radius, "Mesh.icosphere", "radius")))
+        return cls(*generate.icosphere(n, _length(radius, "Mesh.icosphere", "radius")))
 
     @classmethod
     def random_sphere(cls, num_vertices, radius, seed=0) -> Mesh:
@@ -205,8 +230,132 @@ class Mesh:
         MeshError
             If an argument is out of range.
         """
-        radius = length(radius, "Mesh.random_sphere", "radius")
+        radius = _length(radius, "Mesh.random_sphere", "radius")
         return cls(*generate.random_sphere(num_vertices, radius, seed))
+
+    @classmethod
+    def sheet(cls, nx, ny, spacing, periodic=False) -> Mesh:
+        """A flat sheet of equilateral triangles in the plane z = 0, its normal along z.
+
+        Of ny rows along x of nx vertices each, the first vertex at the origin; odd rows are shifted
+        by half of the spacing, and rows are √3/2 of it apart. A periodic sheet spans its box in x
+        and y, which is as high as it is long; if ny is odd, b leans over by half of the spacing.
+
+        Parameters
+        ----------
+        nx, ny : int
+            Vertices in a row, and rows; each 2 or more, 3 or more if periodic.
+        spacing : float or Quantity
+            Length of every edge, nm, above 0.
+        periodic : bool
+            Default: with a border.
+
+        Raises
+        ------
+        MeshError
+            If an argument is out of range.
+        """
+        return cls(*lattices.sheet(nx, ny, _length(spacing, "Mesh.sheet", "spacing"), periodic))
+
+    @classmethod
+    def tube(cls, n_around, n_along, radius, length, periodic=False) -> Mesh:
+        """A tube about the z axis, of rings of vertices, its normal outward.
+
+        Of n_along rings of n_around vertices each, from z = 0; odd rings are turned by half of a
+        step. Equal edges need rings √3/2 of a step apart, n_along ≈ n_around length / (√3 π
+        radius). An open tube has rings at both of its ends, n_along − 1 steps apart. A periodic one
+        spans its box along z, n_along steps; across, the box is two diameters wide.
+
+        Parameters
+        ----------
+        n_around : int
+            Vertices in a ring, 3 or more.
+        n_along : int
+            Rings, 2 or more; an even number from 4 if periodic.
+        radius : float or Quantity
+            Distance of the vertices from the axis, nm, above 0. The area is a little below
+            2 π radius length, since edges are chords.
+        length : float or Quantity
+            From end to end, or of the box, nm, above 0.
+        periodic : bool
+            Default: with two borders.
+
+        Raises
+        ------
+        MeshError
+            If an argument is out of range.
+        """
+        radius = _length(radius, "Mesh.tube", "radius")
+        length = _length(length, "Mesh.tube", "length")
+        return cls(*lattices.tube(n_around, n_along, radius, length, periodic))
+
+    @classmethod
+    def disk(cls, n, radius) -> Mesh:
+        """A flat disk about the origin in the plane z = 0, of 3 n² + 3 n + 1 vertices.
+
+        A hexagon of a triangular lattice drawn out to a disk: rings k = 1 … n about the middle, of
+        6 k evenly spaced vertices at radius k radius / n. All inner vertices have degree 6. Its
+        normal is along z.
+
+        Parameters
+        ----------
+        n : int
+            Rings, 1 or more; the border has 6 n vertices.
+        radius : float or Quantity
+            Of the vertices at the border, nm, above 0.
+
+        Raises
+        ------
+        MeshError
+            If an argument is out of range.
+        """
+        return cls(*lattices.disk(n, _length(radius, "Mesh.disk", "radius")))
+
+    @classmethod
+    def torus(cls, n, R, r) -> Mesh:
+        """A torus about the z axis, of n vertices round its tube, all of degree 6.
+
+        Of m = 2 round(n R / √3 r) rings, but at least 4, so that triangles are equilateral on the
+        average; they are longer outside and shorter inside, by r / R. n m vertices.
+
+        Parameters
+        ----------
+        n : int
+            Vertices in a ring, 3 or more.
+        R, r : float or Quantity
+            Distance of the tube's middle from the axis, and radius of the tube, nm, R > r > 0.
+
+        Raises
+        ------
+        MeshError
+            If an argument is out of range.
+        """
+        R, r = _length(R, "Mesh.torus", "R"), _length(r, "Mesh.torus", "r")
+        return cls(*lattices.torus(n, R, r))
+
+    @classmethod
+    def schwarz_p(cls, n, size) -> Mesh:
+        """A cubic cell of Schwarz' P surface, which is triply periodic, nearly: of genus 3.
+
+        Vertices are on the level surface cos x + cos y + cos z = 0 of the cube −π … π, whose
+        mean curvature is nearly zero; its area, 2.353 size², is 0.4 % above that of the minimal
+        surface, 2.345 size². Eight hexagonal patches, mirror images of one another, with n edges on
+        each side have 24 n² − 4 vertices and 48 n² triangles. Twelve vertices have degree 8, all
+        others 6. Minimize the bending energy to come to the minimal surface.
+
+        Parameters
+        ----------
+        n : int
+            Edges on each side of a patch, 1 or more.
+        size : float or Quantity
+            Of the cube and the box, nm, above 0.
+
+        Raises
+        ------
+        MeshError
+            If an argument is out of range.
+        """
+        return cls(*lattices.schwarz_p(n, _length(size, "Mesh.schwarz_p", "size")))
 
     @property
     def vertices(self) -> np.ndarray:
@@ -220,6 +369,21 @@ class Mesh:
         Shape (num_triangles, 3), int64, read-only.
         """
         return self._triangles
+
+    @property
+    def box(self) -> np.ndarray | None:
+        """Periodic box, rows a, b, c, shape (3, 3), float64, nm, read-only; None without one."""
+        return self._box
+
+    @functools.cached_property
+    def corner_positions(self) -> np.ndarray:
+        """Corners of every triangle, in a box those beside the first as its nearest images.
+
+        Shape (num_triangles, 3 corners, 3), float64, nm, read-only.
+        """
+        corners = periodic.corner_positions(self._vertices, self._triangles, self._box)
+        corners.flags.writeable = False
+        return corners
 
     @functools.cached_property
     def edges(self) -> np.ndarray:
@@ -249,32 +413,113 @@ class Mesh:
         return len(self._triangles)
 
     @functools.cached_property
+    def border_loops(self) -> list[np.ndarray]:
+        """The borders, as the vertices round each: none if the mesh is closed.
+
+        In the direction in which the triangles at the border name them, the surface on the left
+        seen from the side of the normals. Each loop begins with its lowest vertex, and loops are in
+        the order of those; int64, read-only.
+        """
+        loops = geometry.border_loops(self._triangles)
+        for loop in loops:
+            loop.flags.writeable = False
+        return loops
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether there is no border. A surface that spans its periodic box may be closed."""
+        return not self.border_loops
+
+    @functools.cached_property
     def area(self) -> float:
         """Total area A = Σ_t |AB × AC| / 2 (B2), nm²."""
-        return geometry.surface_area(self._vertices, self._triangles)
+        return geometry.surface_area(self.corner_positions)
 
     @functools.cached_property
     def volume(self) -> float:
-        """Enclosed volume V = Σ_t A · (B × C) / 6 (B3, B4), summed over components, nm³."""
-        return geometry.volume_enclosed(self._vertices, self._triangles)
+        """Enclosed volume V = Σ_t A · (B × C) / 6 (B3, B4), summed over components, nm³.
+
+        Raises
+        ------
+        MeshError
+            If the mesh has a border, or spans its periodic box: there is no inside then.
+        """
+        if not self.is_closed:
+            loop = self.border_loops[0]
+            raise MeshError(
+                f"Mesh.volume: the mesh is open and encloses no volume; it has "
+                f"{len(self.border_loops)} border(s), the first one of the {len(loop)} vertices "
+                f"{', '.join(map(str, loop[:4].tolist()))} …"
+            )
+        vertices = self._vertices
+        if self._box is not None:
+            vertices, part, spanning = self._unfolded
+            if spanning.any():
+                raise MeshError(
+                    "Mesh.volume: the part of the mesh with vertex "
+                    f"{np.flatnonzero(spanning[part])[0]} spans its periodic box and encloses no "
+                    "volume"
+                )
+        return geometry.volume_enclosed(vertices, self._triangles)
 
     @property
     def reduced_volume(self) -> float:
-        """Volume over that of the sphere of equal total area, v = 6 √π V / A^{3/2}; at most 1."""
+        """Volume over that of the sphere of equal total area, v = 6 √π V / A^{3/2}; at most 1.
+
+        Raises
+        ------
+        MeshError
+            As `volume`.
+        """
         return geometry.reduced_volume(self.area, self.volume)
 
     @property
     def euler_characteristic(self) -> int:
-        """num_vertices − num_edges + num_triangles: 2 for a sphere, summed over components."""
+        """num_vertices − num_edges + num_triangles, summed over components.
+
+        2 for a sphere, 1 for a disk, 0 for a torus, a tube, or a sheet that spans its box.
+        """
         return self.num_vertices - len(self.edges) + self.num_triangles
+
+    @property
+    def genus(self) -> int:
+        """The number of handles, summed over components: 0 for spheres and disks, 1 for a torus.
+
+        From χ = Σ (2 − 2 g − borders). In a periodic box, that of the surface with its images
+        identified: 1 for a sheet, 3 for `schwarz_p`.
+        """
+        borders = len(self.border_loops)
+        return (2 * self.num_components - borders - self.euler_characteristic) // 2
 
     @functools.cached_property
     def num_components(self) -> int:
-        """The number of closed surfaces that the mesh consists of."""
+        """The number of connected surfaces that the mesh consists of."""
         return geometry.component_count(self.num_vertices, self.edges)
 
+    @functools.cached_property
+    def _unfolded(self):
+        return periodic.unfolded(self._vertices, self.edges, self._box)
+
+    def unfolded(self) -> tuple[np.ndarray, np.ndarray]:
+        """The surface as it looks without a box: whole triangles, to draw or to write.
+
+        A vertex of triangles on different sides of the box appears once for each of its images, so
+        a sheet that spans the box gets borders. Other parts stay closed.
+
+        Returns
+        -------
+        vertices : ndarray
+            Shape (num_images, 3), nm; the vertices of the mesh first.
+        triangles : ndarray of int
+            Shape (num_triangles, 3), in the order of the mesh.
+        """
+        if self._box is None:
+            return self._vertices, self._triangles
+        vertices, _, _ = self._unfolded
+        return periodic.cut(vertices, self._triangles, self._box)
+
     def scaled(self, factor) -> Mesh:
-        """The mesh with coordinates multiplied by a factor, x → s x, about the origin.
+        """The mesh with coordinates multiplied by a factor, x → s x, about the origin, and its box.
 
         Parameters
         ----------
@@ -287,7 +532,8 @@ class Mesh:
         MeshError
             If the factors are not finite numbers other than 0, or not one or three.
         """
-        return Mesh(transform.scaled(self._vertices, factor), self._triangles)
+        vertices, box = transform.scaled(self._vertices, factor, self._box)
+        return Mesh(vertices, self._triangles, box)
 
     def translated(self, displacement) -> Mesh:
         """The mesh moved by a displacement.
@@ -302,7 +548,8 @@ class Mesh:
         MeshError
             If the displacement is not three finite lengths.
         """
-        return Mesh(transform.translated(self._vertices, displacement), self._triangles)
+        vertices = transform.translated(self._vertices, displacement)
+        return Mesh(vertices, self._triangles, self._box)
 
     def rotated(self, rotation) -> Mesh:
         """The mesh rotated about the origin, x → R x.
@@ -315,8 +562,9 @@ class Mesh:
         Raises
         ------
         MeshError
-            If R is not a rotation matrix.
+            If R is not a rotation matrix, or the mesh has a periodic box, which cannot turn.
         """
+        self._refuse_box("Mesh.rotated")
         return Mesh(transform.rotated(self._vertices, rotation), self._triangles)
 
     def deformed(self, l, m, amplitude) -> Mesh:
@@ -337,8 +585,9 @@ class Mesh:
         ------
         MeshError
             If there is no such mode, the amplitude is not finite, a vertex lies at the origin, or
-            the deformation would move a vertex to the origin or beyond.
+            the deformation would move a vertex to the origin or beyond; if the mesh has a box.
         """
+        self._refuse_box("Mesh.deformed")
         return Mesh(transform.deformed(self._vertices, l, m, amplitude), self._triangles)
 
     def oblate(self, reduced_volume) -> Mesh:
@@ -356,7 +605,7 @@ class Mesh:
         Raises
         ------
         MeshError
-            If the reduced volume is out of this range.
+            If the reduced volume is out of this range, or the mesh is open or has a box.
         """
         return self._spheroid(reduced_volume, False, "Mesh.oblate")
 
@@ -368,8 +617,18 @@ class Mesh:
         return self._spheroid(reduced_volume, True, "Mesh.prolate")
 
     def _spheroid(self, reduced_volume, prolate: bool, where: str) -> Mesh:
+        self._refuse_box(where)
         arrays = self._vertices, self._triangles
+        # An open mesh has no volume, and says so.
+        _ = self.volume
         return Mesh(transform.spheroid(*arrays, reduced_volume, prolate, where), self._triangles)
+
+    def _refuse_box(self, where: str) -> None:
+        if self._box is not None:
+            raise MeshError(
+                f"{where}: the mesh has a periodic box; transform Mesh(*mesh.unfolded()), which "
+                "has none"
+            )
 
     def fluctuating(self, softness, seed=0, duration=6.5) -> Mesh:
         """A sphere with the same triangles after its vertices have flowed for a short time.
@@ -393,9 +652,11 @@ class Mesh:
         Raises
         ------
         MeshError
-            If an argument is out of range; if the mesh is no sphere; if triangles folded over, as
-            happens to large meshes (4002 vertices) at the paper's least softness, 0.037.
+            If an argument is out of range; if the mesh is no sphere or has a box; if triangles
+            folded over, as happens to large meshes (4002 vertices) at the paper's least softness,
+            0.037.
         """
+        self._refuse_box("Mesh.fluctuating")
         return Mesh(fluctuate.fluctuating(self, softness, seed, duration), self._triangles)
 
     def softness(self, min_height) -> float:
@@ -415,7 +676,7 @@ class Mesh:
             If d is negative or not a finite length.
         """
         height = inputs.not_negative(
-            length(min_height, "Mesh.softness", "min_height"), "Mesh.softness", "min_height"
+            _length(min_height, "Mesh.softness", "min_height"), "Mesh.softness", "min_height"
         )
         return height**2 / self._mean_height_squared
 
@@ -452,13 +713,13 @@ class Mesh:
         -------
         openmm.app.Topology
             One chain; one atom ``V`` without element per vertex, in order, each in a residue
-            ``MEM`` of its own; one bond per edge, in the order of `edges`.
+            ``MEM`` of its own; one bond per edge, in the order of `edges`; the periodic box.
 
         Notes
         -----
         The PDB writer of OpenMM 8.6 loses some bonds of atoms with more than four; PDBx does not.
         """
-        return on_openmm.topology(self.num_vertices, self.edges)
+        return on_openmm.topology(self.num_vertices, self.edges, self._box)
 
     def energy(self, force) -> float:
         """The energy of one force on this mesh, on OpenMM's Reference platform.
@@ -466,28 +727,37 @@ class Mesh:
         Parameters
         ----------
         force : openmm.Force
-            Any force whose particle i is vertex i. It is copied, so that it may belong to a System
-            already and stays as it is.
+            Any force whose particle i is vertex i, in the box of the mesh if it has one. It is
+            copied, so that it may belong to a System already and stays as it is.
 
         Returns
         -------
         float
             Energy, kJ/mol.
         """
-        return on_openmm.energy(self._vertices, force)
+        return on_openmm.energy(self._vertices, force, self._box)
 
     def __repr__(self) -> str:
-        parts = "" if self.num_components == 1 else f", {self.num_components} components"
-        return (
-            f"Mesh({self.num_vertices} vertices, {self.num_triangles} triangles{parts}, "
-            f"area={self.area:.6g} nm², volume={self.volume:.6g} nm³)"
-        )
+        words = [f"{self.num_vertices} vertices", f"{self.num_triangles} triangles"]
+        if self.num_components > 1:
+            words.append(f"{self.num_components} components")
+        if not self.is_closed:
+            words.append(f"{len(self.border_loops)} border{'s' * (len(self.border_loops) > 1)}")
+        words.append(f"area={self.area:.6g} nm²")
+        if self._box is not None:
+            words.append(f"box={self._box.tolist()} nm")
+        elif self.is_closed:
+            words.append(f"volume={self.volume:.6g} nm³")
+        return f"Mesh({', '.join(words)})"
 
     def __eq__(self, other) -> bool:
         if not isinstance(other, Mesh):
             return NotImplemented
-        return np.array_equal(self._triangles, other._triangles) and np.array_equal(
-            self._vertices, other._vertices
+        return (
+            np.array_equal(self._triangles, other._triangles)
+            and np.array_equal(self._vertices, other._vertices)
+            # None is equal to itself only.
+            and np.array_equal(self._box, other._box)
         )
 
     def __hash__(self) -> int:
@@ -496,4 +766,4 @@ class Mesh:
 
     def __reduce__(self):
         # Copies and pickles go through the constructor, which makes their arrays read-only too.
-        return Mesh, (self._vertices, self._triangles)
+        return Mesh, (self._vertices, self._triangles, self._box)

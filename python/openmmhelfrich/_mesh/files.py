@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,7 @@ from ..errors import MeshError
 from . import obj, off, other, ply, repair, stl, vtk_legacy, vtk_xml
 from .source import Source
 
-__all__ = ["explained", "read", "write"]
+__all__ = ["explained", "read", "warn_of_cracks", "write"]
 
 _READERS = {
     ".ply": ply.read,
@@ -30,8 +31,8 @@ _TEXT_ONLY = {".obj": obj.write, ".off": off.write, ".stl": stl.write}
 
 def read(
     path, triangulate: bool = False, merge: float | None = None, drop_unused: bool = False
-) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices and triangles of a file, not yet validated as a mesh.
+) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
+    """Vertices, triangles and box of a file, not yet validated as a mesh.
 
     Parameters
     ----------
@@ -46,6 +47,8 @@ def read(
         Shape (num_vertices, 3), float64, the numbers of the file.
     triangles : ndarray
         Shape (num_triangles, 3), int64.
+    box : ndarray or None
+        Shape (3, 3), the numbers of the file; only PLY files have one.
 
     Raises
     ------
@@ -77,7 +80,7 @@ def read(
             raise MeshError(f"Mesh.read: {path}: {reason}") from None
     if drop_unused:
         vertices, triangles = repair.drop(vertices, triangles)
-    return vertices, triangles
+    return vertices, triangles, None if source.box is None else np.reshape(source.box, (3, 3))
 
 
 def explained(path, reason: MeshError, vertices: np.ndarray, triangles: np.ndarray) -> MeshError:
@@ -86,16 +89,32 @@ def explained(path, reason: MeshError, vertices: np.ndarray, triangles: np.ndarr
     return MeshError(f"Mesh.read: {path}: {text}{repair.hints(vertices, triangles)}")
 
 
+def warn_of_cracks(path, mesh) -> None:
+    """Say so if borders of a mesh may be no borders, but vertices that a program has doubled."""
+    found = "" if mesh.is_closed else repair.doubled(mesh.vertices, mesh.triangles)
+    if found:
+        warnings.warn(
+            f"Mesh.read: {path}: the mesh is open, with {len(mesh.border_loops)} border(s){found}",
+            stacklevel=3,
+        )
+
+
 def write(
     path,
     vertices: np.ndarray,
     triangles: np.ndarray,
     point_data: dict[str, np.ndarray] | None = None,
     binary: bool | None = None,
+    box: np.ndarray | None = None,
 ) -> None:
     """Write a mesh in the format of the extension; arguments and errors as for `Mesh.write`."""
     path = Path(path)
     extension = path.suffix.lower()
+    if box is not None and extension != ".ply":
+        raise MeshError(
+            f"Mesh.write: {path}: {extension} has no room for the periodic box of the mesh; write "
+            ".ply, or Mesh(*mesh.unfolded()), whose triangles are whole and which has no box"
+        )
     if extension in _TEXT_ONLY:
         if binary:
             raise MeshError(
@@ -112,7 +131,8 @@ def write(
         return
     data = _checked(point_data or {}, len(vertices))
     if extension in _EITHER:
-        write_whole(path, _EITHER[extension](vertices, triangles, data, bool(binary)))
+        options = {} if box is None else {"box": box}
+        write_whole(path, _EITHER[extension](vertices, triangles, data, bool(binary), **options))
     elif extension in _BINARY_ONLY:
         if binary is not None and not binary:
             raise MeshError(

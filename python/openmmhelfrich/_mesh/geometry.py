@@ -1,7 +1,8 @@
-"""Areas, volumes, edges and components, as functions of arrays.
+"""Areas, volumes, edges, borders and components, as functions of arrays.
 
-`vertices` is float64 of shape (num_vertices, 3), nm; `triangles` is int64 of shape
-(num_triangles, 3), counter-clockwise seen from outside. Nothing here validates: `Mesh` has done so.
+`vertices` is float64 of shape (num_vertices, 3), nm; `corners` are those of triangles, shape
+(num_triangles, 3, 3), nm; `triangles` is int64 of shape (num_triangles, 3), counter-clockwise seen
+from outside. Nothing here validates: `Mesh` has done so.
 Equation numbers are those of doi:10.1103/PhysRevE.108.015301.
 """
 
@@ -12,6 +13,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 __all__ = [
+    "border_loops",
     "component_count",
     "edges_of",
     "reduced_volume",
@@ -20,9 +22,9 @@ __all__ = [
 ]
 
 
-def surface_area(vertices: np.ndarray, triangles: np.ndarray) -> float:
+def surface_area(corners: np.ndarray) -> float:
     """Total area A = Σ_t |AB × AC| / 2 (B2), nm²."""
-    a, b, c = (vertices[triangles[:, corner]] for corner in range(3))
+    a, b, c = (corners[:, corner] for corner in range(3))
     return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)
 
 
@@ -45,6 +47,26 @@ def edges_of(triangles: np.ndarray) -> np.ndarray:
     sides = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     sides.sort(axis=1)
     return np.unique(sides, axis=0)
+
+
+def border_loops(triangles: np.ndarray) -> list[np.ndarray]:
+    """The borders as loops of vertices, in the direction of their triangles.
+
+    Each begins with its lowest vertex, and loops are in the order of those.
+    """
+    start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+    count = triangles.max() + 1
+    alone = ~np.isin(start * count + end, end * count + start)
+    following = dict(zip(start[alone].tolist(), end[alone].tolist(), strict=True))
+    loops = []
+    for first in sorted(following):
+        loop = []
+        while first in following:
+            loop.append(first)
+            first = following.pop(first)
+        if loop:
+            loops.append(np.array(loop))
+    return loops
 
 
 def component_count(num_vertices: int, edges: np.ndarray) -> int:

@@ -9,7 +9,10 @@ import numpy as np
 from .._units import length_array
 from ..errors import MeshError
 
-__all__ = ["integer", "not_negative", "numbers", "triangle_array", "vertex_array"]
+__all__ = ["box_array", "integer", "not_negative", "numbers", "triangle_array", "vertex_array"]
+
+# A box leans over by half of its length and a rounding error.
+_ROUNDED = 1 + 1e-6
 
 
 def vertex_array(vertices) -> np.ndarray:
@@ -46,6 +49,23 @@ def triangle_array(triangles) -> np.ndarray:
     if given.dtype.kind == "u" and given.max() > np.iinfo(np.int64).max:
         raise MeshError(f"Mesh: triangles name vertex {given.max()}, which cannot exist")
     return np.array(given, dtype=np.int64, order="C")
+
+
+def box_array(box, where: str) -> np.ndarray:
+    """Box vectors as a read-only float64 array of shape (3, 3), nm, in OpenMM's reduced form."""
+    rows = length_array(box, where, "box")
+    if rows.shape != (3, 3) or not np.isfinite(rows).all():
+        raise MeshError(f"{where}: box must be three vectors a, b, c, shape (3, 3), got {box!r}")
+    (ax, *ay), (bx, by, bz), (cx, cy, cz) = rows
+    upright = not (any(ay) or bz) and min(ax, by, cz) > 0
+    if not upright or 2 * max(abs(bx), abs(cx)) > ax * _ROUNDED or 2 * abs(cy) > by * _ROUNDED:
+        raise MeshError(
+            f"{where}: box must have the vectors (ax, 0, 0), (bx, by, 0), (cx, cy, cz) with ax, by "
+            f"and cz above 0, |bx| and |cx| at most ax / 2 and |cy| at most by / 2, got "
+            f"{rows.tolist()} nm; openmm.app.internal.unitcell.reducePeriodicBoxVectors makes it so"
+        )
+    rows.flags.writeable = False
+    return rows.view()
 
 
 def numbers(value, where: str, name: str) -> np.ndarray:

@@ -12,7 +12,7 @@ import numpy as np
 __all__ = ["energy", "present", "topology"]
 
 
-def topology(num_vertices: int, edges: np.ndarray):
+def topology(num_vertices: int, edges: np.ndarray, box: np.ndarray | None):
     """What `Mesh.topology` returns: one chain, an atom per vertex, a bond per edge."""
     from openmm import app
 
@@ -24,10 +24,12 @@ def topology(num_vertices: int, edges: np.ndarray):
     atoms = [result.addAtom("V", None, residue) for residue in residues]
     for i, j in edges.tolist():
         result.addBond(atoms[i], atoms[j])
+    if box is not None:
+        result.setPeriodicBoxVectors(box)
     return result
 
 
-def energy(vertices: np.ndarray, force) -> float:
+def energy(vertices: np.ndarray, force, box: np.ndarray | None) -> float:
     """What `Mesh.energy` returns: the energy of a copy of the force on the Reference platform."""
     import openmm
     from openmm import unit
@@ -35,6 +37,8 @@ def energy(vertices: np.ndarray, force) -> float:
     system = openmm.System()
     for _ in range(len(vertices)):
         system.addParticle(1.0)
+    if box is not None:
+        system.setDefaultPeriodicBoxVectors(*box)
     system.addForce(copy.deepcopy(force))
     platform = openmm.Platform.getPlatformByName("Reference")
     context = openmm.Context(system, openmm.VerletIntegrator(0.001), platform)
@@ -43,12 +47,15 @@ def energy(vertices: np.ndarray, force) -> float:
     return state.getPotentialEnergy().value_in_unit(unit.kilojoule_per_mole)
 
 
-def present(context, force) -> tuple[np.ndarray, np.ndarray]:
-    """What `Mesh.from_context` makes a mesh of: vertices, nm, and triangles of vertices."""
+def present(context, force) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
+    """What `Mesh.from_context` makes a mesh of: vertices, triangles, and the box."""
     from openmm import unit
 
     corners = force.getTrianglesInContext(context)
     particles, triangles = np.unique(corners, return_inverse=True)
-    positions = context.getState(getPositions=True).getPositions(asNumpy=True)
-    vertices = positions.value_in_unit(unit.nanometer)[particles]
-    return vertices, triangles.reshape(-1, 3)
+    state = context.getState(getPositions=True)
+    vertices = state.getPositions(asNumpy=True).value_in_unit(unit.nanometer)[particles]
+    box = None
+    if force.usesPeriodicBoundaryConditions():
+        box = state.getPeriodicBoxVectors(asNumpy=True).value_in_unit(unit.nanometer)
+    return vertices, triangles.reshape(-1, 3), box

@@ -28,6 +28,8 @@ _TYPES = {
     **dict.fromkeys(("double", "float64"), "f8"),
 }
 _BYTE_ORDERS = {"binary_little_endian": "<", "binary_big_endian": ">"}
+# The line of the header that has the periodic box, before its nine components.
+_BOX = ["comment", "openmm-helfrich", "box"]
 _CORNERS = ("vertex_indices", "vertex_index")
 
 
@@ -68,11 +70,12 @@ def write(
     triangles: np.ndarray,
     point_data: dict[str, np.ndarray] | None = None,
     binary: bool = False,
+    box: np.ndarray | None = None,
 ) -> bytes:
     """A PLY file of doubles; as text, each with the fewest digits that give it back exactly.
 
     Values of the vertices are properties after the coordinates; vectors are three, ``name_x`` and
-    so on.
+    so on. The periodic box is a comment.
     """
     columns = {axis: vertices[:, k] for k, axis in enumerate("xyz")}
     for name, values in (point_data or {}).items():
@@ -89,6 +92,7 @@ def write(
         "ply",
         f"format {'binary_little_endian' if binary else 'ascii'} 1.0",
         "comment openmm-helfrich mesh, nm",
+        *([] if box is None else [" ".join([*_BOX, *map(repr, box.ravel().tolist())])]),
         f"element vertex {len(vertices)}",
         *(f"property double {name}" for name in columns),
         f"element face {len(triangles)}",
@@ -114,6 +118,11 @@ def _read_header(source: Source) -> list[_Element]:
         words = source.need("the rest of the header")
         if words == ["end_header"]:
             break
+        if words[:3] == _BOX:
+            if len(words) != 12:
+                raise source.error(f"expected the 9 components of a box, got {shorten(words)}")
+            source.box = [*source.point(words[3:6], "a"), *source.point(words[6:9], "b")]
+            source.box += source.point(words[9:], "c")
         if words[0] in ("comment", "obj_info"):
             continue
         if words[0] == "element" and len(words) == 3:

@@ -38,12 +38,15 @@ class Source:
         The contents with and without a byte-order mark.
     by_line : bool
         Whether the line that was read last says where an error is.
+    box : list of float or None
+        The nine components of the periodic box, nm, where a reader has found one.
     """
 
     def __init__(self, path, data: bytes, triangulate: bool = False):
         self.path = path
         self.line = 0
         self.by_line = True
+        self.box = None
         self.triangulate = triangulate
         self.raw = data
         self.data = data.removeprefix(_UTF8_MARK)

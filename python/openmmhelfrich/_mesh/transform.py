@@ -17,15 +17,18 @@ from .inputs import integer, numbers
 __all__ = ["deformed", "rotated", "scaled", "spheroid", "translated"]
 
 
-def scaled(vertices: np.ndarray, factor) -> np.ndarray:
-    """Multiply, x → s x, with one factor or one per axis."""
+def scaled(vertices: np.ndarray, factor, box: np.ndarray | None = None):
+    """Multiply vertices and box, x → s x, with one factor or one per axis."""
     factors = numbers(factor, "Mesh.scaled", "factor")
     if factors.shape not in ((), (3,)) or not (np.isfinite(factors) & (factors != 0)).all():
         raise MeshError(
             "Mesh.scaled: factor must be one number or three (x, y, z), finite and not 0, "
             f"got {factor!r}"
         )
-    return vertices * factors
+    if box is not None:
+        # A box vector may point the other way; its own axis' component is to be above 0.
+        box = box * factors * np.sign(factors * np.ones(3))[:, np.newaxis]
+    return vertices * factors, box
 
 
 def translated(vertices: np.ndarray, displacement) -> np.ndarray:
@@ -122,7 +125,7 @@ def spheroid(
 
     def excess(log_aspect: float) -> float:
         shape = stretched(log_aspect)
-        area, volume = surface_area(shape, triangles), volume_enclosed(shape, triangles)
+        area, volume = surface_area(shape[triangles]), volume_enclosed(shape, triangles)
         return reduced_volume(area, volume) - target
 
     largest = excess(0.0) + target
@@ -139,5 +142,5 @@ def spheroid(
         bound *= 2
     log_aspect = brentq(excess, 0.0, bound, xtol=1e-15, rtol=4 * np.finfo(float).eps)
     shape = stretched(log_aspect)
-    wanted = surface_area(centred, triangles)
-    return centre + shape * np.sqrt(wanted / surface_area(shape, triangles))
+    wanted = surface_area(centred[triangles])
+    return centre + shape * np.sqrt(wanted / surface_area(shape[triangles]))

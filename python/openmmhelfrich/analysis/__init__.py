@@ -13,6 +13,7 @@ chunks.
 
 from . import theory
 from .correlation import autocorrelation, autocorrelation_time, mode_autocorrelation
+from .crossings import crossings
 from .curvature import VertexQuantities, mean_curvature, vertex_quantities
 from .density import density_modes, structure_factor
 from .elements import edge_lengths, triangle_areas, triangle_heights
@@ -54,6 +55,7 @@ __all__ = [
     "autocorrelation",
     "autocorrelation_time",
     "blocking",
+    "crossings",
     "density_modes",
     "edge_lengths",
     "fit_damping",

@@ -7,6 +7,8 @@ import openmm
 import openmm.app
 from openmm import unit
 
+from .._mesh.inputs import box_array
+
 # Frames are worked on in chunks of about this many numbers, which bounds the memory and stays
 # close to the processor.
 _CHUNK = 1 << 20
@@ -34,6 +36,22 @@ def positions_in(source):
                 "vertices: the State has no positions; take it with getState(getPositions=True)"
             ) from None
     return source
+
+
+def box_of(box, *sources):
+    """The periodic box of an argument, nm, or else that of a Mesh among others, or None.
+
+    Raises
+    ------
+    TypeError
+        A Quantity that is no length.
+    ValueError
+        Vectors that are not three, or not of OpenMM's reduced form.
+    """
+    if box is None:
+        boxes = (getattr(source, "box", None) for source in sources)
+        return next((box for box in boxes if box is not None), None)
+    return box_array(box, "analysis")
 
 
 def over_frames(work, vertices, triangles=None, cost=None):

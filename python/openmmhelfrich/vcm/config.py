@@ -259,7 +259,7 @@ def _start_mesh(settings: Settings, folder: Path, random) -> tuple[Mesh, int]:
     if path.suffix.lower() not in (".ply", ".msh", ".obj"):
         raise settings.error("MeshFile", f"expected a .ply, .msh or .obj file, got {path.name!r}")
     try:
-        vertices, triangles = files.read(path)
+        vertices, triangles, _ = files.read(path)
         mesh = Mesh(vertices, triangles)
         num_reversed = _reversals(triangles, mesh.triangles)
         mesh = mesh.scaled(settings["Scale"]).scaled(settings["XYZscale"])

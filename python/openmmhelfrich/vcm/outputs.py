@@ -317,7 +317,7 @@ class Outputs:
         columns["potential (kJ/mol)"] = frame.potential
         columns["kinetic (kJ/mol)"] = frame.kinetic
         for membrane, vertices, triangles in self._parts(frame):
-            area = geometry.surface_area(vertices, triangles)
+            area = geometry.surface_area(vertices[triangles])
             columns[f"area {membrane.label} (nm^2)"] = area
             columns[f"volume {membrane.label} (nm^3)"] = geometry.volume_enclosed(
                 vertices, triangles

@@ -1,0 +1,126 @@
+"""Nearest images in a periodic box, as the core finds them (``src/mesh/cell.rs``).
+
+A box is an array of three rows a, b, c, nm, in OpenMM's reduced form: (ax, 0, 0), (bx, by, 0) and
+(cx, cy, cz), none of which leans over by more than half of another's length. Functions of corners
+take a box of None for positions that are what they are.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import breadth_first_order, connected_components
+
+__all__ = ["corner_positions", "cut", "half_width", "nearest", "unfolded", "wrapped"]
+
+
+def half_width(box: np.ndarray) -> float:
+    """Half of the least distance between opposite faces, nm: what is shorter has one image."""
+    a, b, c = box
+    faces = [np.linalg.norm(np.cross(*pair)) for pair in ((b, c), (c, a), (a, b))]
+    return float(abs(np.linalg.det(box)) / max(faces) / 2)
+
+
+def nearest(separations: np.ndarray, box: np.ndarray | None) -> np.ndarray:
+    """Separations, shape (…, 3), as their shortest images; of long ones, as some short image."""
+    return _reduced(separations, box, np.rint)
+
+
+def wrapped(positions: np.ndarray, box: np.ndarray | None) -> np.ndarray:
+    """Positions, shape (…, 3), in the brick of sides ax, by and cz that begins at the origin."""
+    return _reduced(positions, box, np.floor)
+
+
+def corner_positions(
+    vertices: np.ndarray, triangles: np.ndarray, box: np.ndarray | None
+) -> np.ndarray:
+    """Corners of triangles, those beside the first as its nearest images.
+
+    Parameters
+    ----------
+    vertices : ndarray
+        Shape (…, num_vertices, 3), nm.
+    triangles : ndarray of int
+        Shape (num_triangles, 3).
+    box : ndarray or None
+
+    Returns
+    -------
+    ndarray
+        Shape (…, num_triangles, 3 corners, 3), nm.
+    """
+    corners = vertices[..., triangles, :]
+    if box is None:
+        return corners
+    first = corners[..., :1, :]
+    return first + nearest(corners - first, box)
+
+
+def unfolded(
+    vertices: np.ndarray, edges: np.ndarray, box: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Vertices moved by box vectors so that edges of a tree are nearest images.
+
+    Parameters
+    ----------
+    vertices : ndarray
+        Shape (num_vertices, 3), nm.
+    edges : ndarray of int
+        Shape (num_edges, 2).
+    box : ndarray
+
+    Returns
+    -------
+    vertices : ndarray
+        Shape (num_vertices, 3), nm. The first vertex of each part is where it was.
+    part : ndarray of int
+        The connected part of each vertex, shape (num_vertices,).
+    spanning : ndarray of bool
+        Whether each part comes back to itself through the box, shape (num_parts,).
+    """
+    count = len(vertices)
+    ones = np.ones(len(edges), dtype=np.int8)
+    graph = coo_array((ones, (edges[:, 0], edges[:, 1])), shape=(count, count)).tocsr()
+    num_parts, part = connected_components(graph, directed=False)
+    result = vertices.copy()
+    depth = np.zeros(count, dtype=np.intp)
+    parent = np.full(count, -1)
+    for root in np.unique(part, return_index=True)[1]:
+        order, before = breadth_first_order(graph, root, directed=False)
+        parent[order[1:]] = before[order[1:]]
+        for vertex in order[1:]:
+            depth[vertex] = depth[before[vertex]] + 1
+    for level in range(1, depth.max() + 1):
+        here = np.flatnonzero(depth == level)
+        base = result[parent[here]]
+        result[here] = base + nearest(vertices[here] - base, box)
+    along = result[edges[:, 1]] - result[edges[:, 0]]
+    gap = np.abs(along - nearest(along, box)).max(axis=1)
+    spanning = np.zeros(num_parts, dtype=bool)
+    spanning[part[edges[gap > half_width(box), 0]]] = True
+    return result, part, spanning
+
+
+def cut(
+    vertices: np.ndarray, triangles: np.ndarray, box: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Unfolded vertices, then images of them where triangles need those, and triangles of both."""
+    corners = corner_positions(vertices, triangles, box)
+    shifts = corners - vertices[triangles]
+    steps = np.rint(np.linalg.solve(box.T, shifts.reshape(-1, 3).T).T).astype(int)
+    names = np.column_stack([triangles.reshape(-1), steps])
+    moved = steps.any(axis=1)
+    images, number = np.unique(names[moved], axis=0, return_inverse=True)
+    result = triangles.reshape(-1).copy()
+    result[moved] = len(vertices) + number.reshape(-1)
+    extra = vertices[images[:, 0]] + images[:, 1:] @ box
+    return np.concatenate([vertices, extra]), result.reshape(-1, 3)
+
+
+def _reduced(vectors: np.ndarray, box: np.ndarray | None, count) -> np.ndarray:
+    if box is None:
+        return vectors
+    rest = np.array(vectors, dtype=float)
+    for axis in (2, 1, 0):
+        rest -= count(rest[..., axis] / box[axis, axis])[..., np.newaxis] * box[axis]
+    return rest
