@@ -1,26 +1,30 @@
 //! The C interface to [`crate::mesh`].
 
 use super::{guarded, slice};
-use crate::mesh::orientation;
+use crate::mesh::{Cell, orientation};
 use std::ffi::c_int;
 use std::slice as slices;
 
 /// Validate a mesh and turn its triangles, in place, so that each component encloses positive volume.
 ///
 /// # Safety
-/// `vertices` must hold 3 `num_vertices` and `triangles` 3 `num_triangles` values.
+/// `vertices` must hold 3 `num_vertices` and `triangles` 3 `num_triangles` values, `cell` 9 (a periodic box, nm) or be
+/// null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn Helfrich_Mesh_orient(
     num_vertices: i64,
     vertices: *const f64,
     num_triangles: i64,
     triangles: *mut i64,
+    cell: *const f64,
 ) -> c_int {
     guarded("Mesh", || {
         let vertices = unsafe { slice(vertices.cast::<[f64; 3]>(), num_vertices as usize) };
         let given =
             unsafe { slice(triangles.cast_const().cast::<[i64; 3]>(), num_triangles as usize) };
-        let oriented = orientation::oriented(vertices, given)?;
+        let cell =
+            unsafe { cell.cast::<[[f64; 3]; 3]>().as_ref() }.map(|v| Cell::new(*v)).transpose()?;
+        let oriented = orientation::oriented(vertices, given, cell.as_ref())?;
         let target = triangles.cast::<[i64; 3]>();
         unsafe { slices::from_raw_parts_mut(target, oriented.len()) }.copy_from_slice(&oriented);
         Ok(())

@@ -2,7 +2,8 @@
 //! is the opposite.
 
 use super::Triangulation;
-use super::geometry::Totals;
+use super::cell::Cell;
+use super::geometry::{Totals, Vec3};
 use super::topology::{Topology, checked_indices, neighbours};
 use crate::error::{Error, Result};
 use nalgebra::Vector3;
@@ -12,12 +13,18 @@ use std::collections::HashMap;
 ///
 /// Neighbours are made to agree by walking over the surface, so the shape need not be star-shaped;
 /// what remains, one sign for each component, is decided by the sign of the component's volume.
-/// The order of the triangles and the first corner of each stay as they are.
+/// The order of the triangles and the first corner of each stay as they are. In a periodic box, corners are nearest
+/// images of each other, and a component that spans the box keeps the orientation of its first triangle.
 ///
 /// # Errors
 /// All of [`Topology::new`], and: coordinates that are not finite, vertices without triangles or in
-/// the same place, triangles without area, surfaces that are not orientable.
-pub fn oriented(vertices: &[[f64; 3]], triangles: &[[i64; 3]]) -> Result<Vec<[i64; 3]>> {
+/// the same place, triangles without area, surfaces that are not orientable, edges that are not shorter than half the
+/// width of the box.
+pub fn oriented(
+    vertices: &[[f64; 3]],
+    triangles: &[[i64; 3]],
+    cell: Option<&Cell>,
+) -> Result<Vec<[i64; 3]>> {
     for (vertex, position) in vertices.iter().enumerate() {
         if !position.iter().all(|x| x.is_finite()) {
             return Err(Error::NonFiniteVertex { vertex, position: *position });
@@ -40,10 +47,9 @@ pub fn oriented(vertices: &[[f64; 3]], triangles: &[[i64; 3]]) -> Result<Vec<[i6
                 .collect();
             Error::NonOrientable { edge: [shared[0], shared[1]], triangles }
         })?;
-        let origin = Vector3::from(vertices[corners[seed][0] as usize]);
+        let (places, spans) = in_one_piece(&component, &corners, vertices, cell)?;
         let mut volume = 0.0;
-        for &triangle in &component {
-            let [a, b, c] = corners[triangle].map(|v| Vector3::from(vertices[v as usize]) - origin);
+        for (&triangle, [a, b, c]) in component.iter().zip(places) {
             let normal = (b - a).cross(&(c - a));
             if !normal.norm_squared().is_finite() {
                 return Err(Error::OverflownTriangle { triangle, corners: corners[triangle] });
@@ -55,7 +61,7 @@ pub fn oriented(vertices: &[[f64; 3]], triangles: &[[i64; 3]]) -> Result<Vec<[i6
             volume += sign * a.dot(&normal);
         }
         for &triangle in &component {
-            if (flipped[triangle] == Some(true)) != (volume < 0.0) {
+            if (flipped[triangle] == Some(true)) != (volume < 0.0 && !spans) {
                 result[triangle].swap(1, 2);
             }
         }
@@ -116,6 +122,51 @@ fn walk(
     Ok(component)
 }
 
+/// The corners of the triangles of a component relative to its first one, nm, and whether it spans the box.
+///
+/// Each triangle but the first shares a corner with one before it.
+fn in_one_piece(
+    component: &[usize],
+    corners: &[[u32; 3]],
+    vertices: &[[f64; 3]],
+    cell: Option<&Cell>,
+) -> Result<(Vec<[Vec3; 3]>, bool)> {
+    let at = |vertex: u32| Vec3::from(vertices[vertex as usize]);
+    let first = corners[component[0]][0];
+    let Some(cell) = cell else {
+        let relative = |triangle: &usize| corners[*triangle].map(|v| at(v) - at(first));
+        return Ok((component.iter().map(relative).collect(), false));
+    };
+    let mut known = HashMap::from([(first, Vec3::zeros())]);
+    let (mut places, mut spans) = (Vec::with_capacity(component.len()), false);
+    for &triangle in component {
+        let trio = corners[triangle];
+        let from = (0..3).find(|&k| known.contains_key(&trio[k])).unwrap_or(0);
+        let begin = known[&trio[from]];
+        let place = trio.map(|v| {
+            let separation = at(v) - at(trio[from]);
+            begin + separation + cell.shift(cell.nearest(&separation))
+        });
+        for k in 0..3 {
+            let (edge, length) =
+                ([trio[k], trio[(k + 1) % 3]], (place[(k + 1) % 3] - place[k]).norm());
+            if !(length < cell.half_width()) {
+                return Err(Error::Contract(format!(
+                    "edge ({}, {}) is {length} nm long, but must be shorter than half the width of the periodic box, \
+                     {} nm, for its nearest image to be the one that is meant; take a larger box or a finer mesh",
+                    edge[0],
+                    edge[1],
+                    cell.half_width()
+                )));
+            }
+            let before = *known.entry(trio[k]).or_insert(place[k]);
+            spans |= (before - place[k]).norm() > cell.half_width();
+        }
+        places.push(place);
+    }
+    Ok((places, spans))
+}
+
 /// Every vertex must be used, and be the only one in its place.
 fn check_vertices(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<()> {
     let mut used = vec![false; vertices.len()];
@@ -151,7 +202,7 @@ mod tests {
                     corners.swap(1, 2);
                 }
             }
-            assert_eq!(oriented(&vertices, &mixed).unwrap(), good);
+            assert_eq!(oriented(&vertices, &mixed, None).unwrap(), good);
         }
     }
 
@@ -162,7 +213,7 @@ mod tests {
             triangles.iter().copied().chain(triangles.iter().map(|t| t.map(|v| v + 6))).collect();
         triangles.extend(triangles.clone().iter().map(|t| [t[0] + 6, t[2] + 6, t[1] + 6]));
         vertices.extend(vertices.clone().iter().map(|v| [v[0] + 5.0, v[1] * 2.0, v[2]]));
-        assert_eq!(oriented(&vertices, &triangles).unwrap(), good);
+        assert_eq!(oriented(&vertices, &triangles, None).unwrap(), good);
     }
 
     /// The minimal triangulation of the projective plane: ten triangles on six vertices.
@@ -182,7 +233,7 @@ mod tests {
         ];
         let vertices: Vec<_> =
             (0..6).map(|k| [f64::from(k), f64::from(k * k), f64::from(k * k * k)]).collect();
-        assert!(matches!(oriented(&vertices, &triangles), Err(Error::NonOrientable { .. })));
+        assert!(matches!(oriented(&vertices, &triangles, None), Err(Error::NonOrientable { .. })));
     }
 
     #[test]
@@ -213,17 +264,17 @@ mod tests {
     fn vertices_are_checked() {
         let (mut vertices, triangles) = octahedron();
         vertices.push([9.0, 9.0, 9.0]);
-        assert_eq!(oriented(&vertices, &triangles), Err(Error::UnusedVertex { vertex: 6 }));
+        assert_eq!(oriented(&vertices, &triangles, None), Err(Error::UnusedVertex { vertex: 6 }));
         vertices.pop();
         let kept = vertices[3];
         vertices[3] = vertices[1];
         assert!(matches!(
-            oriented(&vertices, &triangles),
+            oriented(&vertices, &triangles, None),
             Err(Error::RepeatedVertex { first: 1, second: 3, .. })
         ));
         vertices[3] = [kept[0], f64::NAN, 0.0];
         assert!(matches!(
-            oriented(&vertices, &triangles),
+            oriented(&vertices, &triangles, None),
             Err(Error::NonFiniteVertex { vertex: 3, .. })
         ));
     }
@@ -234,7 +285,7 @@ mod tests {
         let [a, b, c] = triangles[0].map(|v| v as usize);
         vertices[c] = std::array::from_fn(|k| 3.0 * vertices[a][k] - 2.0 * vertices[b][k]);
         assert!(matches!(
-            oriented(&vertices, &triangles),
+            oriented(&vertices, &triangles, None),
             Err(Error::DegenerateTriangle { triangle: 0, .. })
         ));
     }

@@ -27,7 +27,7 @@ def scaled(vertices: np.ndarray, factor, box: np.ndarray | None = None):
         )
     if box is not None:
         # A box vector may point the other way; its own axis' component is to be above 0.
-        box = box * factors * np.sign(factors * np.ones(3))[:, np.newaxis]
+        box = box * factors * np.sign(factors * np.ones(3))[:, np.newaxis] + 0.0
     return vertices * factors, box
 
 

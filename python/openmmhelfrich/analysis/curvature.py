@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ._arrays import dot, gather_sum, over_frames
+from .._mesh.periodic import corner_positions, nearest
+from ._arrays import box_of, dot, gather_sum, over_frames
 from .elements import edges_of
 
 SCHEMES = (
@@ -18,7 +19,10 @@ SCHEMES = (
 
 
 class VertexQuantities(NamedTuple):
-    """What `vertex_quantities` returns, shape (num_vertices, …) each; frames are an axis before."""
+    """What `vertex_quantities` returns, shape (num_vertices, …) each; frames are an axis before.
+
+    Curvatures are not defined at a border: `julicher`, `cotangent` and `umbrella` are NaN there.
+    """
 
     barycentric_area: np.ndarray
     """a_B = Σ_t a_t / 3 (B12), nm²."""
@@ -46,7 +50,7 @@ class VertexQuantities(NamedTuple):
 _VORONOI = ("GompperKroll", "JulicherVoronoi")
 
 
-def mean_curvature(vertices, triangles, scheme="Julicher"):
+def mean_curvature(vertices, triangles, scheme="Julicher", *, box=None):
     """Mean curvature H of every vertex, by one of the schemes of `BendingForce`.
 
     ========================= ===================== ======
@@ -70,15 +74,18 @@ def mean_curvature(vertices, triangles, scheme="Julicher"):
         Shape (num_vertices, 3) for one frame or (num_frames, num_vertices, 3), nm.
     triangles : array_like of int or Mesh
         Shape (num_triangles, 3), or (num_frames, num_triangles, 3) if each frame has its own;
-        counter-clockwise seen from outside, a closed surface.
+        counter-clockwise seen from outside.
     scheme : str or int
         A name of the table, or a constant of `BendingForce`.
+    box : array_like or Quantity, optional
+        Periodic box, shape (3, 3), nm: triangles have corners that are nearest images. Default:
+        that of a `Mesh` among the other arguments, if it has one.
 
     Returns
     -------
     ndarray
         H, shape (num_vertices,) or (num_frames, num_vertices), 1/nm. Voronoi areas can be 0, where
-        H is infinite.
+        H is infinite; H is NaN at vertices of a border.
 
     Raises
     ------
@@ -86,19 +93,19 @@ def mean_curvature(vertices, triangles, scheme="Julicher"):
         A Quantity that is no length, or indices that are no integers.
     ValueError
         A wrong shape, an index out of range, a coordinate that is not finite, a vertex without a
-        triangle, an edge that does not have two triangles of the same orientation, or another
+        triangle, an edge that has more than two triangles or two of other orientation, or another
         scheme.
     """
     _scheme(scheme)
-    return vertex_quantities(vertices, triangles).mean_curvature(scheme)
+    return vertex_quantities(vertices, triangles, box=box).mean_curvature(scheme)
 
 
-def vertex_quantities(vertices, triangles) -> VertexQuantities:
+def vertex_quantities(vertices, triangles, *, box=None) -> VertexQuantities:
     """Areas, normals and integrated curvatures of all vertices.
 
     Parameters
     ----------
-    vertices, triangles
+    vertices, triangles, box
         As for `mean_curvature`.
 
     Returns
@@ -111,25 +118,26 @@ def vertex_quantities(vertices, triangles) -> VertexQuantities:
     TypeError, ValueError
         As for `mean_curvature`.
     """
+    box = box_of(box, vertices, triangles)
 
     def work(frames, faces, first):
         num_vertices = frames.shape[1]
         unused = np.setdiff1d(np.arange(num_vertices), faces)
         if len(unused):
             raise ValueError(f"triangles: vertex {unused[0]} belongs to no triangle")
-        return _quantities(frames, faces, num_vertices)
+        return _quantities(frames, faces, num_vertices, box)
 
     return VertexQuantities(*over_frames(work, vertices, triangles, lambda n, t: 60 * t))
 
 
-def _quantities(frames, faces, num_vertices):
+def _quantities(frames, faces, num_vertices, box):
     start, end, left, right = edges_of(faces)
-    corners = frames[:, faces]
+    corners = corner_positions(frames, faces, box)
     normals = np.cross(corners[:, :, 1] - corners[:, :, 0], corners[:, :, 2] - corners[:, :, 0])
     doubled = np.linalg.norm(normals, axis=-1)
     area = _vertex_sum(np.repeat(doubled / 6, 3, axis=1), faces.ravel(), num_vertices)
 
-    edges = frames[:, end] - frames[:, start]
+    edges = nearest(frames[:, end] - frames[:, start], box)
     lengths = np.linalg.norm(edges, axis=-1)
     # l · sin φ and l · cos φ of unnormalised normals: atan2 needs neither a division nor a clamp.
     angles = np.arctan2(
@@ -144,9 +152,10 @@ def _quantities(frames, faces, num_vertices):
     voronoi, cotangent, normal = 0, 0, 0
     for corner in range(3):
         here, b, c = (faces[:, (corner + k) % 3] for k in range(3))
-        u, v = frames[:, b] - frames[:, here], frames[:, c] - frames[:, here]
+        p, q, r = (corners[:, :, (corner + k) % 3] for k in range(3))
+        u, v = q - p, r - p
         cosine = dot(u, v)
-        side = frames[:, b] - frames[:, c]
+        side = q - r
         with np.errstate(divide="ignore", invalid="ignore"):
             cot = cosine / doubled
             weighted = (np.arctan2(doubled, cosine) / doubled)[..., np.newaxis] * normals
@@ -157,6 +166,9 @@ def _quantities(frames, faces, num_vertices):
         normal += _vertex_sum(weighted, here, num_vertices)
     with np.errstate(divide="ignore", invalid="ignore"):
         normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
+    border = both[np.tile(right < 0, 2)]
+    for curvature in (julicher, cotangent, umbrella):
+        curvature[:, border] = np.nan
     return area, voronoi, normal, julicher, cotangent, umbrella / np.sqrt(3)
 
 

@@ -2,10 +2,11 @@
 
 import numpy as np
 
-from ._arrays import over_frames
+from .._mesh.periodic import corner_positions, nearest
+from ._arrays import box_of, over_frames
 
 
-def triangle_areas(vertices, triangles):
+def triangle_areas(vertices, triangles, *, box=None):
     """Area of every triangle.
 
     Parameters
@@ -14,6 +15,9 @@ def triangle_areas(vertices, triangles):
         Shape (num_vertices, 3) for one frame or (num_frames, num_vertices, 3), nm.
     triangles : array_like of int or Mesh
         Shape (num_triangles, 3), or (num_frames, num_triangles, 3) if each frame has its own.
+    box : array_like or Quantity, optional
+        Periodic box, shape (3, 3), nm: triangles have corners that are nearest images. Default:
+        that of a `Mesh` among the other arguments, if it has one.
 
     Returns
     -------
@@ -27,20 +31,21 @@ def triangle_areas(vertices, triangles):
     ValueError
         A wrong shape, an index out of range, or a coordinate that is not finite.
     """
+    box = box_of(box, vertices, triangles)
 
     def work(frames, faces, first):
-        a, b, c = (frames[:, faces[:, corner]] for corner in range(3))
+        a, b, c = np.moveaxis(corner_positions(frames, faces, box), 2, 0)
         return np.linalg.norm(np.cross(b - a, c - a), axis=-1) / 2
 
     return over_frames(work, vertices, triangles, lambda n, t: 15 * t)
 
 
-def triangle_heights(vertices, triangles):
+def triangle_heights(vertices, triangles, *, box=None):
     """The three heights of every triangle, 2 a_t / l.
 
     Parameters
     ----------
-    vertices, triangles
+    vertices, triangles, box
         As for `triangle_areas`.
 
     Returns
@@ -54,22 +59,24 @@ def triangle_heights(vertices, triangles):
     TypeError, ValueError
         As for `triangle_areas`.
     """
+    box = box_of(box, vertices, triangles)
 
     def work(frames, faces, first):
-        sides = [frames[:, faces[:, (k + 1) % 3]] - frames[:, faces[:, k]] for k in range(3)]
+        corners = corner_positions(frames, faces, box)
+        sides = [corners[:, :, (k + 1) % 3] - corners[:, :, k] for k in range(3)]
         doubled = np.linalg.norm(np.cross(sides[0], sides[1]), axis=-1)
         return np.stack([doubled / np.linalg.norm(side, axis=-1) for side in sides], axis=-1)
 
     return over_frames(work, vertices, triangles, lambda n, t: 20 * t)
 
 
-def edge_lengths(vertices, triangles):
+def edge_lengths(vertices, triangles, *, box=None):
     """Length of every edge, in the order of `Mesh.edges`.
 
     Parameters
     ----------
-    vertices, triangles
-        As for `triangle_areas`; the surface must be closed and oriented.
+    vertices, triangles, box
+        As for `triangle_areas`; the surface must be oriented.
 
     Returns
     -------
@@ -79,26 +86,31 @@ def edge_lengths(vertices, triangles):
     Raises
     ------
     TypeError, ValueError
-        As for `triangle_areas`; an edge that does not have two triangles of the same orientation.
+        As for `triangle_areas`; an edge that has more than two triangles, or two that are not of
+        the same orientation.
     """
+    box = box_of(box, vertices, triangles)
 
     def work(frames, faces, first):
         start, end, _, _ = edges_of(faces)
-        order = np.lexsort((end, start))
-        return np.linalg.norm(frames[:, end[order]] - frames[:, start[order]], axis=-1)
+        low, high = np.minimum(start, end), np.maximum(start, end)
+        order = np.lexsort((high, low))
+        along = nearest(frames[:, high[order]] - frames[:, low[order]], box)
+        return np.linalg.norm(along, axis=-1)
 
     return over_frames(work, vertices, triangles, lambda n, t: 12 * t)
 
 
 def edges_of(faces):
-    """Edges of a closed surface, each once.
+    """Edges of an oriented surface, each once.
 
     Returns
     -------
     start, end : ndarray of int
         The two vertices of each edge, in the order in which its left triangle names them.
     left, right : ndarray of int
-        The triangle that has the edge start → end, and the one that has it end → start.
+        The triangle that has the edge start → end, and the one that has it end → start, −1 at a
+        border.
     """
     start = faces.ravel()
     end = np.roll(faces, -1, axis=1).ravel()
@@ -116,13 +128,7 @@ def edges_of(faces):
             "direction, so the surface is not oriented or not a manifold"
         )
     place = np.minimum(np.searchsorted(keys, backward), len(keys) - 1)
-    missing = np.flatnonzero(keys[place] != backward)
-    if len(missing):
-        edge = missing[0]
-        raise ValueError(
-            f"triangles: the edge {start[edge]} – {end[edge]} has one triangle only, so the "
-            "surface is not closed"
-        )
-    twin = order[place]
-    once = start < end
-    return start[once], end[once], owner[once], owner[twin[once]]
+    twin = np.where(keys[place] == backward, order[place], -1)
+    once = (start < end) | (twin < 0)
+    right = np.where(twin < 0, -1, owner[twin])
+    return start[once], end[once], owner[once], right[once]
