@@ -1,4 +1,4 @@
-//! Triangulated closed surfaces: their topology, their orientation and their geometry.
+//! Triangulated surfaces: their topology, their orientation and their geometry.
 
 pub mod cell;
 pub mod geometry;
@@ -10,5 +10,5 @@ pub mod triangulation;
 pub mod vertex_vectors;
 
 pub use cell::Cell;
-pub use topology::Topology;
+pub use topology::{NONE, Topology};
 pub use triangulation::Triangulation;

@@ -9,10 +9,11 @@ use crate::error::{Error, Result};
 use nalgebra::Vector3;
 use std::collections::HashMap;
 
-/// Validate a mesh and turn its triangles so that each closed component has positive volume.
+/// Validate a mesh and turn its triangles so that each closed component has positive volume. A component with borders
+/// keeps the orientation of its first triangle.
 ///
 /// Neighbours are made to agree by walking over the surface, so the shape need not be star-shaped;
-/// what remains, one sign for each component, is decided by the sign of the component's volume.
+/// what remains, one sign for each closed component, is decided by the sign of the component's volume.
 /// The order of the triangles and the first corner of each stay as they are. In a periodic box, corners are nearest
 /// images of each other, and a component that spans the box keeps the orientation of its first triangle.
 ///
@@ -40,7 +41,7 @@ pub fn oriented(
         if flipped[seed].is_some() {
             continue;
         }
-        let component = walk(seed, &neighbours, &mut flipped).map_err(|triangles| {
+        let (component, closed) = walk(seed, &neighbours, &mut flipped).map_err(|triangles| {
             let shared: Vec<u32> = corners[triangles[0]]
                 .into_iter()
                 .filter(|v| corners[triangles[1]].contains(v))
@@ -60,8 +61,9 @@ pub fn oriented(
             let sign = if flipped[triangle] == Some(true) { -1.0 } else { 1.0 };
             volume += sign * a.dot(&normal);
         }
+        let inward = closed && !spans && volume < 0.0;
         for &triangle in &component {
-            if (flipped[triangle] == Some(true)) != (volume < 0.0 && !spans) {
+            if (flipped[triangle] == Some(true)) != inward {
                 result[triangle].swap(1, 2);
             }
         }
@@ -93,20 +95,24 @@ pub fn is_inside_out(mesh: &Triangulation, positions: &[f64]) -> Option<(bool, T
     sphere.is_finite().then_some((totals.volume < -NOTHING * sphere, totals))
 }
 
-/// Visit the component of `seed` and note which of its triangles must be flipped to agree with it.
-/// Fails with the two triangles that cannot agree.
+/// Visit the component of `seed` and note which of its triangles must be flipped to agree with it. Returns the
+/// component, and whether it is closed. Fails with the two triangles that cannot agree.
 fn walk(
     seed: usize,
-    neighbours: &[[(u32, bool); 3]],
+    neighbours: &[[Option<(u32, bool)>; 3]],
     flipped: &mut [Option<bool>],
-) -> std::result::Result<Vec<usize>, [usize; 2]> {
+) -> std::result::Result<(Vec<usize>, bool), [usize; 2]> {
     flipped[seed] = Some(false);
-    let mut component = vec![seed];
+    let (mut component, mut closed) = (vec![seed], true);
     let mut next = 0;
     while let Some(&triangle) = component.get(next) {
         next += 1;
         let here = flipped[triangle] == Some(true);
-        for (neighbour, agree) in neighbours[triangle] {
+        for across in neighbours[triangle] {
+            let Some((neighbour, agree)) = across else {
+                closed = false;
+                continue;
+            };
             let neighbour = neighbour as usize;
             let wanted = here == agree;
             match flipped[neighbour] {
@@ -119,7 +125,7 @@ fn walk(
             }
         }
     }
-    Ok(component)
+    Ok((component, closed))
 }
 
 /// The corners of the triangles of a component relative to its first one, nm, and whether it spans the box.
@@ -214,6 +220,39 @@ mod tests {
         triangles.extend(triangles.clone().iter().map(|t| [t[0] + 6, t[2] + 6, t[1] + 6]));
         vertices.extend(vertices.clone().iter().map(|v| [v[0] + 5.0, v[1] * 2.0, v[2]]));
         assert_eq!(oriented(&vertices, &triangles, None).unwrap(), good);
+    }
+
+    #[test]
+    fn an_open_component_keeps_the_orientation_of_its_first_triangle() {
+        let (vertices, mut good) = icosahedron();
+        good.truncate(19);
+        let turned: Vec<_> = good.iter().map(|t| [t[0], t[2], t[1]]).collect();
+        for wanted in [good, turned] {
+            let mut mixed = wanted.clone();
+            for triangle in [3, 4, 11, 18] {
+                mixed[triangle].swap(1, 2);
+            }
+            assert_eq!(oriented(&vertices, &mixed, None).unwrap(), wanted);
+        }
+    }
+
+    #[test]
+    fn vertices_may_be_wrapped_into_a_box_each_by_itself() {
+        let (mut vertices, good) = icosahedron();
+        let cell = Cell::new([[9.0, 0.0, 0.0], [2.0, 8.0, 0.0], [-3.0, 1.0, 7.0]]).unwrap();
+        for (vertex, position) in vertices.iter_mut().enumerate() {
+            let image = [vertex as i32 % 3 - 1, vertex as i32 % 4 - 2, 5 - vertex as i32];
+            *position = (Vec3::from(*position) + cell.shift(image)).into();
+        }
+        let mixed: Vec<_> = good
+            .iter()
+            .enumerate()
+            .map(|(k, t)| if k % 3 == 0 { [t[0], t[2], t[1]] } else { *t })
+            .collect();
+        assert_eq!(oriented(&vertices, &mixed, Some(&cell)).unwrap(), good);
+        let small = Cell::new([[2.0, 0.0, 0.0], [0.0, 9.0, 0.0], [0.0, 0.0, 9.0]]).unwrap();
+        let error = oriented(&vertices, &mixed, Some(&small)).unwrap_err().to_string();
+        assert!(error.contains("half the width of the periodic box, 1 nm"), "{error}");
     }
 
     /// The minimal triangulation of the projective plane: ten triangles on six vertices.

@@ -8,6 +8,7 @@
 use super::hinges::{HINGES, Hinges};
 use crate::error::Result;
 use crate::evaluator::{Survey, SurveyedTriangle};
+use crate::mesh::NONE;
 use crate::mesh::geometry::{
     EdgeGeometry, TotalPartials, Totals, TriangleGeometry, Vec3, VertexGeometry,
 };
@@ -201,7 +202,7 @@ impl LocalEnergy {
             return difference - most;
         }
         if survey.needs.contains(Needs::VERTICES) {
-            self.vertices_of(terms, quad, flipped);
+            self.vertices_of(mesh, terms, quad, flipped);
             difference += flipped.vertex_energies.iter().sum::<f64>() - at_hand;
         }
         difference
@@ -222,11 +223,14 @@ impl LocalEnergy {
 
     /// An edge as it is.
     fn edge_of(&self, mesh: &Triangulation, half: u32) -> EdgeGeometry {
-        let twin = mesh.twin(half);
-        let (left, right) = (self.beside(half), self.beside(twin));
+        let (twin, left) = (mesh.twin(half), self.beside(half));
+        let length_squared = left.length_squared(half as usize % 3);
+        if twin == NONE {
+            return EdgeGeometry { length_squared, bend: 0.0 };
+        }
+        let right = self.beside(twin);
         let [start, tip] = [half, previous(twin)].map(|half| self.position(mesh.origin(half)));
         let mut hinges = Hinges::default();
-        let length_squared = left.length_squared(half as usize % 3);
         hinges.set(0, left, right, length_squared, &(start - tip));
         hinges.bend()[0]
     }
@@ -251,7 +255,7 @@ impl LocalEnergy {
         let (old_a, old_b) = (self.beside(a), self.beside(b));
         // ki, il, jk and lj with what lies beyond them.
         let rim = [previous(a), next(b), next(a), previous(b)];
-        let outside = rim.map(|half| self.beside(mesh.twin(half)));
+        let beyond = rim.map(|half| mesh.twin(half));
         let lengths = [new_i, new_i, new_j, new_j].into_iter().zip([2, 0, 0, 2]);
         let (old, new) = ([old_a, old_b, old_a, old_b], [new_i, new_i, new_j, new_j]);
         // Seen from outside the quadrilateral, the tip beyond the rim was j or i, and will be l or k. Arms lead from
@@ -263,9 +267,13 @@ impl LocalEnergy {
         hinges.set(0, old_a, old_b, along.norm_squared(), &(i - l));
         hinges.set(1, new_i, new_j, across.norm_squared(), &(k - j));
         for (n, (side, place)) in lengths.enumerate() {
-            let length_squared = side.length_squared(place);
-            hinges.set(2 + n, outside[n], old[n], length_squared, &old_arms[n]);
-            hinges.set(6 + n, outside[n], new[n], length_squared, &new_arms[n]);
+            // At a border they stay flat.
+            if beyond[n] != NONE {
+                let (outside, length_squared) =
+                    (self.beside(beyond[n]), side.length_squared(place));
+                hinges.set(2 + n, outside, old[n], length_squared, &old_arms[n]);
+                hinges.set(6 + n, outside, new[n], length_squared, &new_arms[n]);
+            }
         }
         let edges = hinges.bend();
         if self.survey.needs.contains(Needs::CURVATURES) {
@@ -287,7 +295,13 @@ impl LocalEnergy {
     }
 
     /// Areas, vectors and energies of the four vertices.
-    fn vertices_of(&self, terms: &[Term], quad: &Quad, flipped: &mut Flipped) {
+    fn vertices_of(
+        &self,
+        mesh: &Triangulation,
+        terms: &[Term],
+        quad: &Quad,
+        flipped: &mut Flipped,
+    ) {
         let [old_a, old_b] =
             quad.triangles().map(|slot| self.survey.triangles[slot].geometry.area() / 3.0);
         let [new_i, new_j] = flipped.triangles.map(|triangle| triangle.area() / 3.0);
@@ -316,10 +330,17 @@ impl LocalEnergy {
         let vectors = if wants_vectors { &flipped.vectors[..] } else { &[] };
         let total = self.survey.vertices.len();
         let (ids, scalars) = (&quad.vertices, &flipped.vertices);
+        let on_border = ids.map(|vertex| mesh.is_border(vertex));
         for term in at(terms, &self.acting.vertices) {
-            let energies = &mut flipped.vertex_energies[..];
-            let run = Vertices::Energies { total, ids, scalars, vectors, energies };
+            let mut energies = [0.0; 4];
+            let run = Vertices::Energies { total, ids, scalars, vectors, energies: &mut energies };
             term.potential.vertices(term, run);
+            let everywhere = term.potential.acts_at_borders();
+            for (n, sum) in flipped.vertex_energies.iter_mut().enumerate() {
+                if everywhere || !on_border[n] {
+                    *sum += energies[n];
+                }
+            }
         }
     }
 
