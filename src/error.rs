@@ -28,7 +28,7 @@ pub enum Error {
     DuplicateTriangle { first: usize, second: usize, corners: [u32; 3] },
 
     /// More than two sheets meet in an edge.
-    #[error("edge ({}, {}) is shared by {count} triangles (the first three: {}, {}, {}); a surface has two at each edge, or one at a border", .edge[0], .edge[1], .triangles[0], .triangles[1], .triangles[2])]
+    #[error("edge ({}, {}) is shared by {count} triangles (the first three: {}, {}, {}); a surface has two at each edge, or one at a border; remove walls inside of it, or give each sheet vertices of its own", .edge[0], .edge[1], .triangles[0], .triangles[1], .triangles[2])]
     NonManifoldEdge { edge: [u32; 2], count: usize, triangles: [usize; 3] },
 
     /// Two neighbours are listed with opposite senses of rotation.
@@ -36,7 +36,7 @@ pub enum Error {
     InconsistentOrientation { edge: [u32; 2], triangles: [usize; 2] },
 
     /// No choice of orientation is consistent (a Möbius strip or Klein bottle is part of the mesh).
-    #[error("the surface is not orientable: going round it, triangles {} and {} disagree at edge ({}, {}); it has no inside", .triangles[0], .triangles[1], .edge[0], .edge[1])]
+    #[error("the surface is not orientable: going round it, triangles {} and {} disagree at edge ({}, {}), so it has only one side; cut it open there", .triangles[0], .triangles[1], .edge[0], .edge[1])]
     NonOrientable { edge: [u32; 2], triangles: [usize; 2] },
 
     /// Two parts of the surface touch in one vertex.

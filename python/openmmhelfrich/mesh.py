@@ -109,7 +109,8 @@ class Mesh:
         merge : float or Quantity, optional
             Join vertices at most so far apart, nm, in the numbers of the file; the first one stays
             where it is. 0 joins vertices in the same place. Default: none but the equal corners of
-            an STL file.
+            an STL file, and a mesh is refused whose borders nearly touch, as if vertices had been
+            written twice.
         drop_unused : bool
             Leave out vertices that belong to no triangle. Default: they are refused.
 
@@ -120,8 +121,9 @@ class Mesh:
         MeshError
             If the extension is unknown; if the file is broken or truncated, naming the line (the
             number of bytes, for binary files); if it has faces that cannot be split, or other than
-            triangles without `triangulate`; if `merge` would join two corners of a triangle; or if
-            its mesh is not valid, see `Mesh`. The message names what would mend it.
+            triangles without `triangulate`; if `merge` would join two corners of a triangle; if
+            its mesh is not valid, see `Mesh`, or open along vertices that nearly coincide. The
+            message names what would mend it.
         """
         if merge is not None:
             merge = inputs.not_negative(_length(merge, "Mesh.read", "merge"), "Mesh.read", "merge")
@@ -130,7 +132,8 @@ class Mesh:
             mesh = cls(vertices, triangles, box)
         except MeshError as reason:
             raise files.explained(path, reason, vertices, triangles) from None
-        files.warn_of_cracks(path, mesh)
+        if merge != 0:
+            files.refuse_cracks(path, mesh)
         return mesh
 
     def write(self, path, *, point_data=None, binary=None) -> None:

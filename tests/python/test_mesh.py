@@ -173,7 +173,6 @@ def projective_plane():
 
 INVALID = {
     "empty": (([], []), "no triangles"),
-    "open": (broken(triangles=FACES[:3]), r"edge \(0, 2\) belongs to triangle 0 only.*open"),
     "edge of four": (two_tetrahedra({0: 0, 1: 1}), r"edge \(0, 1\) is shared by 4 triangles"),
     "pinched": (two_tetrahedra({0: 0}), "vertex 0 form 2 separate fans"),
     "repeated index": (with_corner(0), r"triangle 1 \(0, 1, 0\) repeats vertex"),

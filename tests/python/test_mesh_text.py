@@ -189,7 +189,9 @@ def torn(gap):
 @pytest.mark.parametrize("extension", FORMATS)
 def test_near_vertices_are_merged_or_hinted_at(tmp_path, extension):
     data = written(extension, *torn(1e-7))
-    with pytest.raises(MeshError, match=r"open there; close the hole; .*nearly coincide") as caught:
+    with pytest.raises(
+        MeshError, match=r"mesh is open, with 12 border.*; .*nearly coincide"
+    ) as caught:
         read(tmp_path, extension, data)
     hint = str(caught.value)
     assert "pair(s) of vertices nearly coincide, such as " in hint
@@ -257,5 +259,13 @@ def test_distances_of_the_size_of_the_mesh_do_not_fill_the_memory(tmp_path):
 
 
 def test_no_hint_where_it_would_not_help(tmp_path):
-    with pytest.raises(MeshError, match=r"open there; close the hole$"):
-        read(tmp_path, "off", written("off", CORNERS, CUBE[:-1]))
+    with pytest.raises(MeshError, match=r"vertex 8 belongs to no triangle; remove it; [^;]*$"):
+        read(tmp_path, "off", written("off", [*CORNERS, (5, 5, 5)]))
+
+
+def test_borders_that_are_none_are_told_from_holes(tmp_path):
+    hole = read(tmp_path, "off", written("off", CORNERS, CUBE[:-1]))
+    assert [len(loop) for loop in hole.border_loops] == [3]
+    # Without a triangle of its own corners a cube of separate sheets has a crack all round each.
+    data = written("off", *torn(1e-7))
+    assert len(read(tmp_path, "off", data, merge=0).border_loops) == 12

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +11,7 @@ from ..errors import MeshError
 from . import obj, off, other, ply, repair, stl, vtk_legacy, vtk_xml
 from .source import Source
 
-__all__ = ["explained", "read", "warn_of_cracks", "write"]
+__all__ = ["explained", "read", "refuse_cracks", "write"]
 
 _READERS = {
     ".ply": ply.read,
@@ -89,13 +88,13 @@ def explained(path, reason: MeshError, vertices: np.ndarray, triangles: np.ndarr
     return MeshError(f"Mesh.read: {path}: {text}{repair.hints(vertices, triangles)}")
 
 
-def warn_of_cracks(path, mesh) -> None:
-    """Say so if borders of a mesh may be no borders, but vertices that a program has doubled."""
+def refuse_cracks(path, mesh) -> None:
+    """Refuse borders that may be none, but vertices that a program has written twice."""
     found = "" if mesh.is_closed else repair.doubled(mesh.vertices, mesh.triangles)
     if found:
-        warnings.warn(
-            f"Mesh.read: {path}: the mesh is open, with {len(mesh.border_loops)} border(s){found}",
-            stacklevel=3,
+        raise MeshError(
+            f"Mesh.read: {path}: the mesh is open, with {len(mesh.border_loops)} border(s){found}, "
+            "merge=0 (--merge 0) takes the borders as they are"
         )
 
 
