@@ -447,13 +447,7 @@ class Mesh:
         MeshError
             If the mesh has a border, or spans its periodic box: there is no inside then.
         """
-        if not self.is_closed:
-            loop = self.border_loops[0]
-            raise MeshError(
-                f"Mesh.volume: the mesh is open and encloses no volume; it has "
-                f"{len(self.border_loops)} border(s), the first one of the {len(loop)} vertices "
-                f"{', '.join(map(str, loop[:4].tolist()))} …"
-            )
+        geometry.check_closed(self.border_loops, "Mesh.volume")
         vertices = self._vertices
         if self._box is not None:
             vertices, part, spanning = self._unfolded
@@ -621,9 +615,8 @@ class Mesh:
 
     def _spheroid(self, reduced_volume, prolate: bool, where: str) -> Mesh:
         self._refuse_box(where)
+        geometry.check_closed(self.border_loops, where)
         arrays = self._vertices, self._triangles
-        # An open mesh has no volume, and says so.
-        _ = self.volume
         return Mesh(transform.spheroid(*arrays, reduced_volume, prolate, where), self._triangles)
 
     def _refuse_box(self, where: str) -> None:

@@ -11,6 +11,7 @@ import openmm
 from openmm import app, unit
 
 from . import platforms
+from ._mesh.geometry import check_closed
 from ._placement import Placement
 from ._quantities import checked_field, checked_number
 from ._vesicle_flips import bath_of, checked_flips, mover_of
@@ -139,6 +140,7 @@ class Vesicle:
         nm = unit.nanometer
         if not isinstance(mesh, Mesh):
             raise TypeError(f"Vesicle: mesh needs a Mesh, got {type(mesh).__name__}")
+        check_closed(mesh.border_loops, "Vesicle: mesh")
         self._mesh = mesh
         self._rigidity = checked_field("rigidity", rigidity, _ENERGY, mesh)
         self._area_modulus = checked_number("area_modulus", area_modulus, _ENERGY / nm**2)

@@ -12,8 +12,11 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from ..errors import MeshError
+
 __all__ = [
     "border_loops",
+    "check_closed",
     "component_count",
     "edges_of",
     "reduced_volume",
@@ -67,6 +70,17 @@ def border_loops(triangles: np.ndarray) -> list[np.ndarray]:
         if loop:
             loops.append(np.array(loop))
     return loops
+
+
+def check_closed(loops: list[np.ndarray], subject: str) -> None:
+    """Refuse a surface with borders where there must be none; `subject` begins the message."""
+    if loops:
+        first = loops[0].tolist()
+        names = ", ".join(map(str, first[:6])) + (" …" if len(first) > 6 else "")
+        raise MeshError(
+            f"{subject} needs a closed surface, but this one has a border of {len(first)} edges "
+            f"through vertices {names}; close the hole"
+        )
 
 
 def component_count(num_vertices: int, edges: np.ndarray) -> int:
