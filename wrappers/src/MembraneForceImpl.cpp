@@ -130,7 +130,8 @@ void MembraneForceImpl::updateParametersInContext(ContextImpl& context) {
         throw OpenMMException(owner.getTypeName() + ": the triangles have changed since the Context was made; call " +
                               "Context::reinitialize()");
     if (owner.usesPeriodicBoundaryConditions() != periodic)
-        throw OpenMMException(owner.getTypeName() + ": whether it uses periodic boundary conditions has changed since " +
+        throw OpenMMException(owner.getTypeName() +
+                              ": whether it uses periodic boundary conditions has changed since " +
                               "the Context was made; call Context::reinitialize()");
     copyValues();
     context.systemChanged();

@@ -162,7 +162,8 @@ double SharedMembrane::evaluate(const string& subject, ContextImpl& context, int
     static_assert(sizeof(Vec3) == 3 * sizeof(double), "an array of Vec3 is an array of coordinates");
     check(Helfrich_Membrane_evaluate(subject.c_str(), core, terms.data(), (int64_t) terms.size(),
                                      (int64_t) positions.size(), reinterpret_cast<const double*>(positions.data()),
-                                     findBox(context), includeEnergy || wantsDerivatives ? contributions.data() : nullptr,
+                                     findBox(context),
+                                     includeEnergy || wantsDerivatives ? contributions.data() : nullptr,
                                      forces == nullptr ? nullptr : reinterpret_cast<double*>(forces->data())));
     double energy = 0;
     for (size_t i = 0; i < active.size(); i++) {

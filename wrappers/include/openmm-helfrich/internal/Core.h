@@ -89,7 +89,8 @@ int Helfrich_Membrane_evaluate(const char* subject, HelfrichMembrane* membrane, 
 int Helfrich_Membrane_checkFlips(const char* subject, const HelfrichMembrane* membrane, const HelfrichFlipRules* rules);
 int Helfrich_Membrane_flip(const char* subject, HelfrichMembrane* membrane, const HelfrichTerm* terms, int64_t numTerms,
                            int64_t numParticles, const double* positions, const double* box,
-                           const HelfrichFlipRules* rules, int64_t attempts, HelfrichFlipState* state, int64_t* made, double* forceChange);
+                           const HelfrichFlipRules* rules, int64_t attempts, HelfrichFlipState* state, int64_t* made,
+                           double* forceChange);
 int64_t Helfrich_Membrane_numTriangles(const HelfrichMembrane* membrane);
 int64_t Helfrich_Membrane_numVertices(const HelfrichMembrane* membrane);
 void Helfrich_Membrane_triangles(const HelfrichMembrane* membrane, int* corners);
