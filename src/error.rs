@@ -69,6 +69,16 @@ pub enum Error {
     #[error("triangle {triangle} ({}, {}, {}) has grown beyond all numbers: the simulation has blown up; use a smaller time step or a better relaxed start", .corners[0], .corners[1], .corners[2])]
     OverflownTriangle { triangle: usize, corners: [u32; 3] },
 
+    /// An edge has no image that is certainly the nearest.
+    #[error("particles {} and {} are joined by an edge of {length:.6} nm, but in the periodic box with vectors {:?}, {:?} and {:?} nm edges must be shorter than {limit:.6} nm, half of its least width, so that it is clear which images they connect; use a larger box, or a mesh of shorter edges (around the box it needs three vertices, better four)", .edge[0], .edge[1], .vectors[0], .vectors[1], .vectors[2])]
+    LongEdge { edge: [u32; 2], length: f64, limit: f64, vectors: Box<[[f64; 3]; 3]> },
+
+    /// The surface of a potential that needs an outside goes on beyond the periodic box.
+    #[error(
+        "the surface with particle {particle} spans the periodic box, so it encloses no volume; leave {force} out, or give it the triangles of closed surfaces only"
+    )]
+    Spanning { force: &'static str, particle: u32 },
+
     /// The surface of a potential that needs an outside is turned inside out.
     #[error(
         "the triangles run clockwise seen from outside, so that the enclosed volume is below zero ({volume} nm^3); swap two corners of each triangle, or let openmmhelfrich.Mesh(vertices, triangles) turn them"
@@ -143,7 +153,9 @@ impl Error {
     /// together report in the name of one of them.
     pub fn class(&self) -> Option<&'static str> {
         match self {
-            Self::InsideOut { force, .. } | Self::Border { force, .. } => Some(force),
+            Self::InsideOut { force, .. }
+            | Self::Border { force, .. }
+            | Self::Spanning { force, .. } => Some(force),
             _ => None,
         }
     }

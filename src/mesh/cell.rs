@@ -16,6 +16,18 @@ pub struct Cell {
 /// How many times each of the box vectors.
 pub type Image = [i32; 3];
 
+/// One after another.
+#[inline]
+pub fn plus(one: Image, other: Image) -> Image {
+    std::array::from_fn(|k| one[k].wrapping_add(other[k]))
+}
+
+/// What leads from the other to the one.
+#[inline]
+pub fn minus(one: Image, other: Image) -> Image {
+    std::array::from_fn(|k| one[k].wrapping_sub(other[k]))
+}
+
 impl Cell {
     /// A box of three vectors.
     ///
@@ -24,7 +36,7 @@ impl Cell {
     pub fn new([a, b, c]: [[f64; 3]; 3]) -> Result<Self> {
         let finite = [a, b, c].as_flattened().iter().all(|x| x.is_finite());
         let form = a[1] == 0.0 && a[2] == 0.0 && b[2] == 0.0;
-        if !finite || !form || !(a[0] > 0.0 && b[1] > 0.0 && c[2] > 0.0) {
+        if !(finite && form && a[0] > 0.0 && b[1] > 0.0 && c[2] > 0.0) {
             return Err(Error::Contract(format!(
                 "the periodic box needs vectors (ax, 0, 0), (bx, by, 0) and (cx, cy, cz) with ax, by and cz above zero, \
                  got {a:?}, {b:?} and {c:?} nm"

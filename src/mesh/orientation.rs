@@ -157,13 +157,8 @@ fn in_one_piece(
             let (edge, length) =
                 ([trio[k], trio[(k + 1) % 3]], (place[(k + 1) % 3] - place[k]).norm());
             if !(length < cell.half_width()) {
-                return Err(Error::Contract(format!(
-                    "edge ({}, {}) is {length} nm long, but must be shorter than half the width of the periodic box, \
-                     {} nm, for its nearest image to be the one that is meant; take a larger box or a finer mesh",
-                    edge[0],
-                    edge[1],
-                    cell.half_width()
-                )));
+                let (limit, vectors) = (cell.half_width(), cell.vectors().map(<[f64; 3]>::from));
+                return Err(Error::LongEdge { edge, length, limit, vectors: Box::new(vectors) });
             }
             let before = *known.entry(trio[k]).or_insert(place[k]);
             spans |= (before - place[k]).norm() > cell.half_width();
@@ -252,7 +247,7 @@ mod tests {
         assert_eq!(oriented(&vertices, &mixed, Some(&cell)).unwrap(), good);
         let small = Cell::new([[2.0, 0.0, 0.0], [0.0, 9.0, 0.0], [0.0, 0.0, 9.0]]).unwrap();
         let error = oriented(&vertices, &mixed, Some(&small)).unwrap_err().to_string();
-        assert!(error.contains("half the width of the periodic box, 1 nm"), "{error}");
+        assert!(error.contains("shorter than 1.000000 nm, half of its least width"), "{error}");
     }
 
     /// The minimal triangulation of the projective plane: ten triangles on six vertices.

@@ -5,6 +5,7 @@
 //! walked or counted from triangles and twins; nothing else is stored, so a flip rewrites two triangles and
 //! six twins and costs the same however large the mesh is.
 
+use super::cell::{Image, minus, plus};
 use super::topology::{NONE, Topology};
 use crate::error::{Error, Result};
 
@@ -23,6 +24,8 @@ pub struct Triangulation {
     degrees: Vec<u32>,
     /// Of the half-edges that begin at each vertex the one of the lowest number, or the one along the border.
     leaving: Vec<u32>,
+    /// The images of the corners of each triangle, where the surface spans a periodic box; otherwise empty.
+    images: Vec<[Image; 3]>,
     /// How many edges are borders; there are as many vertices on borders.
     num_border_edges: usize,
     /// The sum of numbers that look random, one for each triangle with its corners; so it tells any two sets of
@@ -117,6 +120,7 @@ impl Triangulation {
         let terms = topology.triangles.iter().enumerate().map(|(t, corners)| mixed(t, corners));
         Self {
             fingerprint: terms.fold(0, u64::wrapping_add),
+            images: Vec::new(),
             particles: topology.particles.clone(),
             triangles: topology.triangles.clone(),
             degrees: (0..topology.num_vertices()).map(degree).collect(),
@@ -168,6 +172,20 @@ impl Triangulation {
     /// The twins of the half-edges of all triangles.
     pub fn twins(&self) -> &[[u32; 3]] {
         &self.twins
+    }
+
+    /// How many box vectors to add to the positions of the corners of each triangle so that they are neighbours, none to
+    /// the first; empty if the surface is in one piece as it is, which it can be unless it spans a periodic box.
+    pub fn images(&self) -> &[[Image; 3]] {
+        &self.images
+    }
+
+    /// Give the corners of all triangles their images, or none. Returns whether that makes a difference.
+    pub fn set_images(&mut self, images: Vec<[Image; 3]>) -> bool {
+        debug_assert!(images.is_empty() || images.len() == self.triangles.len());
+        let changes = self.images != images;
+        self.images = images;
+        changes
     }
 
     /// How many edges end at each vertex.
@@ -355,6 +373,9 @@ impl Triangulation {
             Turn::Right => ([previous(a), previous(b)], [a, b]),
         };
         let outside = lost.map(|half| self.twin(half));
+        if !self.images.is_empty() {
+            self.flip_images(quad, taking);
+        }
         let on_border = quad.vertices.map(|vertex| self.is_border(vertex));
         let changing = quad.triangles();
         for triangle in changing {
@@ -406,6 +427,34 @@ impl Triangulation {
         self.degrees[j as usize] -= 1;
         self.degrees[k as usize] += 1;
         self.degrees[l as usize] += 1;
+    }
+
+    /// The images of i, j, k and l beside each other, if corners have images.
+    #[inline]
+    pub fn images_of(&self, quad: &Quad) -> Option<[Image; 4]> {
+        if self.images.is_empty() {
+            return None;
+        }
+        let [a, b] = quad.halves;
+        let image = |half: u32| self.images.as_flattened()[half as usize];
+        // B is moved so that it has its corner i where A has it.
+        let step = minus(image(a), image(next(b)));
+        let l = plus(image(previous(b)), step);
+        Some([image(a), image(next(a)), image(previous(a)), l])
+    }
+
+    /// The images of the corners that A and B will have.
+    fn flip_images(&mut self, quad: &Quad, taking: [u32; 2]) {
+        let Some([i, _, k, l]) = self.images_of(quad) else { return };
+        let [a, b] = quad.halves;
+        let images = self.images.as_flattened_mut();
+        let step = minus(i, images[next(b) as usize]);
+        images[taking[0] as usize] = l;
+        images[taking[1] as usize] = minus(k, step);
+        for triangle in [a, b].map(|half| half as usize / 3) {
+            let first = self.images[triangle][0];
+            self.images[triangle] = self.images[triangle].map(|image| minus(image, first));
+        }
     }
 
     /// The half-edge of the new edge in triangle A after a flip of a half-edge.
