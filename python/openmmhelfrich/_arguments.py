@@ -69,6 +69,8 @@ def accept_units(force: type) -> None:
             # The scalar is not used beside them; their mean is what a reader would expect.
             getattr(self, "set" + capitalised(s.name))(float(np.mean(list_)))
         self._addTriangleBuffer(corners.data)
+        if getattr(arguments["triangles"], "box", None) is not None:
+            self.setUsesPeriodicBoundaryConditions(True)
 
     init.__signature__ = signature.replace(
         parameters=[inspect.Parameter("self", keyword), *signature.parameters.values()]

@@ -6,9 +6,23 @@ import numpy as np
 
 from .forces import MembraneForce, MonteCarloBondFlip
 
-__all__ = ["present_triangles", "surfaces_of"]
+__all__ = ["is_periodic", "present_triangles", "surfaces_of"]
 
 _CLASSES = [MonteCarloBondFlip, *MembraneForce.__subclasses__()]
+
+
+def is_periodic(context, force) -> bool:
+    """Whether the surface of a membrane force or mover lives in the periodic box of the Context."""
+    if not isinstance(force, MonteCarloBondFlip):
+        return force.usesPeriodicBoundaryConditions()
+    corners = force._triangleBuffer()
+    for plain in context.getSystem().getForces():
+        for cls in MembraneForce.__subclasses__():
+            if cls.isinstance(plain):
+                other = cls.cast(plain)
+                if other._triangleBuffer() == corners:
+                    return other.usesPeriodicBoundaryConditions()
+    return False
 
 
 def surfaces_of(context) -> list:

@@ -35,7 +35,9 @@ class Mesh:
     never changes: its arrays are read-only, and transformations return a new mesh.
 
     In a periodic box a vertex stands for all of its images, and a triangle has those corners that
-    are nearest to each other. So vertices may be wrapped into the box or not, each by itself.
+    are nearest to each other. So vertices may be wrapped into the box or not, each by itself. A
+    force made of such a mesh uses periodic boundary conditions; give its System the box,
+    ``system.setDefaultPeriodicBoxVectors(*mesh.box)``.
 
     Parameters
     ----------

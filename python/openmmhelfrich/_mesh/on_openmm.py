@@ -51,11 +51,13 @@ def present(context, force) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
     """What `Mesh.from_context` makes a mesh of: vertices, triangles, and the box."""
     from openmm import unit
 
+    from .._present import is_periodic
+
     corners = force.getTrianglesInContext(context)
     particles, triangles = np.unique(corners, return_inverse=True)
     state = context.getState(getPositions=True)
     vertices = state.getPositions(asNumpy=True).value_in_unit(unit.nanometer)[particles]
     box = None
-    if force.usesPeriodicBoundaryConditions():
+    if is_periodic(context, force):
         box = state.getPeriodicBoxVectors(asNumpy=True).value_in_unit(unit.nanometer)
     return vertices, triangles.reshape(-1, 3), box
