@@ -21,15 +21,17 @@ class Report:
         The docstring of the script.
     add_arguments : callable, optional
         Adds further arguments to a parser.
+    folder : str
+        Of results, in ``out``.
     """
 
-    def __init__(self, name, description, add_arguments=None):
+    def __init__(self, name, description, add_arguments=None, folder="flips"):
         parser = argparse.ArgumentParser(
             description=description, formatter_class=argparse.RawDescriptionHelpFormatter
         )
         parser.add_argument("--quick", action="store_true", help="smaller and fewer runs")
         parser.add_argument(
-            "--results", type=Path, help="folder of stored runs (default: out/flips/SIZE)"
+            "--results", type=Path, help=f"folder of stored runs (default: out/{folder}/SIZE)"
         )
         parser.add_argument("--tables", type=Path, help="folder of tables (default: the results)")
         parser.add_argument(
@@ -43,7 +45,7 @@ class Report:
         self.options = parser.parse_args()
         self.quick = self.options.quick
         size = "quick" if self.quick else "full"
-        self.results = self.options.results or Path("out/flips") / size
+        self.results = self.options.results or Path("out") / folder / size
         self.tables = self.options.tables or self.results
         self._name = name
 
