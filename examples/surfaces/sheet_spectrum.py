@@ -10,8 +10,8 @@ h_q = ∫ h(r) exp(−i q·r) d²r / A_p is taken over the triangles, by the mid
 regular triangular lattice of edge l has, instead of q², Λ(q) = (2/3l²) Σ (1 − cos q·a) over its six
 neighbours a, in both of its terms (Jülicher's curvature of nearly flat equilateral triangles is
 this Laplacian), and of a wave the integral sees F(q) = ⟨cos q·a/2⟩, the mean over a. Undulations of
-shorter wavelength soften longer ones, κ(q) = κ − (3 kBT/4π) ln(q_m/q), q_m² = 4π N / A (Peliti and Leibler,
-doi:10.1103/PhysRevLett.54.1690). So
+shorter wavelength soften longer ones, κ(q) = κ − (3 kBT/4π) ln(q_m/q), q_m² = 4π N / A (Peliti and
+Leibler, doi:10.1103/PhysRevLett.54.1690). So
 
     kBT F² / (A_p ⟨|h_q|²⟩) = κ(q) Λ² + σ Λ
 
