@@ -41,6 +41,7 @@ using namespace HelfrichPlugin;
 %ignore HelfrichPlugin::TriangulatedForce::getTriangles;
 %ignore HelfrichPlugin::TriangulatedForce::getTrianglesInContext;
 %ignore HelfrichPlugin::TriangulatedForce::setTrianglesInContext;
+%ignore HelfrichPlugin::TriangulatedForce::getVirial;
 %ignore HelfrichPlugin::TriangulatedForce::saveConnectivity;
 %ignore HelfrichPlugin::TriangulatedForce::restoreConnectivity;
 %ignore HelfrichPlugin::MonteCarloBondFlip::getStatistics;
@@ -71,6 +72,10 @@ static PyObject* toBytes(const void* data, size_t size) {
     void _setTrianglesInContext(OpenMM::Context& context, const char* data, size_t size) {
         const int* corners = reinterpret_cast<const int*>(data);
         $self->setTrianglesInContext(context, std::vector<int>(corners, corners + size / sizeof(int)));
+    }
+    PyObject* _getVirial(OpenMM::Context& context, int groups) {
+        std::vector<double> virial = $self->getVirial(context, groups);
+        return toBytes(virial.data(), virial.size() * sizeof(double));
     }
     PyObject* _saveConnectivity(OpenMM::Context& context) {
         std::string saved = $self->saveConnectivity(context);

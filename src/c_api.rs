@@ -119,6 +119,9 @@ forward! {
     /// Write the three corners of each triangle as they are in a Context (an `OpenMM_Context`) now.
     Helfrich_MembraneForce_getTrianglesInContext =>
         helfrich_shim_getTrianglesInContext(force: *mut Force, context: *mut c_void, corners: *mut c_int) -> c_int;
+    /// Write ∂E/∂ε of all membrane forces of a Context in some force groups, nine numbers row by row, kJ/mol.
+    Helfrich_MembraneForce_getVirial =>
+        helfrich_shim_getVirial(force: *mut Force, context: *mut c_void, groups: c_int, virial: *mut c_double) -> c_int;
     /// Connect the particles of a Context in another way.
     Helfrich_MembraneForce_setTrianglesInContext =>
         helfrich_shim_setTrianglesInContext(force: *mut Force, context: *mut c_void, corners: *const c_int, num_triangles: c_int) -> c_int;

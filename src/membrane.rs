@@ -2,7 +2,7 @@
 
 use crate::backend::Choice;
 use crate::error::{Error, Result};
-use crate::evaluator::{ChosenEvaluator, Present};
+use crate::evaluator::{ChosenEvaluator, Present, ReferenceEvaluator};
 use crate::mesh::cell::Image;
 use crate::mesh::numbering::breadth_first;
 use crate::mesh::orientation::is_inside_out;
@@ -11,6 +11,8 @@ use crate::moves::local::LocalEnergy;
 use crate::moves::{FlipRules, FlipState, flips};
 use crate::potentials::{Contribution, Element, Term};
 use crate::remembered::Remembered;
+use nalgebra::Matrix3;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, Ordering};
 
 /// How many membranes there are, which tells whether forces share them and whether any are left over.
@@ -305,6 +307,24 @@ impl Membrane {
         self.evaluator.evaluate(present, terms, positions, contributions, forces)
     }
 
+    /// ∂E/∂ε of some terms for a homogeneous strain ε of all positions and of the periodic box, kJ/mol: where there is
+    /// none, or no surface spans it, −Σ F ⊗ r.
+    ///
+    /// # Errors
+    /// Those of [`Self::evaluate`].
+    pub fn virial(
+        &mut self,
+        terms: &[Term],
+        positions: &[f64],
+        cell: Option<&Cell>,
+    ) -> Result<Matrix3<f64>> {
+        // What this refuses, nothing below has to.
+        self.evaluate(terms, positions, cell, &mut [], None)?;
+        let positions = unfolded!(self, positions, cell);
+        let parts = [virial_of_geometry(&self.mesh, terms, positions, cell)?];
+        Ok(parts.into_iter().sum())
+    }
+
     /// Refuse a term with values outside their domains, or with more or fewer values for single
     /// elements than there are elements, or that needs a closed surface where this one has a border.
     ///
@@ -336,6 +356,21 @@ impl Membrane {
         }
         Ok(())
     }
+}
+
+/// What terms of areas, lengths, angles and volume give to the virial, by the readable evaluator.
+fn virial_of_geometry(
+    mesh: &Triangulation,
+    terms: &[Term],
+    positions: &[f64],
+    cell: Option<&Cell>,
+) -> Result<Matrix3<f64>> {
+    let terms: Vec<_> = terms.iter().collect();
+    let mut evaluator = ReferenceEvaluator::new(Arc::new(Topology::of(mesh)));
+    if let Some(cell) = cell {
+        evaluator.set_images(mesh.images(), cell);
+    }
+    evaluator.virial(&terms, positions)
 }
 
 /// Refuse triangles that all run clockwise, as a slip in a mesh has them, before a volume below zero becomes a

@@ -30,6 +30,7 @@ from .ramps import harden  # noqa: E402
 from .reporters import MembraneReporter, ModeReporter, VTKHDFReporter  # noqa: E402
 from .states import load_state, save_state  # noqa: E402
 from .vesicle import Vesicle  # noqa: E402
+from .virials import virial  # noqa: E402
 
 __version__ = _plugin.version()
 
@@ -54,5 +55,6 @@ __all__ = [
     "save_state",
     "set_backend",
     "vcm",
+    "virial",
     *_force_names,
 ]

@@ -11,6 +11,7 @@ use crate::mesh::geometry::{
 use crate::mesh::vertex_vectors::{VertexVectors, add_corner, corner_stress};
 use crate::mesh::{NONE, Topology};
 use crate::potentials::{Contribution, Edges, Needs, Term, Triangles, Vertices};
+use nalgebra::Matrix3;
 use std::ops::AddAssign;
 use std::sync::Arc;
 
@@ -143,6 +144,42 @@ impl ReferenceEvaluator {
         contributions: &mut [Contribution],
         forces: Option<&mut [f64]>,
     ) -> Result<()> {
+        let (needs, _, partials) = self.forward(terms, positions, contributions)?;
+        if let Some(forces) = forces {
+            self.backward(needs, &partials);
+            self.add_forces(forces);
+        }
+        Ok(())
+    }
+
+    /// The derivative of the energy with respect to a homogeneous strain of positions and periodic box, kJ/mol: with r
+    /// → r + ε r it is ∂E/∂ε, the sum of −F ⊗ (r − r₀) over the corners of every triangle, r₀ being its first. What the
+    /// total volume does to corners is left out there, since it does not sum to zero in a triangle; it gives
+    /// (∂E/∂V) V 1.
+    ///
+    /// # Errors
+    /// Those of [`Self::evaluate`].
+    pub fn virial(&mut self, terms: &[&Term], positions: &[f64]) -> Result<Matrix3<f64>> {
+        let (needs, totals, partials) = self.forward(terms, positions, &mut [])?;
+        self.backward(needs, &TotalPartials { volume: 0.0, ..partials });
+        let mut virial = Matrix3::identity() * (partials.volume * totals.volume);
+        let places = places!(self);
+        for (triangle, forces) in self.corner_forces.iter().enumerate() {
+            let corners = places.corners(triangle);
+            for k in 1..3 {
+                virial -= forces[k] * (corners[k] - corners[0]).transpose();
+            }
+        }
+        Ok(virial)
+    }
+
+    /// Geometry and potentials: what the terms need, area and volume, and the energy's derivatives with respect to these.
+    fn forward(
+        &mut self,
+        terms: &[&Term],
+        positions: &[f64],
+        contributions: &mut [Contribution],
+    ) -> Result<(Needs, Totals, TotalPartials)> {
         let needs = terms.iter().fold(Needs::empty(), |all, term| all | term.potential.needs(term));
         self.gather_positions(positions);
         let totals = self.forward_triangles().ok_or_else(|| {
@@ -167,14 +204,14 @@ impl ReferenceEvaluator {
         let contributions = if contributions.is_empty() { &mut ignored[..] } else { contributions };
         let total_partials = self.potentials(terms, needs, &totals, contributions);
         check_energies(terms, contributions)?;
-        if let Some(forces) = forces {
-            if needs.intersects(Needs::EDGES | Needs::CURVATURES) {
-                self.backward_edges(needs);
-            }
-            self.backward_triangles(needs, &total_partials);
-            self.add_forces(forces);
+        Ok((needs, totals, total_partials))
+    }
+
+    fn backward(&mut self, needs: Needs, totals: &TotalPartials) {
+        if needs.intersects(Needs::EDGES | Needs::CURVATURES) {
+            self.backward_edges(needs);
         }
-        Ok(())
+        self.backward_triangles(needs, totals);
     }
 
     fn gather_positions(&mut self, all: &[f64]) {

@@ -154,3 +154,31 @@ pub unsafe extern "C" fn Helfrich_Membrane_evaluate(
         unsafe { &mut *membrane }.evaluate(&terms, positions, cell.as_ref(), contributions, forces)
     })
 }
+
+/// Add ∂E/∂ε of terms for a homogeneous strain ε of positions and periodic box to nine numbers, row by row.
+///
+/// # Safety
+/// As of [`Helfrich_Membrane_evaluate`]; `virial` must hold nine values.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Membrane_addVirial(
+    subject: *const c_char,
+    membrane: *mut Membrane,
+    terms: *const TermInput,
+    num_terms: i64,
+    num_particles: i64,
+    positions: *const f64,
+    box_vectors: *const [[f64; 3]; 3],
+    virial: *mut f64,
+) -> c_int {
+    guarded(unsafe { text(subject) }, || {
+        let inputs = unsafe { slice(terms, num_terms as usize) };
+        let terms: Vec<_> = inputs.iter().map(|input| unsafe { input.term() }).collect();
+        let positions = unsafe { slice(positions, 3 * num_particles as usize) };
+        let cell = unsafe { cell(box_vectors) }?;
+        let found = unsafe { &mut *membrane }.virial(&terms, positions, cell.as_ref())?;
+        let virial = unsafe { slices::from_raw_parts_mut(virial, 9) };
+        // Matrices are stored by columns.
+        virial.iter_mut().zip(&found.transpose()).for_each(|(sum, part)| *sum += part);
+        Ok(())
+    })
+}

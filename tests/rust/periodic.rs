@@ -351,3 +351,82 @@ fn a_triangle_without_area_across_a_face_is_named() {
     let Error::DegenerateTriangle { corners, .. } = &refused else { panic!("{refused}") };
     assert!([0, 35, third as u32].iter().all(|v| corners.contains(v)), "{refused}");
 }
+
+/// The virial against the energy's slope along strains of positions and box together.
+fn check_virial(mesh: &Mesh, terms: &[Term], vectors: Option<[[f64; 3]; 3]>) {
+    let cell = vectors.map(|vectors| Cell::new(vectors).unwrap());
+    let mut here = membrane(mesh);
+    for term in terms {
+        let term = [*term];
+        let found = here.virial(&term, &mesh.0, cell.as_ref()).unwrap();
+        let scale = found.abs().max();
+        assert!((found - found.transpose()).abs().max() <= 1e-10 * scale, "{found}");
+        for (row, column) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)] {
+            let energy = |here: &mut Membrane, strain: f64| {
+                // Above the diagonal only, which keeps a box in OpenMM's form.
+                let strained = |r: &[f64]| {
+                    let mut r = [r[0], r[1], r[2]];
+                    r[row] += strain * r[column];
+                    r
+                };
+                let positions: Vec<_> = mesh.0.chunks(3).flat_map(strained).collect();
+                let cell = vectors.map(|rows| Cell::new(rows.map(|row| strained(&row))).unwrap());
+                evaluated(here, &term, &positions, cell.as_ref()).0[0]
+            };
+            let step = 2e-4;
+            let [a, b, c, d] = [-2.0, -1.0, 1.0, 2.0].map(|k| energy(&mut here, k * step));
+            let slope = (a - 8.0 * b + 8.0 * c - d) / (12.0 * step);
+            let what = term[0].potential.name();
+            let difference = (slope - found[(row, column)]).abs();
+            assert!(difference <= 1e-7 * scale + 1e-9, "{what}: {slope}, not {found}");
+        }
+    }
+}
+
+#[test]
+fn the_virial_is_the_slope_along_a_strain() {
+    for vectors in BOXES {
+        let cell = Cell::new(vectors).unwrap();
+        for mesh in spanning(&cell, 53) {
+            check_virial(&mesh, &open_terms(false), Some(vectors));
+        }
+        let closed = spheroid(5, 7, &mut random(2));
+        let crossing = (wrapped(&closed.0, &cell, 2.0, 7), closed.1.clone());
+        check_virial(&crossing, &all_terms(false), Some(vectors));
+        check_virial(&closed, &all_terms(false), None);
+    }
+}
+
+#[test]
+fn without_a_box_the_virial_is_that_of_the_forces() {
+    let mesh = spheroid(5, 7, &mut random(2));
+    let mut here = membrane(&mesh);
+    for term in all_terms(false) {
+        let (_, forces) = evaluated(&mut here, &[term], &mesh.0, None);
+        let virial = here.virial(&[term], &mesh.0, None).unwrap();
+        let scale = virial.abs().max();
+        for row in 0..3 {
+            for column in 0..3 {
+                let parts = forces.chunks(3).zip(mesh.0.chunks(3)).map(|(f, r)| f[row] * r[column]);
+                let expected = -parts.sum::<f64>();
+                let difference = (virial[(row, column)] - expected).abs();
+                assert!(difference <= 1e-9 * scale, "{}: {virial}", term.potential.name());
+            }
+        }
+    }
+}
+
+#[test]
+fn threads_do_not_change_bits_of_what_spans_the_box() {
+    let cell = Cell::new(BOXES[0]).unwrap();
+    let mesh = sheet(&cell, 32, 32, &mut random(9));
+    let terms = open_terms(false);
+    let results = [1, 2, 4].map(|threads| {
+        let mut here = membrane(&mesh);
+        here.set_threads(threads);
+        // The choice between one thread and several tries both.
+        (0..8).map(|_| evaluated(&mut here, &terms, &mesh.0, Some(&cell))).collect::<Vec<_>>()
+    });
+    let expected = &results[0][0];
+    assert!(results.iter().flatten().all(|found| found == expected));
+}

@@ -57,6 +57,11 @@ extern int Helfrich_MembraneForce_addEnergyParameterDerivative(OpenMM_Force* for
 extern int Helfrich_MembraneForce_updateParametersInContext(OpenMM_Force* force, OpenMM_Context* context);
 /** Write three particle indices a triangle, as they are in the Context now. */
 extern int Helfrich_MembraneForce_getTrianglesInContext(OpenMM_Force* force, OpenMM_Context* context, int* corners);
+/**
+ * Write the derivative of the energy of all membrane forces of the Context in some force groups (-1: all) with respect
+ * to a homogeneous strain of positions and periodic box, nine numbers row by row, kJ/mol.
+ */
+extern int Helfrich_MembraneForce_getVirial(OpenMM_Force* force, OpenMM_Context* context, int groups, double* virial);
 extern int Helfrich_MembraneForce_setTrianglesInContext(OpenMM_Force* force, OpenMM_Context* context,
                                                         const int* corners, int numTriangles);
 

@@ -152,6 +152,13 @@ int helfrich_shim_getTrianglesInContext(void* force, void* context, int* corners
     });
 }
 
+int helfrich_shim_getVirial(void* force, void* context, int groups, double* virial) {
+    return guarded([&] {
+        vector<double> found = asTriangulated(force).getVirial(asContext(context), groups);
+        std::copy(found.begin(), found.end(), virial);
+    });
+}
+
 int helfrich_shim_setTrianglesInContext(void* force, void* context, const int* corners, int numTriangles) {
     return guarded([&] {
         TriangulatedForce& surface = asTriangulated(force);

@@ -43,6 +43,9 @@ public:
     void restoreConnectivity(OpenMM::ContextImpl& context, const std::string& saved) {
         membrane->restore(owner.getTypeName(), context, saved);
     }
+    std::vector<double> getVirial(OpenMM::ContextImpl& context, int groups) const {
+        return SharedMembrane::sumVirials(context, groups);
+    }
     /** Whether the force belongs to one of some groups, given as bits. */
     bool isInGroups(int groups) const;
     /** Whether the surface was in the periodic box when the Context was made. */

@@ -53,6 +53,9 @@ public:
     void restoreConnectivity(OpenMM::ContextImpl& context, const std::string& saved) {
         membrane->restore(owner.getTypeName(), context, saved);
     }
+    std::vector<double> getVirial(OpenMM::ContextImpl& context, int groups) const {
+        return SharedMembrane::sumVirials(context, groups);
+    }
     const HelfrichFlipRules& getRules() const {
         return rules;
     }

@@ -174,6 +174,24 @@ double SharedMembrane::evaluate(const string& subject, ContextImpl& context, int
     return energy;
 }
 
+vector<double> SharedMembrane::sumVirials(ContextImpl& context, int groups) {
+    vector<Vec3> positions;
+    context.getPositions(positions);
+    vector<double> sum(9, 0.0);
+    for (const auto& membrane : findAll(context)) {
+        membrane->settle(context);
+        membrane->collect(context, groups);
+        if (membrane->active.empty())
+            continue;
+        const string& subject = membrane->active[0]->getOwner().getTypeName();
+        check(Helfrich_Membrane_addVirial(subject.c_str(), membrane->core, membrane->terms.data(),
+                                          (int64_t) membrane->terms.size(), (int64_t) positions.size(),
+                                          reinterpret_cast<const double*>(positions.data()), membrane->findBox(context),
+                                          sum.data()));
+    }
+    return sum;
+}
+
 int64_t SharedMembrane::flip(const string& subject, ContextImpl& context, int groups, const vector<Vec3>& positions,
                              const HelfrichFlipRules& rules, int64_t attempts, HelfrichFlipState& state,
                              vector<Vec3>* forceChange) {

@@ -75,6 +75,8 @@ public:
     double evaluate(const std::string& subject, OpenMM::ContextImpl& context, int groups,
                     const std::vector<OpenMM::Vec3>& positions, bool includeEnergy, std::vector<OpenMM::Vec3>* forces,
                     std::map<std::string, double>* derivatives);
+    /** What TriangulatedForce::getVirial() returns: the sum over all membranes of a Context. */
+    static std::vector<double> sumVirials(OpenMM::ContextImpl& context, int groups);
     /**
      * Try to flip edges.
      *

@@ -94,6 +94,17 @@ public:
      */
     void restoreConnectivity(OpenMM::Context& context, const std::string& saved) const;
     /**
+     * Get the derivative of the energy of all membrane forces of a Context with respect to a homogeneous strain of
+     * positions and periodic box: with r + ε r for r and likewise for the box vectors it is ∂E/∂ε, kJ/mol, exact. It is
+     * symmetric. Where no surface spans the box it is −Σ F ⊗ r; the kinetic part of a pressure is not in it, nor that
+     * of other forces.
+     *
+     * @param context  the Context
+     * @param groups   a bit for each force group that counts, as of Context::getState()
+     * @return the nine elements, row by row
+     */
+    std::vector<double> getVirial(OpenMM::Context& context, int groups = -1) const;
+    /**
      * Get the name of the class, as messages and XML have it.
      */
     const std::string& getTypeName() const {
@@ -170,6 +181,10 @@ inline std::string TriangulatedForce::saveConnectivity(OpenMM::Context& context)
 
 inline void TriangulatedForce::restoreConnectivity(OpenMM::Context& context, const std::string& saved) const {
     getConnectivityImpl(context).restoreConnectivity(getContextImpl(context), saved);
+}
+
+inline std::vector<double> TriangulatedForce::getVirial(OpenMM::Context& context, int groups) const {
+    return getConnectivityImpl(context).getVirial(getContextImpl(context), groups);
 }
 
 inline OpenMM::ForceImpl* TriangulatedForce::createImpl() const {

@@ -10,7 +10,7 @@
 
 namespace HelfrichPlugin {
 
-/** What a force asks of its implementation about the connectivity of its surface; see UpdatableImpl. */
+/** What a force asks of its implementation about the surfaces of a Context; see UpdatableImpl. */
 class ConnectivityImpl {
 public:
     virtual ~ConnectivityImpl() {
@@ -19,6 +19,8 @@ public:
     virtual void setTrianglesInContext(OpenMM::ContextImpl& context, const std::vector<int>& corners) = 0;
     virtual std::string saveConnectivity(OpenMM::ContextImpl& context) const = 0;
     virtual void restoreConnectivity(OpenMM::ContextImpl& context, const std::string& saved) = 0;
+    /** Of all membrane forces of the Context in some groups, not only of this one. */
+    virtual std::vector<double> getVirial(OpenMM::ContextImpl& context, int groups) const = 0;
 };
 
 /** What MonteCarloBondFlip asks of its implementation besides. */

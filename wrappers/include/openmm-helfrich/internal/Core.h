@@ -86,6 +86,10 @@ void Helfrich_Membrane_setThreads(HelfrichMembrane* membrane, int threads);
 int Helfrich_Membrane_evaluate(const char* subject, HelfrichMembrane* membrane, const HelfrichTerm* terms,
                                int64_t numTerms, int64_t numParticles, const double* positions, const double* box,
                                HelfrichContribution* contributions, double* forces);
+/** Add to nine numbers, row by row. */
+int Helfrich_Membrane_addVirial(const char* subject, HelfrichMembrane* membrane, const HelfrichTerm* terms,
+                                int64_t numTerms, int64_t numParticles, const double* positions, const double* box,
+                                double* virial);
 int Helfrich_Membrane_checkFlips(const char* subject, const HelfrichMembrane* membrane, const HelfrichFlipRules* rules);
 int Helfrich_Membrane_flip(const char* subject, HelfrichMembrane* membrane, const HelfrichTerm* terms, int64_t numTerms,
                            int64_t numParticles, const double* positions, const double* box,

@@ -1,0 +1,52 @@
+"""Pressure and tension of membranes: what their energy does when everything is stretched."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from ._present import surfaces_of
+
+__all__ = ["virial"]
+
+
+def virial(context, groups: int | Iterable[int] = -1) -> np.ndarray:
+    """The derivative of the membranes' energy with respect to a homogeneous strain.
+
+    With positions r → r + ε r, and the vectors of the periodic box likewise, it is W = ∂E/∂ε: exact,
+    in triclinic boxes too, and symmetric. Where no surface spans the box it is −Σ F ⊗ r. A sheet in
+    the xy plane that spans a box of sides a and b has the tension (W_xx + W_yy) / (2 a b), and a tube
+    along z pulls at the box with W_zz / c; to the pressure tensor W adds −W / V. What motion adds, and
+    other forces, is not among it.
+
+    Parameters
+    ----------
+    context : openmm.Context
+        One with positions. All membrane forces in it count, of all surfaces.
+    groups : int or iterable of int
+        The force groups that count, as `Context.getState` takes them: bits of an integer, or the
+        groups themselves. All of them by default.
+
+    Returns
+    -------
+    ndarray of float
+        Shape (3, 3), kJ/mol; zeros where there is no membrane force.
+
+    Raises
+    ------
+    openmm.OpenMMException
+        Where an evaluation of the energy would raise it.
+
+    Notes
+    -----
+    It costs as much as some evaluations of the energy on one thread, on the processor.
+    """
+    if not isinstance(groups, int):
+        groups = sum(1 << group for group in set(groups))
+    # OpenMM's C++ has the 32 groups in an int.
+    bits = (groups & 0xFFFFFFFF) - ((groups & 0x80000000) << 1)
+    surfaces = surfaces_of(context)
+    if not surfaces:
+        return np.zeros((3, 3))
+    return np.frombuffer(surfaces[0]._getVirial(context, bits)).reshape(3, 3).copy()
