@@ -14,18 +14,17 @@ from it in any direction, so that the tube has no symmetry to keep; triangle hei
 triangles whole, and cost nothing in the end.
 
 The force is f = (dE/dε_zz) / L of a homogeneous strain along the tube, that of the positions and of
-the box, found by a central difference (and by `virial`, where there is one). "radius" is that of
+the box, found by a central difference of energies, and by `virial`. "radius" is that of
 the cylinder of the same area, A / 2πL; "spread" is how far vertices are from one cylinder.
 """
 
 import numpy as np
-import openmmhelfrich
 from membranes import KBT, box_of, context_of, positions_of, strain_derivative
 from openmm import LocalEnergyMinimizer
-from openmmhelfrich import BendingForce, Mesh, SurfaceAreaForce, TriangleHeightForce
+from openmmhelfrich import BendingForce, Mesh, SurfaceAreaForce, TriangleHeightForce, virial
 from reports import Report
 
-VERSION = 1
+VERSION = 2
 RADIUS = 20.0  # nm, what σ is chosen for
 RIGIDITY = 20 * KBT
 ASPECT = 3.0  # length over radius
@@ -70,8 +69,7 @@ def relaxed(n_around, scheme, start, jitter):
         "force": strain_derivative(context, 2) / length,
         "spread": spread(final.vertices),
     }
-    if hasattr(openmmhelfrich, "virial"):
-        found["virial"] = openmmhelfrich.virial(context)[2, 2] / length
+    found["virial"] = virial(context)[2, 2] / length
     return found
 
 
@@ -101,7 +99,7 @@ def main():
                 run["force"],
                 100 * (run["force"] / force - 1),
                 run["spread"] / run["radius"],
-                run.get("virial", np.nan),
+                run["virial"],
             )
         )
     columns = (
