@@ -15,32 +15,39 @@ TEMPERATURE = 300.0  # K
 sys.path.append(str(Path(__file__).resolve().parents[1] / "flips"))
 
 
-def system_of(mesh, forces, mass=50.0):
-    """A System of the vertices of a mesh, in its box, with forces.
+def system_of(mesh, forces, mass=50.0, others=0):
+    """A System of the vertices of a mesh, in its box, and further particles, with forces.
 
     Parameters
     ----------
     mesh : Mesh
     forces : iterable of openmm.Force
     mass : float
-        Of a vertex, amu.
+        Of a particle, amu.
+    others : int
+        Particles behind the vertices.
     """
     system = openmm.System()
     if mesh.box is not None:
         system.setDefaultPeriodicBoxVectors(*mesh.box)
-    for _ in range(mesh.num_vertices):
+    for _ in range(mesh.num_vertices + others):
         system.addParticle(mass)
     for force in forces:
         system.addForce(force)
     return system
 
 
-def context_of(mesh, forces, integrator=None, mass=50.0):
-    """A Context of a mesh on one thread of platform Helfrich, at the positions of the mesh."""
+def context_of(mesh, forces, integrator=None, mass=50.0, others=()):
+    """A Context of a mesh on one thread of platform Helfrich, at the positions of the mesh.
+
+    `others` are positions of further particles, shape (count, 3), nm.
+    """
     integrator = integrator or openmm.VerletIntegrator(1e-3)
     platform = openmm.Platform.getPlatformByName("Helfrich")
-    context = openmm.Context(system_of(mesh, forces, mass), integrator, platform, {"Threads": "1"})
-    context.setPositions(mesh.vertices)
+    context = openmm.Context(
+        system_of(mesh, forces, mass, len(others)), integrator, platform, {"Threads": "1"}
+    )
+    context.setPositions(np.concatenate([mesh.vertices, np.reshape(others, (-1, 3))]))
     return context
 
 
