@@ -1,8 +1,9 @@
 """A bead that a membrane wraps by adhesion, from w R² = 2κ on.
 
-A membrane without tension that covers a bead up to the polar angle α bends there with 4πκ (1 − cos
-α) and gains w · 2πR² (1 − cos α); around the contact it continues as a catenoid, c = R sin² α, which
-costs nothing. Both go with 1 − cos α, so the bead is wrapped wholly or not at all: at
+A membrane without tension that covers a bead up to the polar angle α bends there with
+4πκ (1 − cos α) and gains w · 2πR² (1 − cos α); around the contact it continues as a catenoid,
+c = R sin² α, which costs nothing. Both go with 1 − cos α, so the bead is wrapped wholly or not at
+all: at
 
     w R² = 2κ
 
