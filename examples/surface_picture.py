@@ -39,10 +39,12 @@ def draw(path, panels, beads=(), view=(25, -60)):
         for centre, radius in beads:
             axes.plot_surface(*sphere(centre, radius), color="#4f77aa", linewidth=0)
         low, high = vertices.min(axis=0), vertices.max(axis=0)
-        middle, extent = (low + high) / 2, (high - low).max() / 2
-        for axis, at in zip("xyz", middle, strict=True):
-            getattr(axes, f"set_{axis}lim")(at - extent, at + extent)
-        axes.set_box_aspect((1, 1, 1), zoom=1.4)
+        for centre, radius in beads:
+            low, high = np.minimum(low, np.subtract(centre, radius)), np.maximum(high, radius)
+        extent = np.maximum(high - low, 0.2 * (high - low).max())
+        for axis, at, size in zip("xyz", (low + high) / 2, extent / 2, strict=True):
+            getattr(axes, f"set_{axis}lim")(at - size, at + size)
+        axes.set_box_aspect(extent, zoom=1.5)
         axes.view_init(*view)
         axes.set_axis_off()
         axes.set_title(title, fontsize=10)

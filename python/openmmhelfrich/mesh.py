@@ -452,12 +452,12 @@ class Mesh:
         geometry.check_closed(self.border_loops, "Mesh.volume")
         vertices = self._vertices
         if self._box is not None:
-            vertices, part, spanning = self._unfolded
+            vertices, part, spanning = periodic.unfolded(vertices, self.edges, self._box)
             if spanning.any():
+                vertex = np.flatnonzero(spanning.any(axis=1)[part])[0]
                 raise MeshError(
-                    "Mesh.volume: the part of the mesh with vertex "
-                    f"{np.flatnonzero(spanning[part])[0]} spans its periodic box and encloses no "
-                    "volume"
+                    f"Mesh.volume: the part of the mesh with vertex {vertex} spans its periodic "
+                    "box and encloses no volume"
                 )
         return geometry.volume_enclosed(vertices, self._triangles)
 
@@ -495,27 +495,22 @@ class Mesh:
         """The number of connected surfaces that the mesh consists of."""
         return geometry.component_count(self.num_vertices, self.edges)
 
-    @functools.cached_property
-    def _unfolded(self):
-        return periodic.unfolded(self._vertices, self.edges, self._box)
-
     def unfolded(self) -> tuple[np.ndarray, np.ndarray]:
         """The surface as it looks without a box: whole triangles, to draw or to write.
 
-        A vertex of triangles on different sides of the box appears once for each of its images, so
-        a sheet that spans the box gets borders. Other parts stay closed.
+        A part that spans the box is cut at its faces, so it gets borders, and a vertex of triangles
+        on both sides appears once for each of its images there. Other parts stay whole.
 
         Returns
         -------
         vertices : ndarray
-            Shape (num_images, 3), nm; the vertices of the mesh first.
+            Shape (num_images, 3), nm, in the order of the mesh, images one after another.
         triangles : ndarray of int
             Shape (num_triangles, 3), in the order of the mesh.
         """
         if self._box is None:
             return self._vertices, self._triangles
-        vertices, _, _ = self._unfolded
-        return periodic.cut(vertices, self._triangles, self._box)
+        return periodic.cut(self._vertices, self._triangles, self.edges, self._box)
 
     def scaled(self, factor) -> Mesh:
         """The mesh with coordinates multiplied by a factor, x → s x, about the origin, and its box.

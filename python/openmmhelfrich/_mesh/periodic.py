@@ -76,7 +76,7 @@ def unfolded(
     part : ndarray of int
         The connected part of each vertex, shape (num_vertices,).
     spanning : ndarray of bool
-        Whether each part comes back to itself through the box, shape (num_parts,).
+        Along which of a, b and c each part comes back to itself, shape (num_parts, 3).
     """
     count = len(vertices)
     ones = np.ones(len(edges), dtype=np.int8)
@@ -95,26 +95,31 @@ def unfolded(
         base = result[parent[here]]
         result[here] = base + nearest(vertices[here] - base, box)
     along = result[edges[:, 1]] - result[edges[:, 0]]
-    gap = np.abs(along - nearest(along, box)).max(axis=1)
-    spanning = np.zeros(num_parts, dtype=bool)
-    spanning[part[edges[gap > half_width(box), 0]]] = True
+    spanning = np.zeros((num_parts, 3), dtype=bool)
+    np.logical_or.at(spanning, part[edges[:, 0]], _steps(along - nearest(along, box), box) != 0)
     return result, part, spanning
 
 
-def cut(
-    vertices: np.ndarray, triangles: np.ndarray, box: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Unfolded vertices, then images of them where triangles need those, and triangles of both."""
-    corners = corner_positions(vertices, triangles, box)
-    shifts = corners - vertices[triangles]
-    steps = np.rint(np.linalg.solve(box.T, shifts.reshape(-1, 3).T).T).astype(int)
-    names = np.column_stack([triangles.reshape(-1), steps])
-    moved = steps.any(axis=1)
-    images, number = np.unique(names[moved], axis=0, return_inverse=True)
-    result = triangles.reshape(-1).copy()
-    result[moved] = len(vertices) + number.reshape(-1)
-    extra = vertices[images[:, 0]] + images[:, 1:] @ box
-    return np.concatenate([vertices, extra]), result.reshape(-1, 3)
+def cut(vertices: np.ndarray, triangles: np.ndarray, edges: np.ndarray, box: np.ndarray):
+    """Whole triangles, and vertices once for each of their images that triangles need.
+
+    Where a part spans the box, its triangles are those with their middles inside of the box.
+    """
+    places, part, spanning = unfolded(vertices, edges, box)
+    corners = corner_positions(places, triangles, box)
+    middles = np.linalg.solve(box.T, corners.mean(axis=1).T).T
+    home = np.where(spanning[part[triangles[:, 0]]], np.floor(middles), 0) @ box
+    corners -= home[:, np.newaxis]
+    steps = _steps(corners - places[triangles], box)
+    names = np.column_stack([triangles.reshape(-1), steps.reshape(-1, 3)])
+    images, number = np.unique(names, axis=0, return_inverse=True)
+    return places[images[:, 0]] + images[:, 1:] @ box, number.reshape(-1, 3)
+
+
+def _steps(shifts: np.ndarray, box: np.ndarray) -> np.ndarray:
+    """Sums of box vectors, shape (…, 3), as how many of each."""
+    flat = np.linalg.solve(box.T, shifts.reshape(-1, 3).T).T
+    return np.rint(flat).astype(int).reshape(shifts.shape)
 
 
 def _reduced(vectors: np.ndarray, box: np.ndarray | None, count) -> np.ndarray:
