@@ -2,7 +2,7 @@
 
 use crate::backend::Choice;
 use crate::error::{Error, Result};
-use crate::evaluator::{ChosenEvaluator, Present};
+use crate::evaluator::{BorderEvaluator, ChosenEvaluator, Present};
 use crate::mesh::numbering::breadth_first;
 use crate::mesh::orientation::is_inside_out;
 use crate::mesh::{Topology, Triangulation};
@@ -29,6 +29,7 @@ pub struct Membrane {
     flips_of_order: u64,
     initial_fingerprint: u64,
     evaluator: ChosenEvaluator,
+    borders: BorderEvaluator,
     local: LocalEnergy,
     /// The forces after the last flips, which the time step asks for next.
     remembered: Remembered,
@@ -66,6 +67,7 @@ impl Membrane {
             order,
             flips_of_order: 0,
             evaluator,
+            borders: BorderEvaluator::default(),
             local,
             remembered: Remembered::default(),
             before: Vec::new(),
@@ -136,6 +138,7 @@ impl Membrane {
     fn take(&mut self, mesh: Triangulation, order: Vec<u32>, flips: u64) -> Result<()> {
         (self.mesh, self.order, self.flips_of_order) = (mesh, order, flips);
         self.remembered.clear();
+        self.borders.connectivity_changed();
         self.evaluator.connectivity_changed(Present { mesh: &self.mesh, order: &self.order })
     }
 
@@ -165,15 +168,17 @@ impl Membrane {
             self.check(term)?;
         }
         self.remembered.clear();
-        let before = force_change.as_ref().map(|_| {
+        let mut before = force_change.as_ref().map(|_| {
             self.before.clear();
             self.before.resize(positions.len(), 0.0);
             self.before.as_mut_slice()
         });
         let present = Present { mesh: &self.mesh, order: &self.order };
-        self.local.fill(terms, |survey| {
-            self.evaluator.survey(present, terms, positions, before, survey)
+        let on_borders = self.borders.forward(&self.mesh, terms, positions)?;
+        self.local.fill(&self.mesh, terms, |survey| {
+            self.evaluator.survey(present, terms, positions, before.as_deref_mut(), survey)
         })?;
+        self.borders.add(&self.mesh, positions, on_borders, &mut [], before);
         let made = flips::attempt(&mut self.mesh, &mut self.local, terms, rules, attempts, state);
         if made > 0 {
             self.flips_of_order += made;
@@ -181,6 +186,7 @@ impl Membrane {
             if self.flips_of_order > 2 * self.mesh.num_edges() as u64 {
                 (self.order, self.flips_of_order) = (breadth_first(&self.mesh), 0);
             }
+            self.borders.connectivity_changed();
             self.evaluator
                 .connectivity_changed(Present { mesh: &self.mesh, order: &self.order })?;
             if let Some(change) = &mut force_change {
@@ -198,8 +204,11 @@ impl Membrane {
         change: &mut [f64],
     ) -> Result<()> {
         let present = Present { mesh: &self.mesh, order: &self.order };
+        let on_borders = self.borders.forward(&self.mesh, terms, positions)?;
         let after = self.remembered.fill(terms, positions, |forces| {
-            self.evaluator.evaluate(present, terms, positions, &mut [], Some(forces))
+            self.evaluator.evaluate(present, terms, positions, &mut [], Some(&mut *forces))?;
+            self.borders.add(&self.mesh, positions, on_borders, &mut [], Some(forces));
+            Ok(())
         })?;
         for ((change, after), before) in change.iter_mut().zip(after).zip(&self.before) {
             *change = after - before;
@@ -250,7 +259,11 @@ impl Membrane {
             return Ok(());
         }
         let present = Present { mesh: &self.mesh, order: &self.order };
-        self.evaluator.evaluate(present, terms, positions, contributions, forces)
+        let on_borders = self.borders.forward(&self.mesh, terms, positions)?;
+        let (evaluator, energies) = (&mut self.evaluator, &mut *contributions);
+        evaluator.evaluate(present, terms, positions, energies, forces.as_deref_mut())?;
+        self.borders.add(&self.mesh, positions, on_borders, contributions, forces);
+        Ok(())
     }
 
     /// Refuse triangles that all run clockwise, as a slip in a mesh has them, before a volume below zero becomes a

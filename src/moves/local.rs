@@ -9,6 +9,7 @@ use super::hinges::{HINGES, Hinges};
 use crate::error::Result;
 use crate::evaluator::{Survey, SurveyedTriangle};
 use crate::mesh::NONE;
+use crate::mesh::borders::{BorderPartials, BorderTotals, Borders, angle};
 use crate::mesh::geometry::{
     EdgeGeometry, TotalPartials, Totals, TriangleGeometry, Vec3, VertexGeometry,
 };
@@ -29,6 +30,8 @@ pub struct LocalEnergy {
     vertices_never_negative: bool,
     /// Of the total area and volume, kJ/mol.
     totals_energy: f64,
+    /// If a term acts on them.
+    borders: BorderTotals,
 }
 
 /// What a flip makes of the elements that it touches. With i, j, k, l as in [`Quad`], I is the new triangle (i, l, k)
@@ -45,6 +48,7 @@ pub struct Flipped {
     vertex_energies: [f64; 4],
     totals: Totals,
     totals_energy: f64,
+    borders: BorderTotals,
 }
 
 /// The terms that act on each kind of element, by their places among all.
@@ -54,6 +58,7 @@ struct Acting {
     triangles: Places,
     edges: Places,
     vertices: Places,
+    borders: Places,
 }
 
 type Places = SmallVec<[u32; 8]>;
@@ -69,6 +74,7 @@ impl Acting {
             triangles: on(Needs::TRIANGLES),
             edges: on(Needs::EDGES),
             vertices: on(Needs::VERTICES),
+            borders: on(Needs::BORDERS),
         }
     }
 }
@@ -87,12 +93,20 @@ impl LocalEnergy {
             .sum()
     }
 
-    /// Begin with what a survey finds at some positions.
+    fn energy_of_borders(&self, terms: &[Term], totals: &BorderTotals) -> f64 {
+        let mut unused = BorderPartials::default();
+        at(terms, &self.acting.borders)
+            .map(|term| term.potential.borders(term, totals, &mut unused).energy)
+            .sum()
+    }
+
+    /// Begin with what a survey finds of a mesh at some positions.
     ///
     /// # Errors
     /// Those of the survey; nothing is known then.
     pub fn fill(
         &mut self,
+        mesh: &Triangulation,
         terms: &[Term],
         survey: impl FnOnce(&mut Survey) -> Result<()>,
     ) -> Result<()> {
@@ -101,6 +115,9 @@ impl LocalEnergy {
         self.vertices_never_negative =
             at(terms, &self.acting.vertices).all(|term| term.potential.is_never_negative(term));
         self.totals_energy = self.energy_of_totals(terms, &self.survey.totals);
+        if !self.acting.borders.is_empty() {
+            self.borders = Borders::new(mesh).totals(|vertex| *self.position(vertex));
+        }
         Ok(())
     }
 
@@ -119,6 +136,7 @@ impl LocalEnergy {
             + self.survey.vertices.iter().map(|vertex| vertex.energy).sum::<f64>()
             + edges
             + self.totals_energy
+            + self.energy_of_borders(terms, &self.borders)
     }
 
     /// The square of the length, nm², that the edge kl would have.
@@ -183,6 +201,12 @@ impl LocalEnergy {
             flipped.totals_energy = self.energy_of_totals(terms, &flipped.totals);
             difference += flipped.totals_energy - self.totals_energy;
         }
+        flipped.borders = self.borders;
+        if !self.acting.borders.is_empty() && !mesh.is_closed() {
+            flipped.borders.turning -= self.angles_on_borders(mesh, quad);
+            difference += self.energy_of_borders(terms, &flipped.borders)
+                - self.energy_of_borders(terms, &self.borders);
+        }
         if survey.needs.contains(Needs::TRIANGLES) {
             difference += self.triangles_of(terms, flipped);
         }
@@ -206,6 +230,18 @@ impl LocalEnergy {
             difference += flipped.vertex_energies.iter().sum::<f64>() - at_hand;
         }
         difference
+    }
+
+    /// By how much the angles at those of the four vertices that are on borders will grow.
+    fn angles_on_borders(&self, mesh: &Triangulation, quad: &Quad) -> f64 {
+        let [i, j, k, l] = quad.vertices;
+        let angle_at = |corner: [u32; 3]| match mesh.is_border(corner[0]) {
+            true => angle(corner.map(|vertex| *self.position(vertex))),
+            false => 0.0,
+        };
+        let of =
+            |[a, b, c]: [u32; 3]| angle_at([a, b, c]) + angle_at([b, c, a]) + angle_at([c, a, b]);
+        of([i, l, k]) + of([j, k, l]) - of([i, j, k]) - of([j, i, l])
     }
 
     /// Energies of I and J, less those of the triangles that they replace.
@@ -387,6 +423,7 @@ impl LocalEnergy {
         }
         survey.totals = flipped.totals;
         self.totals_energy = flipped.totals_energy;
+        self.borders = flipped.borders;
     }
 }
 

@@ -1,0 +1,90 @@
+//! The energy of borders, in one pass beside whatever evaluator does the rest: they are few.
+
+use super::checks::check_energies;
+use crate::error::Result;
+use crate::mesh::Triangulation;
+use crate::mesh::borders::{BorderPartials, Borders};
+use crate::mesh::geometry::Vec3;
+use crate::potentials::{Contribution, Needs, Term};
+use smallvec::SmallVec;
+
+/// Evaluates the terms of borders on one mesh.
+#[derive(Default)]
+pub struct BorderEvaluator {
+    /// Made when a term first needs them with the present connectivity.
+    borders: Option<Borders>,
+}
+
+/// Energies of the terms, and what they do to the borders.
+pub struct OnBorders {
+    contributions: SmallVec<[Contribution; 8]>,
+    partials: BorderPartials,
+}
+
+impl BorderEvaluator {
+    /// Go on with other connectivity.
+    pub fn connectivity_changed(&mut self) {
+        self.borders = None;
+    }
+
+    /// The energies of terms at the positions of all particles, nm; `None` if none acts on borders.
+    ///
+    /// # Errors
+    /// An energy that is not finite although the geometry is.
+    pub fn forward(
+        &mut self,
+        mesh: &Triangulation,
+        terms: &[Term],
+        positions: &[f64],
+    ) -> Result<Option<OnBorders>> {
+        let acts = |term: &Term| term.potential.needs(term).contains(Needs::BORDERS);
+        if !terms.iter().any(acts) {
+            return Ok(None);
+        }
+        let borders = self.borders.get_or_insert_with(|| Borders::new(mesh));
+        let totals = borders.totals(|vertex| place(mesh, positions, vertex));
+        let mut partials = BorderPartials::default();
+        let contributions: SmallVec<[_; 8]> = terms
+            .iter()
+            .map(|term| match acts(term) {
+                true => term.potential.borders(term, &totals, &mut partials),
+                false => Contribution::default(),
+            })
+            .collect();
+        // Of positions that are not finite the other evaluator names the culprit.
+        if totals.length.is_finite() && totals.turning.is_finite() {
+            let terms: SmallVec<[&Term; 8]> = terms.iter().collect();
+            check_energies(terms.iter(), &contributions)?;
+        }
+        Ok(Some(OnBorders { contributions, partials }))
+    }
+
+    /// Add what [`Self::forward`] has found to energies, if they are wanted, and to forces, kJ/mol/nm.
+    pub fn add(
+        &self,
+        mesh: &Triangulation,
+        positions: &[f64],
+        found: Option<OnBorders>,
+        contributions: &mut [Contribution],
+        forces: Option<&mut [f64]>,
+    ) {
+        let (Some(found), Some(borders)) = (found, &self.borders) else { return };
+        for (sum, part) in contributions.iter_mut().zip(found.contributions) {
+            *sum += part;
+        }
+        if let Some(forces) = forces {
+            let position = |vertex| place(mesh, positions, vertex);
+            borders.forces(position, &found.partials, |vertex, force| {
+                let particle = mesh.particles()[vertex as usize] as usize;
+                for (sum, part) in forces[3 * particle..][..3].iter_mut().zip(&force) {
+                    *sum += part;
+                }
+            });
+        }
+    }
+}
+
+fn place(mesh: &Triangulation, positions: &[f64], vertex: u32) -> Vec3 {
+    let particle = mesh.particles()[vertex as usize] as usize;
+    Vec3::from_column_slice(&positions[3 * particle..][..3])
+}
