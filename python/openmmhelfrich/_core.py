@@ -73,12 +73,12 @@ def orient(vertices: np.ndarray, triangles: np.ndarray) -> None:
         Shape (num_vertices, 3), float64, C-contiguous, nm.
     triangles : ndarray
         Shape (num_triangles, 3), int64, C-contiguous, writeable. Triangles are reversed where
-        needed, so that neighbours agree and every component encloses a positive volume.
+        needed, so that neighbours agree and every closed component encloses a positive volume.
 
     Raises
     ------
     MeshError
-        With the core's message, if the mesh is not closed, 2-manifold, orientable and free of
+        With the core's message, if the mesh is not 2-manifold, orientable and free of
         repeated, unused and degenerate elements.
     """
     if library().Helfrich_Mesh_orient(len(vertices), vertices, len(triangles), triangles) != 0:

@@ -1,4 +1,4 @@
-"""Closed triangulated surfaces: validated, oriented outward, immutable."""
+"""Triangulated surfaces: validated, oriented, immutable."""
 
 from __future__ import annotations
 
@@ -16,12 +16,14 @@ __all__ = ["Mesh", "MeshError"]
 
 
 class Mesh:
-    """A closed, oriented, 2-manifold triangulation of one or several surfaces.
+    """An oriented, 2-manifold triangulation of one or several surfaces, closed or with borders.
 
     Triangles are counter-clockwise seen from outside, so that normals point outward and the volume
-    is positive. Several closed components are allowed; each is oriented outward by itself, even
-    if it lies inside of another one, and areas and volumes are sums over the components. A mesh
-    never changes: its arrays are read-only, and transformations return a new mesh.
+    is positive. Several components are allowed; each closed one is oriented outward by itself, even
+    if it lies inside of another one, and areas and volumes are sums over the components. One with
+    borders is oriented as its first triangle is. What needs a closed surface, such as the volume,
+    is refused where there is a border. A mesh never changes: its arrays are read-only, and
+    transformations return a new mesh.
 
     Parameters
     ----------
@@ -36,7 +38,7 @@ class Mesh:
     MeshError
         If a shape, a type or a unit is wrong; if a coordinate is not finite or an index out of
         range; if a triangle repeats a vertex, repeats another triangle or has no area; if an edge
-        does not belong to exactly two triangles; if the triangles at a vertex form more than one
+        belongs to more than two triangles; if the triangles at a vertex form more than one
         fan; if a vertex is unused or lies exactly on another one; if the surface cannot be oriented
         or is empty. The message names the culprit.
 
@@ -100,15 +102,18 @@ class Mesh:
             If the extension is unknown; if the file is broken or truncated, naming the line (the
             number of bytes, for binary files); if it has faces that cannot be split, or other than
             triangles without `triangulate`; if `merge` would join two corners of a triangle; or if
-            its mesh is not valid, see `Mesh`. The message names what would mend it.
+            its mesh is not valid, see `Mesh`, or has borders where vertices nearly coincide. The
+            message names what would mend it.
         """
         if merge is not None:
             merge = inputs.not_negative(length(merge, "Mesh.read", "merge"), "Mesh.read", "merge")
         vertices, triangles = files.read(path, triangulate, merge, drop_unused)
         try:
-            return cls(vertices, triangles)
+            mesh = cls(vertices, triangles)
+            files.check_seams(mesh.borders, vertices, triangles)
         except MeshError as reason:
             raise files.explained(path, reason, vertices, triangles) from None
+        return mesh
 
     def write(self, path, *, point_data=None, binary=None) -> None:
         """Write a PLY, OBJ, STL, OFF, VTK, VTU or Gmsh (``.msh``) file, coordinates in nm.
@@ -249,28 +254,46 @@ class Mesh:
         return len(self._triangles)
 
     @functools.cached_property
+    def borders(self) -> tuple[np.ndarray, ...]:
+        """The vertices of each border in turn, the surface on the left, from the lowest one.
+
+        One int64 array for each border, read-only; none for a closed surface.
+        """
+        loops = geometry.border_loops(self._triangles)
+        for loop in loops:
+            loop.flags.writeable = False
+        return loops
+
+    @functools.cached_property
     def area(self) -> float:
         """Total area A = Σ_t |AB × AC| / 2 (B2), nm²."""
         return geometry.surface_area(self._vertices, self._triangles)
 
     @functools.cached_property
     def volume(self) -> float:
-        """Enclosed volume V = Σ_t A · (B × C) / 6 (B3, B4), summed over components, nm³."""
+        """Enclosed volume V = Σ_t A · (B × C) / 6 (B3, B4), summed over components, nm³.
+
+        Raises MeshError if the surface has a border.
+        """
+        geometry.check_closed(self.borders, "Mesh.volume")
         return geometry.volume_enclosed(self._vertices, self._triangles)
 
     @property
     def reduced_volume(self) -> float:
-        """Volume over that of the sphere of equal total area, v = 6 √π V / A^{3/2}; at most 1."""
+        """Volume over that of the sphere of equal total area, v = 6 √π V / A^{3/2}; at most 1.
+
+        Raises MeshError if the surface has a border.
+        """
         return geometry.reduced_volume(self.area, self.volume)
 
     @property
     def euler_characteristic(self) -> int:
-        """num_vertices − num_edges + num_triangles: 2 for a sphere, summed over components."""
+        """num_vertices − num_edges + num_triangles: 2 for a sphere, 1 for a disk; of all components."""
         return self.num_vertices - len(self.edges) + self.num_triangles
 
     @functools.cached_property
     def num_components(self) -> int:
-        """The number of closed surfaces that the mesh consists of."""
+        """The number of connected surfaces that the mesh consists of."""
         return geometry.component_count(self.num_vertices, self.edges)
 
     def scaled(self, factor) -> Mesh:
@@ -356,7 +379,7 @@ class Mesh:
         Raises
         ------
         MeshError
-            If the reduced volume is out of this range.
+            If the reduced volume is out of this range, or the surface has a border.
         """
         return self._spheroid(reduced_volume, False, "Mesh.oblate")
 
@@ -368,6 +391,7 @@ class Mesh:
         return self._spheroid(reduced_volume, True, "Mesh.prolate")
 
     def _spheroid(self, reduced_volume, prolate: bool, where: str) -> Mesh:
+        geometry.check_closed(self.borders, where)
         arrays = self._vertices, self._triangles
         return Mesh(transform.spheroid(*arrays, reduced_volume, prolate, where), self._triangles)
 
@@ -478,9 +502,10 @@ class Mesh:
 
     def __repr__(self) -> str:
         parts = "" if self.num_components == 1 else f", {self.num_components} components"
+        rest = f"{len(self.borders)} border(s)" if self.borders else f"volume={self.volume:.6g} nm³"
         return (
             f"Mesh({self.num_vertices} vertices, {self.num_triangles} triangles{parts}, "
-            f"area={self.area:.6g} nm², volume={self.volume:.6g} nm³)"
+            f"area={self.area:.6g} nm², {rest})"
         )
 
     def __eq__(self, other) -> bool:

@@ -26,6 +26,7 @@ from .forces import (
     TriangleAreaRepulsionForce,
     TriangleHeightForce,
 )
+from ._mesh.geometry import check_closed
 from .mesh import Mesh
 
 # kBT at the paper's 300 K, in kJ/mol: its energies are given in multiples of this.
@@ -139,6 +140,7 @@ class Vesicle:
         nm = unit.nanometer
         if not isinstance(mesh, Mesh):
             raise TypeError(f"Vesicle: mesh needs a Mesh, got {type(mesh).__name__}")
+        check_closed(mesh.borders, "Vesicle: mesh")
         self._mesh = mesh
         self._rigidity = checked_field("rigidity", rigidity, _ENERGY, mesh)
         self._area_modulus = checked_number("area_modulus", area_modulus, _ENERGY / nm**2)

@@ -171,9 +171,43 @@ def projective_plane():
     return np.random.default_rng(3).normal(size=(6, 3)), triangles
 
 
+def test_an_open_mesh_has_borders():
+    ball = Mesh.icosphere(2, 3.0)
+    kept = np.setdiff1d(np.arange(ball.num_triangles), [3, 40, 41])
+    triangles = ball.triangles[kept]
+    mixed = np.where((np.arange(len(kept)) % 3 == 1)[:, None], triangles[:, ::-1], triangles)
+    mesh = Mesh(ball.vertices, mixed)
+    # As the first triangle is turned.
+    assert (np.sort(mesh.triangles, axis=1) == np.sort(triangles, axis=1)).all()
+    assert _same_rotation(mesh.triangles, triangles)
+    assert mesh.euler_characteristic == 2 - len(mesh.borders)
+    sides = {tuple(t[[k, (k + 1) % 3]].tolist()) for t in mesh.triangles for k in range(3)}
+    alone = {side for side in sides if side[::-1] not in sides}
+    assert alone == {
+        (int(a), int(b)) for loop in mesh.borders for a, b in zip(loop, np.roll(loop, -1))
+    }
+    turned = Mesh(ball.vertices, triangles[:, ::-1])
+    assert _same_rotation(turned.triangles, triangles[:, ::-1])
+    assert mesh.area == pytest.approx(turned.area, rel=1e-14)
+    for name in ("volume", "reduced_volume"):
+        with pytest.raises(MeshError, match=r"a border of \d edges through vertices \d+, \d+"):
+            getattr(mesh, name)
+    with pytest.raises(MeshError, match=r"^Mesh.oblate needs a closed surface"):
+        mesh.oblate(0.5)
+    assert "border(s)" in repr(mesh)
+
+
+def _same_rotation(one, two):
+    first = np.argmin(one, axis=1), np.argmin(two, axis=1)
+    rows = np.arange(len(one))[:, None]
+    one, two = (
+        t[rows, (k[:, None] + [0, 1, 2]) % 3] for t, k in zip((one, two), first, strict=True)
+    )
+    return np.array_equal(one, two)
+
+
 INVALID = {
     "empty": (([], []), "no triangles"),
-    "open": (broken(triangles=FACES[:3]), r"edge \(0, 2\) belongs to triangle 0 only.*open"),
     "edge of four": (two_tetrahedra({0: 0, 1: 1}), r"edge \(0, 1\) is shared by 4 triangles"),
     "pinched": (two_tetrahedra({0: 0}), "vertex 0 form 2 separate fans"),
     "repeated index": (with_corner(0), r"triangle 1 \(0, 1, 0\) repeats vertex"),

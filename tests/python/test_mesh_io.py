@@ -407,10 +407,10 @@ def test_other_cells_are_refused(tmp_path, cells, message):
 
 
 def test_an_invalid_mesh_is_reported_with_its_file(tmp_path):
-    path = tmp_path / "open.off"
-    path.write_text(lines(OFF.replace("4 4 6", "4 3 6"), 10))
+    path = tmp_path / "twice.off"
+    path.write_text(OFF.replace("3 0 1 3", "3 0 2 1"))
     with pytest.raises(
-        MeshError, match=r"^Mesh.read: .*open.off: edge \(0, 2\) belongs to triangle"
+        MeshError, match=r"^Mesh.read: .*twice.off: triangles 0 and 1 have the same corners"
     ):
         Mesh.read(path)
 

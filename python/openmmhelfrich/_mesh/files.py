@@ -11,7 +11,7 @@ from ..errors import MeshError
 from . import obj, off, other, ply, repair, stl, vtk_legacy, vtk_xml
 from .source import Source
 
-__all__ = ["explained", "read", "write"]
+__all__ = ["check_seams", "explained", "read", "write"]
 
 _READERS = {
     ".ply": ply.read,
@@ -78,6 +78,15 @@ def read(
     if drop_unused:
         vertices, triangles = repair.drop(vertices, triangles)
     return vertices, triangles
+
+
+def check_seams(borders: tuple, vertices: np.ndarray, triangles: np.ndarray) -> None:
+    """Refuse borders where vertices nearly coincide, which are seams that were to be closed."""
+    if borders and repair.near(vertices, triangles) is not None:
+        raise MeshError(
+            f"the surface is open along a border of {len(borders[0])} edges, and looks as if it "
+            "were not to be"
+        )
 
 
 def explained(path, reason: MeshError, vertices: np.ndarray, triangles: np.ndarray) -> MeshError:

@@ -11,7 +11,11 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from ..errors import MeshError
+
 __all__ = [
+    "border_loops",
+    "check_closed",
     "component_count",
     "edges_of",
     "reduced_volume",
@@ -45,6 +49,34 @@ def edges_of(triangles: np.ndarray) -> np.ndarray:
     sides = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     sides.sort(axis=1)
     return np.unique(sides, axis=0)
+
+
+def border_loops(triangles: np.ndarray) -> tuple[np.ndarray, ...]:
+    """The vertices of each border in turn, with the surface on the left, from the lowest one."""
+    sides = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    base = int(triangles.max()) + 1
+    alone = sides[~np.isin(sides @ [base, 1], sides @ [1, base])]
+    after = dict(alone.tolist())
+    loops = []
+    for start in sorted(after):
+        loop = []
+        while start in after:
+            loop.append(start)
+            start = after.pop(start)
+        if loop:
+            loops.append(np.array(loop))
+    return tuple(loops)
+
+
+def check_closed(loops: tuple[np.ndarray, ...], subject: str) -> None:
+    """Refuse a surface with borders where there must be none; `subject` begins the message."""
+    if loops:
+        first = loops[0].tolist()
+        names = ", ".join(map(str, first[:6])) + (" …" if len(first) > 6 else "")
+        raise MeshError(
+            f"{subject} needs a closed surface, but this one has a border of {len(first)} edges "
+            f"through vertices {names}; close the hole"
+        )
 
 
 def component_count(num_vertices: int, edges: np.ndarray) -> int:

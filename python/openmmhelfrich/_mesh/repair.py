@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 
 from ..errors import MeshError
 
-__all__ = ["drop", "hints", "merge"]
+__all__ = ["drop", "hints", "merge", "near"]
 
 # Vertices of no common edge that are nearer than this part of the median edge are worth a hint.
 _NEAR = 1e-2
@@ -82,22 +82,31 @@ def hints(points: np.ndarray, triangles: np.ndarray) -> str:
         found += (
             "; drop_unused=True (--drop-unused) leaves out the vertices that belong to no triangle"
         )
+    pair = near(points, triangles)
+    if pair is not None:
+        count, a, b, gap = pair
+        enough = f"{2 * gap:.1g}"
+        found += (
+            f"; {count} pair(s) of vertices nearly coincide, such as {a} and {b}, "
+            f"{gap:.3g} nm apart: merge={enough} (--merge {enough}) joins them"
+        )
+    return found
+
+
+def near(points: np.ndarray, triangles: np.ndarray) -> tuple[int, int, int, float] | None:
+    """How many pairs of vertices nearly coincide, and the two of the widest gap with it, nm."""
     sides = np.concatenate([triangles[:, [k, (k + 1) % 3]] for k in range(3)])
     lengths = np.linalg.norm(points[sides[:, 0]] - points[sides[:, 1]], axis=1)
     pairs = _pairs(points, _NEAR * float(np.median(lengths)))
     if pairs is None:
-        return found
+        return None
     numbers = np.sort(sides, axis=1) @ [len(points), 1]
     pairs = pairs[~np.isin(np.sort(pairs, axis=1) @ [len(points), 1], numbers)]
-    if len(pairs):
-        gaps = np.linalg.norm(points[pairs[:, 0]] - points[pairs[:, 1]], axis=1)
-        a, b = sorted(pairs[np.argmax(gaps)].tolist())
-        enough = f"{2 * gaps.max():.1g}"
-        found += (
-            f"; {len(pairs)} pair(s) of vertices nearly coincide, such as {a} and {b}, "
-            f"{gaps.max():.3g} nm apart: merge={enough} (--merge {enough}) joins them"
-        )
-    return found
+    if len(pairs) == 0:
+        return None
+    gaps = np.linalg.norm(points[pairs[:, 0]] - points[pairs[:, 1]], axis=1)
+    a, b = sorted(pairs[np.argmax(gaps)].tolist())
+    return len(pairs), a, b, float(gaps.max())
 
 
 def _pairs(points: np.ndarray, distance: float) -> np.ndarray | None:
