@@ -63,16 +63,16 @@ fn main() {
         let mut forces = vec![0.0; positions.len()];
         let terms_in_use: Vec<_> = terms.iter().collect();
         // From here on the mesh is that of a fluid.
-        let fill = |local: &mut LocalEnergy, evaluator: &mut CpuEvaluator| {
+        let fill = |mesh: &Triangulation, local: &mut LocalEnergy, evaluator: &mut CpuEvaluator| {
             let survey =
                 |survey: &mut Survey| evaluator.survey(&terms_in_use, &positions, None, survey);
-            local.fill(&terms, None, survey).unwrap();
+            local.fill(mesh, &terms, None, survey).unwrap();
         };
-        fill(&mut local, &mut evaluator);
+        fill(&mesh, &mut local, &mut evaluator);
         flips::attempt(&mut mesh, &mut local, &terms, &rules, 10 * edges, &mut state);
         let runs = (200_000 / count).clamp(3, 50);
         evaluator.lay_out(&mesh, &order);
-        let begin = shortest(runs, || timed(|| fill(&mut local, &mut evaluator)));
+        let begin = shortest(runs, || timed(|| fill(&mesh, &mut local, &mut evaluator)));
         let before = state;
         let attempt = shortest(runs, || {
             timed(|| flips::attempt(&mut mesh, &mut local, &terms, &rules, edges, &mut state))

@@ -95,6 +95,12 @@ fn new_triangle(triangle: u32) -> vec4r {
 fn new_edge(edge: u32) -> EdgeGeometry {
     let left_corner = edge_corners[edge].x;
     let right_corner = edge_corners[edge].y;
+    if right_corner == NO_CORNER {
+        // A border has no dihedral angle.
+        let triangle = left_corner / 3u;
+        let border = separation(corner_vertices[left_corner], corner_vertex(triangle, (left_corner + 1u) % 3u));
+        return EdgeGeometry(dot(border, border), real(0.0));
+    }
     let left = triangle_geometry[left_corner / 3u];
     let right = triangle_geometry[right_corner / 3u];
     let start = corner_vertices[left_corner];

@@ -89,8 +89,10 @@ fn vertices_forward(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_invocat
     let index = group * GROUP_SIZE + lane;
     let exists = index < frame.num_vertices;
     var vertex: VertexGeometry;
+    var inner = false;
     if exists {
         vertex = new_vertex(index);
+        inner = !is_on_border(index);
     }
     var slopes: VertexSlopes;
     for (var term = 0u; term < frame.num_terms; term++) {
@@ -98,7 +100,7 @@ fn vertices_forward(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_invocat
             continue;
         }
         var contribution = nothing();
-        if exists {
+        if exists && (inner || (frame.terms[term].needs & INNER) == 0u) {
             contribution = energy_of_vertex(term, index, vertex, &slopes);
         }
         store_sums(term, frame.terms[term].sums[SUMS_OF_VERTICES], contribution, lane, group, groups_for(frame.num_vertices));
@@ -111,6 +113,20 @@ fn vertices_forward(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_invocat
             store_vector_slope(index, 2u, slopes.normal_sum);
         }
     }
+}
+
+// Whether a vertex is on a border: one of the edges that leave it has one triangle only.
+fn is_on_border(index: u32) -> bool {
+    if 2u * frame.num_edges == 3u * frame.num_triangles {
+        return false;
+    }
+    let ring = frame.num_vertices + 1u;
+    for (var place = rings[index]; place < rings[index + 1u]; place++) {
+        if edge_corners[corner_edges[rings[ring + place]]].y == NO_CORNER {
+            return true;
+        }
+    }
+    return false;
 }
 
 fn new_vertex(index: u32) -> VertexGeometry {
@@ -127,7 +143,7 @@ fn new_vertex(index: u32) -> VertexGeometry {
             vertex.area += triangle_geometry[triangle].w / real(6.0);
         }
         if is_needed(CURVATURES) {
-            // In a closed surface each edge at a vertex leaves it in exactly one triangle.
+            // Each edge at a vertex leaves it in exactly one triangle; not so at borders, where nobody asks.
             let edge = edge_geometry[corner_edges[corner]];
             vertex.curvature += real(0.5) * edge.x * edge.y;
         }

@@ -2,7 +2,7 @@
 
 use crate::backend::Choice;
 use crate::error::{Error, Result};
-use crate::evaluator::{ChosenEvaluator, Present, ReferenceEvaluator};
+use crate::evaluator::{BorderEvaluator, ChosenEvaluator, Present, ReferenceEvaluator};
 use crate::mesh::cell::Image;
 use crate::mesh::numbering::breadth_first;
 use crate::mesh::orientation::is_inside_out;
@@ -33,6 +33,7 @@ pub struct Membrane {
     flips_of_order: u64,
     initial_fingerprint: u64,
     evaluator: ChosenEvaluator,
+    borders: BorderEvaluator,
     local: LocalEnergy,
     /// The forces after the last flips, which the time step asks for next.
     remembered: Remembered,
@@ -102,6 +103,7 @@ impl Membrane {
             order,
             flips_of_order: 0,
             evaluator,
+            borders: BorderEvaluator::default(),
             local,
             remembered: Remembered::default(),
             before: Vec::new(),
@@ -173,6 +175,7 @@ impl Membrane {
         (self.mesh, self.order, self.flips_of_order) = (mesh, order, flips);
         self.unfolding.connectivity_changed();
         self.remembered.clear();
+        self.borders.connectivity_changed();
         let present = Present { mesh: &self.mesh, order: &self.order, cell: None };
         self.evaluator.connectivity_changed(present)
     }
@@ -207,15 +210,17 @@ impl Membrane {
         self.remembered.clear();
         let given = positions;
         let positions = unfolded!(self, given, cell);
-        let before = force_change.as_ref().map(|_| {
+        let mut before = force_change.as_ref().map(|_| {
             self.before.clear();
             self.before.resize(positions.len(), 0.0);
             self.before.as_mut_slice()
         });
         let present = Present { mesh: &self.mesh, order: &self.order, cell };
-        self.local.fill(terms, cell, |survey| {
-            self.evaluator.survey(present, terms, positions, before, survey)
+        let on_borders = self.borders.forward(&self.mesh, terms, positions, cell)?;
+        self.local.fill(&self.mesh, terms, cell, |survey| {
+            self.evaluator.survey(present, terms, positions, before.as_deref_mut(), survey)
         })?;
+        self.borders.add(&self.mesh, positions, cell, on_borders, &mut [], before);
         let made = flips::attempt(&mut self.mesh, &mut self.local, terms, rules, attempts, state);
         if made > 0 {
             self.flips_of_order += made;
@@ -223,6 +228,7 @@ impl Membrane {
             if self.flips_of_order > 2 * self.mesh.num_edges() as u64 {
                 (self.order, self.flips_of_order) = (breadth_first(&self.mesh), 0);
             }
+            self.borders.connectivity_changed();
             self.unfolding.connectivity_changed();
             if let Some(cell) = cell {
                 self.unfolding.unfold(&mut self.mesh, given, cell)?;
@@ -249,8 +255,11 @@ impl Membrane {
     ) -> Result<()> {
         let positions = unfolded!(self, given, cell);
         let present = Present { mesh: &self.mesh, order: &self.order, cell };
+        let on_borders = self.borders.forward(&self.mesh, terms, positions, cell)?;
         let after = self.remembered.fill(terms, given, cell, |forces| {
-            self.evaluator.evaluate(present, terms, positions, &mut [], Some(forces))
+            self.evaluator.evaluate(present, terms, positions, &mut [], Some(&mut *forces))?;
+            self.borders.add(&self.mesh, positions, cell, on_borders, &mut [], Some(forces));
+            Ok(())
         })?;
         for ((change, after), before) in change.iter_mut().zip(after).zip(&self.before) {
             *change = after - before;
@@ -304,7 +313,11 @@ impl Membrane {
             look_for_outside(&self.mesh, &mut self.has_outside, terms, positions)?;
         }
         let present = Present { mesh: &self.mesh, order: &self.order, cell };
-        self.evaluator.evaluate(present, terms, positions, contributions, forces)
+        let on_borders = self.borders.forward(&self.mesh, terms, positions, cell)?;
+        let (evaluator, energies) = (&mut self.evaluator, &mut *contributions);
+        evaluator.evaluate(present, terms, positions, energies, forces.as_deref_mut())?;
+        self.borders.add(&self.mesh, positions, cell, on_borders, contributions, forces);
+        Ok(())
     }
 
     /// ∂E/∂ε of some terms for a homogeneous strain ε of all positions and of the periodic box, kJ/mol: where there is
@@ -321,8 +334,9 @@ impl Membrane {
         // What this refuses, nothing below has to.
         self.evaluate(terms, positions, cell, &mut [], None)?;
         let positions = unfolded!(self, positions, cell);
-        let parts = [virial_of_geometry(&self.mesh, terms, positions, cell)?];
-        Ok(parts.into_iter().sum())
+        let of_geometry = virial_of_geometry(&self.mesh, terms, positions, cell)?;
+        let of_borders = self.borders.virial(&self.mesh, terms, positions, cell)?;
+        Ok(of_geometry + of_borders)
     }
 
     /// Refuse a term with values outside their domains, or with more or fewer values for single

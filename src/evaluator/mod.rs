@@ -1,5 +1,6 @@
 //! Evaluators own the buffers and run the passes over a mesh; they know no physics.
 
+mod borders;
 mod checks;
 mod chosen;
 mod cpu;
@@ -10,6 +11,7 @@ mod reference;
 pub(crate) mod simd;
 mod survey;
 
+pub use borders::BorderEvaluator;
 pub use chosen::{ChosenEvaluator, LEAST_VERTICES_FOR_GPU, Present};
 pub use cpu::{CpuEvaluator, InstructionSet};
 pub use reference::ReferenceEvaluator;

@@ -1,5 +1,6 @@
 //! Triangulated surfaces: their topology, their orientation and their geometry.
 
+pub mod borders;
 pub mod cell;
 pub mod geometry;
 pub mod numbering;

@@ -317,9 +317,11 @@ fn paired_half_edges(triangles: &[[u32; 3]]) -> Result<Vec<(HalfEdge, Option<Hal
     Ok(pairs)
 }
 
-/// The triangles on the other side of each triangle's edges 01, 12 and 20, with whether the two agree
-/// in orientation. The surface need not be oriented, but must be manifold at its edges.
-pub(super) fn neighbours(triangles: &[[u32; 3]]) -> Result<Vec<[Option<(u32, bool)>; 3]>> {
+/// The triangle on the other side of an edge, and whether the two agree in orientation.
+type Across = Option<(u32, bool)>;
+
+/// The triangles on the other side of each triangle's edges 01, 12 and 20. The surface need not be oriented, but must be manifold at its edges.
+pub(super) fn neighbours(triangles: &[[u32; 3]]) -> Result<Vec<[Across; 3]>> {
     let mut neighbours = vec![[None; 3]; triangles.len()];
     for (here, there) in paired_half_edges(triangles)? {
         let Some(there) = there else { continue };

@@ -481,80 +481,128 @@ mod tests {
         Triangulation::new(&Topology::new(&triangles, mesh.num_vertices()).unwrap())
     }
 
-    fn may_flip(mesh: &Triangulation, quad: &Quad) -> bool {
+    /// The same with a hole; with two, one of them of several triangles; and as few triangles as have an edge to flip.
+    fn starts() -> Vec<Triangulation> {
+        let whole = icosahedron().1;
+        let mut one = whole.clone();
+        one.remove(7);
+        let two = whole.iter().copied().filter(|t| !t.contains(&0) && *t != [3, 2, 6]).collect();
+        let few = whole[..5].to_vec();
+        [whole, one, two, few]
+            .into_iter()
+            .map(|triangles| rebuilt(&Triangulation::new(&Topology::new(&triangles, 12).unwrap())))
+            .collect()
+    }
+
+    fn may_flip(mesh: &Triangulation, half: u32) -> Option<Quad> {
+        if mesh.twin(half) == NONE {
+            return None;
+        }
+        let quad = mesh.quad(half);
         let [i, j, k, l] = quad.vertices;
-        let degree = |vertex: u32| mesh.degrees()[vertex as usize];
-        degree(i) > 3 && degree(j) > 3 && !mesh.are_joined(k, l)
+        let spare = |vertex: u32| {
+            let least = if mesh.is_border(vertex) { 2 } else { 3 };
+            mesh.degrees()[vertex as usize] > least
+        };
+        (spare(i) && spare(j) && !mesh.are_joined(k, l)).then_some(quad)
     }
 
     #[test]
     fn twins_are_the_same_edge_the_other_way() {
-        let mesh = start();
-        for half in 0..60 {
-            let twin = mesh.twin(half);
-            assert_eq!(mesh.twin(twin), half);
-            assert_eq!(mesh.origin(twin), mesh.origin(next(half)));
+        for mesh in starts() {
+            for half in 0..3 * mesh.triangles().len() as u32 {
+                let twin = mesh.twin(half);
+                if twin != NONE {
+                    assert_eq!(mesh.twin(twin), half);
+                    assert_eq!(mesh.origin(twin), mesh.origin(next(half)));
+                }
+            }
+            assert_eq!(mesh.edges().count(), mesh.num_edges());
         }
-        assert_eq!(mesh.edges().count(), mesh.num_edges());
+    }
+
+    #[test]
+    fn borders_are_loops_with_the_surface_on_the_left() {
+        let lengths = starts().into_iter().map(|mesh| {
+            let loops = mesh.border_loops();
+            for border in &loops {
+                for (n, &vertex) in border.iter().enumerate() {
+                    let half = mesh.leaving(vertex);
+                    assert_eq!((mesh.origin(half), mesh.twin(half)), (vertex, NONE));
+                    assert_eq!(mesh.origin(next(half)), border[(n + 1) % border.len()]);
+                }
+            }
+            loops.iter().map(Vec::len).collect::<Vec<_>>()
+        });
+        assert_eq!(lengths.collect::<Vec<_>>(), [vec![], vec![3], vec![5, 3], vec![5]]);
     }
 
     #[test]
     fn many_flips_leave_a_valid_surface() {
-        let (mut mesh, mut random) = (start(), noise(3));
-        let (mut flips, mut ring) = (0, Vec::new());
-        for _ in 0..5000 {
-            let half = ((random() + 1.0) * 30.0) as u32;
-            let turn = if random() > 0.0 { Turn::Left } else { Turn::Right };
-            let quad = mesh.quad(half);
-            if !may_flip(&mesh, &quad) {
-                continue;
-            }
-            mesh.flip(&quad, turn);
-            flips += 1;
-            let [_, _, k, l] = quad.vertices;
-            assert!(mesh.are_joined(k, l));
-            let expected = rebuilt(&mesh);
-            assert_eq!(mesh, expected);
-            for vertex in 0..12 {
-                mesh.ring(vertex, &mut ring);
-                assert!(ring.iter().all(|&half| mesh.origin(half) == vertex));
-                assert!(ring.iter().all(|half| *half >= ring[0]));
-                for (here, there) in ring.iter().zip(ring.iter().cycle().skip(1)) {
-                    assert_eq!(mesh.origin(previous(*here)), mesh.origin(next(*there)));
+        for (mut mesh, least) in starts().into_iter().zip([1000, 1000, 500, 0]) {
+            let (mut random, loops) = (noise(3), mesh.border_loops());
+            let (mut flips, mut ring, mut neighbours) = (0, Vec::new(), Vec::new());
+            let half_edges = 3.0 * mesh.triangles().len() as f64;
+            for _ in 0..5000 {
+                let half = ((random() + 1.0) * 0.5 * half_edges) as u32;
+                let turn = if random() > 0.0 { Turn::Left } else { Turn::Right };
+                let Some(quad) = may_flip(&mesh, half) else { continue };
+                mesh.flip(&quad, turn);
+                flips += 1;
+                let [_, _, k, l] = quad.vertices;
+                assert!(mesh.are_joined(k, l));
+                assert_eq!(mesh, rebuilt(&mesh));
+                assert_eq!(mesh.border_loops(), loops);
+                for vertex in 0..mesh.num_vertices() as u32 {
+                    mesh.ring(vertex, &mut ring);
+                    mesh.neighbours(vertex, &mut neighbours);
+                    assert!(ring.iter().all(|&half| mesh.origin(half) == vertex));
+                    let along_border = mesh.twin(ring[0]) == NONE;
+                    assert_eq!(along_border, mesh.is_border(vertex));
+                    assert!(along_border || ring.iter().all(|half| *half >= ring[0]));
+                    assert_eq!(neighbours.len(), mesh.degrees()[vertex as usize] as usize);
+                    for (n, &half) in ring.iter().enumerate() {
+                        let around = [next(half), previous(half)].map(|half| mesh.origin(half));
+                        assert_eq!(around[0], neighbours[n]);
+                        assert_eq!(around[1], neighbours[(n + 1) % neighbours.len()]);
+                    }
+                    for other in 0..mesh.num_vertices() as u32 {
+                        assert_eq!(mesh.are_joined(vertex, other), neighbours.contains(&other));
+                    }
                 }
             }
+            assert!(flips > least, "{flips}");
         }
-        assert!(flips > 1000, "{flips}");
     }
 
     #[test]
     fn a_flip_and_its_reverse_restore_every_number() {
-        let (mut mesh, mut random) = (start(), noise(4));
-        for _ in 0..2000 {
-            let half = ((random() + 1.0) * 30.0) as u32;
-            let quad = mesh.quad(half);
-            if !may_flip(&mesh, &quad) {
-                continue;
+        for mut mesh in starts() {
+            let mut random = noise(4);
+            let half_edges = 3.0 * mesh.triangles().len() as f64;
+            for _ in 0..2000 {
+                let half = ((random() + 1.0) * 0.5 * half_edges) as u32;
+                let Some(quad) = may_flip(&mesh, half) else { continue };
+                for (turn, back) in [(Turn::Left, Turn::Right), (Turn::Right, Turn::Left)] {
+                    let mut moved = mesh.clone();
+                    moved.flip(&quad, turn);
+                    assert_ne!(moved.fingerprint(), mesh.fingerprint());
+                    let reverse = moved.quad(Triangulation::flipped(half, turn));
+                    let mut ends = [reverse.vertices[0], reverse.vertices[1]];
+                    ends.sort_unstable();
+                    let mut tips = [quad.vertices[2], quad.vertices[3]];
+                    tips.sort_unstable();
+                    assert_eq!(ends, tips);
+                    moved.flip(&reverse, back);
+                    assert_eq!(moved, mesh);
+                    // From the other side the move is the same.
+                    let (mut one, mut other) = (mesh.clone(), mesh.clone());
+                    one.flip(&quad, turn);
+                    other.flip(&mesh.quad(quad.halves[1]), turn);
+                    assert_eq!(one, other);
+                }
+                mesh.flip(&quad, if random() > 0.0 { Turn::Left } else { Turn::Right });
             }
-            for (turn, back) in [(Turn::Left, Turn::Right), (Turn::Right, Turn::Left)] {
-                let mut moved = mesh.clone();
-                moved.flip(&quad, turn);
-                assert_ne!(moved.fingerprint(), mesh.fingerprint());
-                let reverse = moved.quad(Triangulation::flipped(half, turn));
-                let mut ends = [reverse.vertices[0], reverse.vertices[1]];
-                ends.sort_unstable();
-                let mut tips = [quad.vertices[2], quad.vertices[3]];
-                tips.sort_unstable();
-                assert_eq!(ends, tips);
-                moved.flip(&reverse, back);
-                assert_eq!(moved, mesh);
-                // From the other side the move is the same.
-                let (mut one, mut other) = (mesh.clone(), mesh.clone());
-                one.flip(&quad, turn);
-                other.flip(&mesh.quad(quad.halves[1]), turn);
-                assert_eq!(one, other);
-            }
-            mesh.flip(&quad, if random() > 0.0 { Turn::Left } else { Turn::Right });
         }
     }
 

@@ -8,6 +8,7 @@
 use super::hinges::{HINGES, Hinges};
 use crate::error::Result;
 use crate::evaluator::{Survey, SurveyedTriangle};
+use crate::mesh::borders::{BorderPartials, BorderTotals, Borders, angle};
 use crate::mesh::geometry::{
     EdgeGeometry, TotalPartials, Totals, TriangleGeometry, Vec3, VertexGeometry,
 };
@@ -31,6 +32,8 @@ pub struct LocalEnergy {
     vertices_never_negative: bool,
     /// Of the total area and volume, kJ/mol.
     totals_energy: f64,
+    /// If a term acts on them.
+    borders: BorderTotals,
 }
 
 /// What a flip makes of the elements that it touches. With i, j, k, l as in [`Quad`], I is the new triangle (i, l, k)
@@ -47,6 +50,7 @@ pub struct Flipped {
     vertex_energies: [f64; 4],
     totals: Totals,
     totals_energy: f64,
+    borders: BorderTotals,
 }
 
 /// The terms that act on each kind of element, by their places among all.
@@ -56,6 +60,7 @@ struct Acting {
     triangles: Places,
     edges: Places,
     vertices: Places,
+    borders: Places,
 }
 
 type Places = SmallVec<[u32; 8]>;
@@ -71,6 +76,7 @@ impl Acting {
             triangles: on(Needs::TRIANGLES),
             edges: on(Needs::EDGES),
             vertices: on(Needs::VERTICES),
+            borders: on(Needs::BORDERS),
         }
     }
 }
@@ -89,12 +95,20 @@ impl LocalEnergy {
             .sum()
     }
 
-    /// Begin with what a survey finds at some positions in a periodic box or none.
+    fn energy_of_borders(&self, terms: &[Term], totals: &BorderTotals) -> f64 {
+        let mut unused = BorderPartials::default();
+        at(terms, &self.acting.borders)
+            .map(|term| term.potential.borders(term, totals, &mut unused).energy)
+            .sum()
+    }
+
+    /// Begin with what a survey finds of a mesh at some positions in a periodic box or none.
     ///
     /// # Errors
     /// Those of the survey; nothing is known then.
     pub fn fill(
         &mut self,
+        mesh: &Triangulation,
         terms: &[Term],
         cell: Option<&Cell>,
         survey: impl FnOnce(&mut Survey) -> Result<()>,
@@ -105,6 +119,9 @@ impl LocalEnergy {
         self.vertices_never_negative =
             at(terms, &self.acting.vertices).all(|term| term.potential.is_never_negative(term));
         self.totals_energy = self.energy_of_totals(terms, &self.survey.totals);
+        if !self.acting.borders.is_empty() {
+            self.borders = Borders::new(mesh).totals(|half| self.corner(mesh, half));
+        }
         Ok(())
     }
 
@@ -123,6 +140,7 @@ impl LocalEnergy {
             + self.survey.vertices.iter().map(|vertex| vertex.energy).sum::<f64>()
             + edges
             + self.totals_energy
+            + self.energy_of_borders(terms, &self.borders)
     }
 
     /// The square of the length, nm², that the edge kl would have.
@@ -216,6 +234,12 @@ impl LocalEnergy {
         if survey.needs.contains(Needs::TOTALS) {
             flipped.totals_energy = self.energy_of_totals(terms, &flipped.totals);
             difference += flipped.totals_energy - self.totals_energy;
+        }
+        flipped.borders = self.borders;
+        if !self.acting.borders.is_empty() && !mesh.is_closed() {
+            flipped.borders.turning -= angles_on_borders(mesh, quad, &points);
+            difference += self.energy_of_borders(terms, &flipped.borders)
+                - self.energy_of_borders(terms, &self.borders);
         }
         if survey.needs.contains(Needs::TRIANGLES) {
             difference += self.triangles_of(terms, flipped);
@@ -422,7 +446,20 @@ impl LocalEnergy {
         }
         survey.totals = flipped.totals;
         self.totals_energy = flipped.totals_energy;
+        self.borders = flipped.borders;
     }
+}
+
+/// By how much the angles at those of the four vertices that are on borders will grow.
+fn angles_on_borders(mesh: &Triangulation, quad: &Quad, points: &[Vec3; 4]) -> f64 {
+    // Corners by their places among i, j, k, l.
+    let angle_at = |corner: [usize; 3]| match mesh.is_border(quad.vertices[corner[0]]) {
+        true => angle(corner.map(|n| points[n])),
+        false => 0.0,
+    };
+    let of =
+        |[a, b, c]: [usize; 3]| angle_at([a, b, c]) + angle_at([b, c, a]) + angle_at([c, a, b]);
+    of([0, 3, 2]) + of([1, 2, 3]) - of([0, 1, 2]) - of([1, 0, 3])
 }
 
 /// The same triangle with another corner for its first.

@@ -30,6 +30,8 @@ bitflags! {
         const NORMALS = 64;
         /// Wants the curvature vectors of the vertices, too.
         const CURVATURE_VECTORS = 128;
+        /// Adds energy of the borders' length and turning.
+        const BORDERS = 256;
     }
 }
 

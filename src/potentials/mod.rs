@@ -7,8 +7,10 @@
 mod bending;
 pub mod codes;
 mod dihedral;
+mod edge_tension;
 mod elements;
 mod enclosed_volume;
+mod gaussian_curvature;
 mod plaquette_area;
 mod runs;
 mod surface_area;
@@ -17,6 +19,7 @@ mod triangle_area_repulsion;
 mod triangle_height;
 
 use crate::error::{Error, Result};
+use crate::mesh::borders::{BorderPartials, BorderTotals};
 use crate::mesh::geometry::{TotalPartials, Totals};
 use crate::real::Real;
 pub use codes::{Contribution, MAX_PARAMETERS, Needs};
@@ -25,7 +28,7 @@ pub use runs::*;
 use std::ffi::CStr;
 
 /// All potentials, by the names of their OpenMM classes.
-pub static REGISTRY: [&dyn Potential; 8] = [
+pub static REGISTRY: [&dyn Potential; 10] = [
     &surface_area::SurfaceArea,
     &enclosed_volume::EnclosedVolume,
     &bending::Bending,
@@ -34,6 +37,8 @@ pub static REGISTRY: [&dyn Potential; 8] = [
     &triangle_area::TriangleArea,
     &plaquette_area::PlaquetteArea,
     &triangle_area_repulsion::TriangleAreaRepulsion,
+    &edge_tension::EdgeTension,
+    &gaussian_curvature::GaussianCurvature,
 ];
 
 /// What a scalar may be given for one by one.
@@ -156,6 +161,11 @@ pub trait Potential: Sync {
 
     /// Energy of the total area and volume.
     fn totals(&self, _: &Term, _: &Totals, _: &mut TotalPartials) -> Contribution {
+        Contribution::default()
+    }
+
+    /// Energy of the borders. Evaluators know nothing of it: it is added beside them.
+    fn borders(&self, _: &Term, _: &BorderTotals, _: &mut BorderPartials) -> Contribution {
         Contribution::default()
     }
 

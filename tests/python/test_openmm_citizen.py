@@ -224,11 +224,22 @@ def test_no_closed_oriented_surface(case: Case, fault: str):
 
 
 @pytest.mark.parametrize("target", [CPU, OPENCL_DOUBLE], ids=str)
-def test_no_closed_oriented_surface_on_other_platforms(target: Target):
+def test_no_oriented_surface_on_other_platforms(target: Target):
     m = membrane("octahedron")
-    force = helfrich.BendingForce(m.triangles[1:], rigidity=1)
-    with pytest.raises(mm.OpenMMException, match=r"^BendingForce: .*open"):
+    turned = np.where(np.arange(len(m.triangles))[:, None] == 3, m.triangles[:, ::-1], m.triangles)
+    force = helfrich.BendingForce(turned, rigidity=1)
+    with pytest.raises(mm.OpenMMException, match=r"^BendingForce: .*in the same direction"):
         context_of([force], m, target)
+
+
+@pytest.mark.parametrize("target", [CPU, OPENCL_DOUBLE], ids=str)
+def test_no_volume_within_a_border_on_other_platforms(target: Target):
+    m = membrane("octahedron")
+    force = helfrich.EnclosedVolumeForce(m.triangles[1:], modulus=1, target=1)
+    corners = ", ".join(r"\d" for _ in range(3))
+    words = rf"^EnclosedVolumeForce: .*a border of 3 edges through particles {corners}"
+    with pytest.raises(mm.OpenMMException, match=words):
+        context_of([helfrich.BendingForce(m.triangles[1:], rigidity=1), force], m, target)
 
 
 # --- scalars -------------------------------------------------------------------------------------

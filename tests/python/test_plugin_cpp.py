@@ -150,14 +150,14 @@ def test_from_the_plugin_folder(program, membrane, tmp_path):
 
 
 def test_a_bad_mesh_is_an_exception_with_the_class_name(program, lumpy, tmp_path):
-    system = system_of(lumpy.triangles[1:], lumpy.num_vertices)
+    system = system_of([*lumpy.triangles[1:], lumpy.triangles[0, ::-1]], lumpy.num_vertices)
     files = (tmp_path / "system.xml", tmp_path / "positions.txt")
     files[0].write_text(mm.XmlSerializer.serialize(system))
     np.savetxt(files[1], lumpy.vertices)
     output = run(program, str(_core.LIBRARY_PATH.parent), files)
     assert output.energies == {}
-    assert output.errors["Reference"].startswith("SurfaceAreaForce: edge (")
-    assert "open" in output.errors["Reference"]
+    assert output.errors["Reference"].startswith("SurfaceAreaForce: triangles ")
+    assert "in the same direction" in output.errors["Reference"]
 
 
 def test_without_the_plugin_the_forces_are_unknown(program, membrane, tmp_path):

@@ -9,7 +9,7 @@ use openmm_helfrich::mesh::Topology;
 use openmm_helfrich::potentials::{Contribution, REGISTRY, Term};
 use proptest::prelude::*;
 use std::sync::Arc;
-use support::{Mesh, all_terms, beside, open_meshes, open_terms, random, spheroid};
+use support::{Mesh, all_terms, beside, border_terms, open_meshes, open_terms, random, spheroid};
 
 fn evaluator(mesh: &Mesh) -> CpuEvaluator {
     CpuEvaluator::new(Arc::new(Topology::new(&mesh.1, mesh.0.len() / 3).unwrap()))
@@ -33,7 +33,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 #[test]
 fn every_potential_of_the_registry_is_tested_here() {
-    let terms = all_terms(true);
+    let terms = [all_terms(true), border_terms()].concat();
     for potential in REGISTRY {
         assert!(terms.iter().any(|term| term.potential.name() == potential.name()));
     }

@@ -2,19 +2,22 @@
 //! weights of all triangulations of a few vertices, which are enumerated here without any code of the crate.
 
 #[path = "support.rs"]
+#[allow(dead_code, reason = "other tests use the rest")]
 mod support;
 
-use openmm_helfrich::evaluator::{CpuEvaluator, InstructionSet, ReferenceEvaluator};
+use openmm_helfrich::evaluator::{
+    BorderEvaluator, CpuEvaluator, InstructionSet, ReferenceEvaluator,
+};
 use openmm_helfrich::membrane::Membrane;
 use openmm_helfrich::mesh::numbering::breadth_first;
 use openmm_helfrich::mesh::triangulation::Turn;
-use openmm_helfrich::mesh::{Topology, Triangulation};
+use openmm_helfrich::mesh::{NONE, Topology, Triangulation};
 use openmm_helfrich::moves::local::{Flipped, LocalEnergy};
 use openmm_helfrich::moves::{FlipRules, FlipState};
 use openmm_helfrich::potentials::{Contribution, Term};
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
-use support::{all_terms, random, spheroid};
+use support::{Mesh, all_terms, border_terms, open_meshes, open_terms, random, spheroid};
 
 const ANY: FlipRules =
     FlipRules { temperature: 1.0, min_degree: 3, max_degree: 64, max_edge_length: 0.0, demon: 0 };
@@ -27,8 +30,12 @@ fn seeded(seed: u32) -> FlipState {
 fn energies(triangles: &[[i64; 3]], terms: &[Term], positions: &[f64]) -> Vec<f64> {
     let topology = Arc::new(Topology::new(triangles, positions.len() / 3).unwrap());
     let mut sums = vec![Contribution::default(); terms.len()];
+    let mesh = Triangulation::new(&topology);
+    let mut borders = BorderEvaluator::default();
+    let on_borders = borders.forward(&mesh, terms, positions, None).unwrap();
     let terms: Vec<_> = terms.iter().collect();
     ReferenceEvaluator::new(topology).evaluate(&terms, positions, &mut sums, None).unwrap();
+    borders.add(&mesh, positions, None, on_borders, &mut sums, None);
     sums.iter().map(|sum| sum.energy).collect()
 }
 
@@ -36,24 +43,23 @@ fn corners(mesh: &Triangulation) -> Vec<[i64; 3]> {
     (0..mesh.triangles().len()).map(|t| mesh.particles_of(t).map(i64::from)).collect()
 }
 
-/// Flips at random on a mesh of many degrees; calls `check` with the mesh before and after, and what the flip was said
-/// to change.
+/// Flips at random; calls `check` with the mesh before and after, and what the flip was said to change.
 fn walk(
+    (positions, triangles): &Mesh,
     terms: &[Term],
     flips: usize,
     seed: u64,
     mut check: impl FnMut(&[[i64; 3]], &[[i64; 3]], f64),
 ) {
     let mut noise = random(seed);
-    let (positions, triangles) = spheroid(6, 9, &mut noise);
     let count = positions.len() / 3;
-    let mut mesh = Triangulation::new(&Topology::new(&triangles, count).unwrap());
+    let mut mesh = Triangulation::new(&Topology::new(triangles, count).unwrap());
     let mut local = LocalEnergy::default();
     let fill = |local: &mut LocalEnergy, mesh: &Triangulation| {
         let terms_in_use: Vec<_> = terms.iter().collect();
         let mut evaluator = CpuEvaluator::of(mesh, &breadth_first(mesh), InstructionSet::Best, 1);
-        let survey = |survey: &mut _| evaluator.survey(&terms_in_use, &positions, None, survey);
-        local.fill(terms, None, survey).unwrap();
+        let survey = |survey: &mut _| evaluator.survey(&terms_in_use, positions, None, survey);
+        local.fill(mesh, terms, None, survey).unwrap();
     };
     fill(&mut local, &mesh);
     let mut flipped = Flipped::default();
@@ -61,10 +67,14 @@ fn walk(
     while made < flips {
         let half = ((noise() + 1.0) * 0.5 * (3 * mesh.triangles().len()) as f64) as u32;
         let turn = if noise() > 0.0 { Turn::Left } else { Turn::Right };
+        if mesh.twin(half) == NONE {
+            continue;
+        }
         let quad = mesh.quad(half);
         let [i, j, k, l] = quad.vertices;
-        let degree = |vertex: u32| mesh.degrees()[vertex as usize];
-        if degree(i).min(degree(j)) <= 3 || mesh.are_joined(k, l) {
+        let spare =
+            |vertex: u32| mesh.degrees()[vertex as usize] > 3 - u32::from(mesh.is_border(vertex));
+        if !spare(i) || !spare(j) || mesh.are_joined(k, l) {
             continue;
         }
         let before = corners(&mesh);
@@ -85,9 +95,12 @@ fn walk(
 }
 
 fn difference_is_that_of_two_evaluations(terms: &[Term], flips: usize, seed: u64) {
-    let (positions, _) = spheroid(6, 9, &mut random(seed));
-    walk(terms, flips, seed, |before, after, difference| {
-        let [old, new] = [before, after].map(|mesh| energies(mesh, terms, &positions));
+    difference_is_right_on(&spheroid(6, 9, &mut random(seed)), terms, flips, seed);
+}
+
+fn difference_is_right_on(mesh: &Mesh, terms: &[Term], flips: usize, seed: u64) {
+    walk(mesh, terms, flips, seed, |before, after, difference| {
+        let [old, new] = [before, after].map(|triangles| energies(triangles, terms, &mesh.0));
         let expected: f64 = new.iter().zip(&old).map(|(new, old)| new - old).sum();
         let scale: f64 = new.iter().chain(&old).map(|energy| energy.abs()).sum();
         let names: Vec<_> = terms.iter().map(|term| (term.potential.name(), term.form)).collect();
@@ -116,6 +129,22 @@ fn the_energy_of_a_flip_is_that_of_two_evaluations_for_all_terms_together() {
     difference_is_that_of_two_evaluations(&terms, 60, 4);
 }
 
+/// The open meshes that have edges to flip.
+fn flipping(seed: u64) -> Vec<Mesh> {
+    open_meshes(seed).drain(..5).collect()
+}
+
+#[test]
+fn the_energy_of_a_flip_near_a_border_is_that_of_two_evaluations() {
+    let with_borders = |wants_derivatives| [open_terms(wants_derivatives), border_terms()].concat();
+    for (n, mesh) in flipping(3).iter().enumerate() {
+        for term in with_borders(n % 2 == 0) {
+            difference_is_right_on(mesh, &[term], 40, 50 + n as u64);
+        }
+        difference_is_right_on(mesh, &with_borders(true), 60, 70 + n as u64);
+    }
+}
+
 #[test]
 fn values_of_vertices_and_triangles_take_part() {
     let mut noise = random(8);
@@ -139,31 +168,40 @@ fn values_of_vertices_and_triangles_take_part() {
 /// A million flips with a full validation now and then, and with evaluations that must follow.
 #[test]
 fn many_flips_leave_a_valid_surface_and_current_evaluators() {
-    let mut noise = random(21);
-    let (positions, triangles) = spheroid(6, 9, &mut noise);
+    flip_often(&spheroid(6, 9, &mut random(21)), &all_terms(true), 1_000_000);
+}
+
+#[test]
+fn many_flips_near_borders_leave_a_valid_surface_and_current_evaluators() {
+    for mesh in flipping(22) {
+        flip_often(&mesh, &open_terms(true), 100_000);
+    }
+}
+
+fn flip_often((positions, triangles): &Mesh, terms: &[Term], flips: u64) {
     let count = positions.len() / 3;
-    let terms = all_terms(true);
-    let mut membrane = Membrane::new(&triangles, count).unwrap();
+    let mut membrane = Membrane::new(triangles, count).unwrap();
+    let loops = membrane.mesh().border_loops();
     let mut state = seeded(5);
     let hot = FlipRules { temperature: 1e6, ..ANY };
     // That the surface is not inside out is settled before it is crumpled.
-    membrane.evaluate(&terms, &positions, None, &mut [], None).unwrap();
+    membrane.evaluate(terms, positions, None, &mut [], None).unwrap();
     let mut made = 0;
     for round in 0.. {
-        made += membrane.flip(&terms[..1], &positions, None, &hot, 3000, &mut state, None).unwrap();
+        made += membrane.flip(&terms[..1], positions, None, &hot, 3000, &mut state, None).unwrap();
         let mesh = corners(membrane.mesh());
         let valid = Triangulation::new(&Topology::new(&mesh, count).unwrap());
-        assert_eq!(valid.twins(), membrane.mesh().twins());
-        assert_eq!(valid.degrees(), membrane.mesh().degrees());
+        assert_eq!(&valid, membrane.mesh());
+        assert_eq!(valid.border_loops(), loops);
         if round % 40 == 0 {
             let mut sums = vec![Contribution::default(); terms.len()];
             let mut forces = vec![0.0; positions.len()];
-            membrane.evaluate(&terms, &positions, None, &mut sums, Some(&mut forces)).unwrap();
+            membrane.evaluate(terms, positions, None, &mut sums, Some(&mut forces)).unwrap();
             let topology = Arc::new(Topology::new(&mesh, count).unwrap());
             let (mut expected, mut exact) = (sums.clone(), vec![0.0; positions.len()]);
             let borrowed: Vec<_> = terms.iter().collect();
             ReferenceEvaluator::new(topology)
-                .evaluate(&borrowed, &positions, &mut expected, Some(&mut exact))
+                .evaluate(&borrowed, positions, &mut expected, Some(&mut exact))
                 .unwrap();
             for (found, expected) in sums.iter().zip(&expected) {
                 let error = (found.energy - expected.energy).abs();
@@ -173,12 +211,13 @@ fn many_flips_leave_a_valid_surface_and_current_evaluators() {
             let error = exact.iter().zip(&forces).fold(0f64, |e, (x, y)| e.max((x - y).abs()));
             assert!(error <= 1e-10 * largest, "{error} of {largest}");
         }
-        if made > 1_000_000 {
+        if made > flips {
             break;
         }
     }
-    let counted = state.accepted + state.by_degree + state.by_length + state.by_shape;
-    assert_eq!(state.attempts, counted + state.by_energy + state.by_edge);
+    let counted = state.accepted + state.by_border + state.by_degree + state.by_length;
+    assert_eq!(state.attempts, counted + state.by_shape + state.by_energy + state.by_edge);
+    assert_eq!(state.by_border > 0, !loops.is_empty());
     assert_eq!(state.accepted, made);
 }
 
@@ -295,7 +334,7 @@ fn enumerate(start: Key) -> Vec<Key> {
             for side in 0..3 {
                 let [i, j, k] = [0, 1, 2].map(|n| first[(side + n) % 3]);
                 let runs = |t: &&[u32; 3]| (0..3).any(|n| t[n] == j && t[(n + 1) % 3] == i);
-                let second = mesh.iter().find(runs).unwrap();
+                let Some(second) = mesh.iter().find(runs) else { continue };
                 let l = *second.iter().find(|v| **v != i && **v != j).unwrap();
                 if joined(k, l) {
                     continue;
@@ -333,6 +372,29 @@ fn tiny(count: u32, seed: u64) -> (Vec<[i64; 3]>, Vec<f64>) {
     (triangles, positions)
 }
 
+/// A polygon of some corners, with vertices inside, and points near its plane.
+fn polygon(corners: u32, inside: u32, seed: u64) -> (Vec<[i64; 3]>, Vec<f64>) {
+    // A fan about the last corner, or about a vertex inside, next to which any others are put.
+    let n = i64::from(corners);
+    let mut triangles: Vec<_> = match inside {
+        0 => (0..n - 2).map(|k| [k, k + 1, n - 1]).collect(),
+        _ => (0..n).map(|k| [k, (k + 1) % n, n]).collect(),
+    };
+    for vertex in n + 1..n + i64::from(inside) {
+        let [a, b, c] = triangles[0];
+        triangles[0] = [a, b, vertex];
+        triangles.extend([[b, c, vertex], [c, a, vertex]]);
+    }
+    let mut noise = random(seed);
+    let mut positions = Vec::new();
+    for n in 0..corners + inside {
+        let angle = std::f64::consts::TAU * f64::from(n) / f64::from(corners);
+        let far = if n < corners { 3.0 } else { 0.5 };
+        positions.extend([far * angle.cos(), far * angle.sin(), 0.0].map(|x| x + 0.6 * noise()));
+    }
+    (triangles, positions)
+}
+
 /// Compare visits with Boltzmann weights by χ². `apart` attempts lie between two looks, so that these are nearly
 /// independent; the temperature is such that `share` of the states matter.
 fn visits_are_boltzmann(
@@ -343,13 +405,27 @@ fn visits_are_boltzmann(
     share: f64,
     seed: u32,
 ) {
-    let (triangles, positions) = tiny(count, 5 + u64::from(count));
+    let mesh = tiny(count, 5 + u64::from(count));
+    let states = [20, 390, 11_424][count as usize - 5];
+    visits_are_boltzmann_on(&mesh, states, terms, looks, apart, share, seed);
+}
+
+fn visits_are_boltzmann_on(
+    (triangles, positions): &(Vec<[i64; 3]>, Vec<f64>),
+    number: usize,
+    terms: &[Term],
+    looks: usize,
+    apart: u64,
+    share: f64,
+    seed: u32,
+) {
+    let count = positions.len() / 3;
     let start = key(triangles.iter().map(|t| t.map(|v| v as u32)));
     let states = enumerate(start);
-    assert_eq!(states.len(), [20, 390, 11_424][count as usize - 5]);
+    assert_eq!(states.len(), number);
     let energy = |state: &Key| -> f64 {
         let triangles: Vec<_> = state.iter().map(|t| t.map(i64::from)).collect();
-        energies(&triangles, terms, &positions).iter().sum()
+        energies(&triangles, terms, positions).iter().sum()
     };
     let known: Vec<f64> = states.iter().map(energy).collect();
     let least = known.iter().copied().fold(f64::INFINITY, f64::min);
@@ -369,11 +445,11 @@ fn visits_are_boltzmann(
     let weights = weights(temperature);
     let index: HashMap<&Key, usize> = states.iter().enumerate().map(|(n, key)| (key, n)).collect();
 
-    let mut membrane = Membrane::new(&triangles, count as usize).unwrap();
+    let mut membrane = Membrane::new(triangles, count).unwrap();
     let (rules, mut state) = (FlipRules { temperature, ..ANY }, seeded(seed));
     let mut visits = vec![0usize; states.len()];
     for _ in 0..looks {
-        membrane.flip(terms, &positions, None, &rules, apart, &mut state, None).unwrap();
+        membrane.flip(terms, positions, None, &rules, apart, &mut state, None).unwrap();
         let mesh = membrane.mesh();
         visits[index[&key((0..mesh.triangles().len()).map(|t| mesh.particles_of(t)))]] += 1;
     }
@@ -436,6 +512,27 @@ fn visited_frequencies_are_boltzmann_weights_for_all_terms_together() {
     visits_are_boltzmann(5, &terms, 20_000, 60, 0.5, 1);
     visits_are_boltzmann(6, &terms, 40_000, 100, 0.5, 2);
     visits_are_boltzmann(7, &terms, 200_000, 40, 0.6, 3);
+}
+
+/// All triangulations of polygons, with vertices inside or without. There are as many as W. G. Brown's formula says
+/// (doi:10.1112/plms/s3-14.4.746), times the orders of the vertices inside.
+#[test]
+fn visited_frequencies_are_boltzmann_weights_within_borders() {
+    let mut terms = small_terms();
+    terms.retain(|term| !term.potential.needs_outside());
+    terms.extend(border_terms());
+    for (n, (corners, inside, states)) in
+        [(6, 0, 14), (6, 1, 84), (7, 0, 42), (7, 1, 330), (5, 2, 210)].into_iter().enumerate()
+    {
+        let mesh = polygon(corners, inside, 3 + u64::from(corners));
+        let seed = 80 + n as u32;
+        visits_are_boltzmann_on(&mesh, states, &terms, 15_000, 300, 0.5, seed);
+        // Without a vertex inside nothing bends.
+        let alone = if n < 2 { &terms[..] } else { &[] };
+        for term in alone {
+            visits_are_boltzmann_on(&mesh, states, &[*term], 4000, 300, 0.5, seed);
+        }
+    }
 }
 
 /// Voronoi areas of these meshes are negative here and there, and energies of either sign are large; the weights

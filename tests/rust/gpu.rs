@@ -11,7 +11,7 @@ use openmm_helfrich::evaluator::gpu::{GpuEvaluator, Precision, adapters};
 use openmm_helfrich::mesh::Topology;
 use openmm_helfrich::potentials::{Contribution, Term};
 use std::sync::Arc;
-use support::{Mesh, all_terms, random, spheroid};
+use support::{Mesh, all_terms, open_meshes, open_terms, random, spheroid};
 
 /// The adapters and the precisions that each of them has.
 fn targets() -> Vec<(usize, Precision)> {
@@ -85,20 +85,26 @@ fn errors(found: &Found, expected: &Found) -> [f64; 3] {
 #[test]
 fn every_potential_is_that_of_the_processor() {
     for (adapter, precision) in targets() {
-        let mesh = spheroid(6, 9, &mut random(1));
-        let mut evaluator = GpuEvaluator::new(topology(&mesh), Some(adapter), precision).unwrap();
-        for term in all_terms(true) {
-            let found = on_device(&mut evaluator, &mesh, &[term]);
-            let expected = on_processor(&mesh, &[term]);
-            let errors = errors(&found, &expected);
-            let name = term.potential.name();
-            println!(
-                "{precision:?} {name} {} {}: {:.1e} {:.1e} {:.1e}",
-                term.form, term.switches, errors[0], errors[1], errors[2]
-            );
-            let worst = errors.into_iter().fold(0.0, f64::max);
-            assert!(worst < tolerance(precision), "{name} {} {:?}", term.form, term.values);
+        check_each(adapter, precision, &spheroid(6, 9, &mut random(1)), &all_terms(true));
+        for mesh in open_meshes(1) {
+            check_each(adapter, precision, &mesh, &open_terms(true));
         }
+    }
+}
+
+fn check_each(adapter: usize, precision: Precision, mesh: &Mesh, terms: &[Term]) {
+    let mut evaluator = GpuEvaluator::new(topology(mesh), Some(adapter), precision).unwrap();
+    for &term in terms {
+        let found = on_device(&mut evaluator, mesh, &[term]);
+        let expected = on_processor(mesh, &[term]);
+        let errors = errors(&found, &expected);
+        let name = term.potential.name();
+        println!(
+            "{precision:?} {name} {} {}: {:.1e} {:.1e} {:.1e}",
+            term.form, term.switches, errors[0], errors[1], errors[2]
+        );
+        let worst = errors.into_iter().fold(0.0, f64::max);
+        assert!(worst < tolerance(precision), "{name} {} {:?}", term.form, term.values);
     }
 }
 

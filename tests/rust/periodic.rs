@@ -3,14 +3,14 @@
 mod support;
 
 use openmm_helfrich::error::Error;
-use openmm_helfrich::evaluator::ReferenceEvaluator;
+use openmm_helfrich::evaluator::{BorderEvaluator, ReferenceEvaluator};
 use openmm_helfrich::membrane::Membrane;
 use openmm_helfrich::mesh::{Cell, Topology, Unfolding};
 use openmm_helfrich::moves::{FlipRules, FlipState};
 use openmm_helfrich::potentials::{Contribution, Term};
 use proptest::prelude::*;
 use std::sync::Arc;
-use support::{Mesh, all_terms, open_terms, random, spheroid, without};
+use support::{Mesh, all_terms, border_terms, open_terms, random, spheroid, without};
 
 /// A triclinic box, and one that is none, nm; on a grid of dyadic fractions, as positions are here, so that wrapping is
 /// exact.
@@ -73,6 +73,11 @@ fn spanning(cell: &Cell, seed: u64) -> Vec<Mesh> {
     ]
 }
 
+/// Terms that make sense on them.
+fn spanning_terms() -> Vec<Term<'static>> {
+    [open_terms(false), border_terms()].concat()
+}
+
 /// Box vectors at random added to all positions.
 fn wrapped(positions: &[f64], cell: &Cell, most: f64, seed: u64) -> Vec<f64> {
     let mut noise = random(seed);
@@ -117,6 +122,9 @@ fn reference(
     let mut forces = vec![0.0; positions.len()];
     let borrowed: Vec<_> = terms.iter().collect();
     evaluator.evaluate(&borrowed, unfolded, &mut energies, Some(&mut forces)).unwrap();
+    let mut borders = BorderEvaluator::default();
+    let found = borders.forward(&mesh, terms, unfolded, Some(cell)).unwrap();
+    borders.add(&mesh, unfolded, Some(cell), found, &mut energies, Some(&mut forces));
     (energies.iter().map(|part| part.energy).collect(), forces)
 }
 
@@ -140,7 +148,7 @@ proptest! {
             let cell = Cell::new(vectors).unwrap();
             let mut closed = spheroid(5, 7, &mut random(seed));
             closed.0.iter_mut().for_each(|x| *x = dyadic(*x + 30.0));
-            let cases = spanning(&cell, seed).into_iter().map(|mesh| (mesh, open_terms(false)));
+            let cases = spanning(&cell, seed).into_iter().map(|mesh| (mesh, spanning_terms()));
             for (mesh, terms) in cases.chain([(closed, all_terms(false))]) {
                 let expected = evaluated(&mut membrane(&mesh), &terms, &mesh.0, Some(&cell));
                 let mut here = membrane(&mesh);
@@ -172,7 +180,7 @@ fn lanes_and_reference_agree_on_what_spans_the_box() {
     for vectors in BOXES {
         let cell = Cell::new(vectors).unwrap();
         for mesh in spanning(&cell, 11) {
-            for term in open_terms(false) {
+            for term in spanning_terms() {
                 let mut membrane = membrane(&mesh);
                 let moved = wrapped(&mesh.0, &cell, 2.0, 3);
                 let (energies, forces) = evaluated(&mut membrane, &[term], &moved, Some(&cell));
@@ -191,7 +199,7 @@ fn forces_are_gradients_and_sum_to_zero() {
     let cell = Cell::new(BOXES[0]).unwrap();
     for mesh in spanning(&cell, 23) {
         let mut membrane = membrane(&mesh);
-        for term in open_terms(false) {
+        for term in spanning_terms() {
             let terms = [term];
             let (_, forces) = evaluated(&mut membrane, &terms, &mesh.0, Some(&cell));
             let scale = largest(&forces);
@@ -225,7 +233,7 @@ fn a_flip_changes_the_energy_by_what_it_says() {
     for vectors in BOXES {
         let cell = Cell::new(vectors).unwrap();
         for mesh in spanning(&cell, 31) {
-            for term in open_terms(false) {
+            for term in spanning_terms() {
                 let terms = [term];
                 let mut membrane = membrane(&mesh);
                 let positions = wrapped(&mesh.0, &cell, 2.0, 4);
@@ -269,7 +277,7 @@ fn the_way_to_some_positions_leaves_no_trace() {
     let cell = Cell::new(BOXES[0]).unwrap();
     let wide = Cell::new(BOXES[0].map(|row| row.map(|x| 1.25 * x))).unwrap();
     for mesh in spanning(&cell, 41) {
-        let terms = open_terms(false);
+        let terms = spanning_terms();
         let mut walker = membrane(&mesh);
         let mut noise = random(6);
         let mut positions = mesh.0.clone();
@@ -388,7 +396,7 @@ fn the_virial_is_the_slope_along_a_strain() {
     for vectors in BOXES {
         let cell = Cell::new(vectors).unwrap();
         for mesh in spanning(&cell, 53) {
-            check_virial(&mesh, &open_terms(false), Some(vectors));
+            check_virial(&mesh, &spanning_terms(), Some(vectors));
         }
         let closed = spheroid(5, 7, &mut random(2));
         let crossing = (wrapped(&closed.0, &cell, 2.0, 7), closed.1.clone());
@@ -420,7 +428,7 @@ fn without_a_box_the_virial_is_that_of_the_forces() {
 fn threads_do_not_change_bits_of_what_spans_the_box() {
     let cell = Cell::new(BOXES[0]).unwrap();
     let mesh = sheet(&cell, 32, 32, &mut random(9));
-    let terms = open_terms(false);
+    let terms = spanning_terms();
     let results = [1, 2, 4].map(|threads| {
         let mut here = membrane(&mesh);
         here.set_threads(threads);

@@ -92,7 +92,15 @@ pub fn open_meshes(seed: u64) -> Vec<Mesh> {
     ]
 }
 
-/// Terms that make sense on a surface with borders.
+/// The potentials of borders, which evaluators leave to whoever calls them.
+pub fn border_terms() -> Vec<Term<'static>> {
+    vec![
+        Term::new("EdgeTensionForce", 0, &[1.2]).unwrap(),
+        Term::new("GaussianCurvatureForce", 0, &[-3.0]).unwrap(),
+    ]
+}
+
+/// Terms of elements that make sense on a surface with borders.
 pub fn open_terms(wants_derivatives: bool) -> Vec<Term<'static>> {
     let mut terms = all_terms(wants_derivatives);
     terms.retain(|term| !term.potential.needs_outside());

@@ -3,7 +3,7 @@
 use super::Precision;
 use super::device::Device;
 use super::frame::groups;
-use super::interface::{Binding, FORCES_PER_TRIANGLE, SLOPES_PER_VERTEX};
+use super::interface::{Binding, FORCES_PER_TRIANGLE, NO_CORNER, SLOPES_PER_VERTEX};
 use crate::error::{Error, Result};
 use crate::mesh::{NONE, Topology};
 use crate::potentials::Needs;
@@ -134,7 +134,7 @@ impl Buffers {
             .flat_map(|(index, edge)| {
                 edge.triangles.map(|triangle| {
                     if triangle == NONE {
-                        return NONE;
+                        return NO_CORNER;
                     }
                     let sides = &topology.triangle_edges[triangle as usize];
                     let side = sides.iter().position(|side| *side as usize == index);

@@ -124,7 +124,9 @@ impl Frame {
         field_start: &mut usize,
     ) -> bool {
         let needs = term.potential.needs(term);
-        let wishes = if term.wants_derivatives { Wishes::DERIVATIVES } else { Wishes::empty() };
+        let mut wishes = Wishes::empty();
+        wishes.set(Wishes::DERIVATIVES, term.wants_derivatives);
+        wishes.set(Wishes::INNER, !term.potential.acts_at_borders());
         let values_of_sum = if term.wants_derivatives { 1 + MAX_PARAMETERS } else { 1 };
         let mut elements = [0; KINDS.len()];
         elements[SUMS_OF_TOTALS as usize] = 1;

@@ -11,6 +11,8 @@ bitflags! {
     /// What is wanted of a term or an evaluation, as bits beside those of [`Needs`].
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub struct Wishes: u32 {
+        /// Energy of the vertices that are on no border only.
+        const INNER = 1 << 29;
         /// The derivatives with respect to the scalars.
         const DERIVATIVES = 1 << 30;
         /// Forces.
@@ -38,6 +40,8 @@ numbers! {
     GROUP_SIZE = 64;
     /// The most workgroups of a row.
     GROUPS_ACROSS = 32_768;
+    /// In place of the second corner of an edge at a border.
+    NO_CORNER = u32::MAX;
     /// Where a scalar has no values of single elements.
     NO_FIELD = u32::MAX;
     /// Scalars of a term, used or not.
