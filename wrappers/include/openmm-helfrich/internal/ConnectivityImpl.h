@@ -21,7 +21,7 @@ public:
     virtual void restoreConnectivity(OpenMM::ContextImpl& context, const std::string& saved) = 0;
 };
 
-/** What MonteCarloBondFlip asks of its implementation besides. */
+/** What movers ask of their implementations. */
 class StatisticsImpl {
 public:
     virtual ~StatisticsImpl() {
