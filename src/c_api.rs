@@ -102,6 +102,11 @@ forward! {
     /// has chosen.
     Helfrich_MembraneForce_setBackend =>
         helfrich_shim_setBackend(force: *mut Force, backend: *const c_char) -> c_int;
+    /// Say whether the surface lives in the periodic box of the Context.
+    Helfrich_MembraneForce_setUsesPeriodicBoundaryConditions =>
+        helfrich_shim_setPeriodic(force: *mut Force, periodic: c_int) -> c_int;
+    /// Whether it does.
+    Helfrich_MembraneForce_usesPeriodicBoundaryConditions => helfrich_shim_usesPeriodic(force: *mut Force) -> c_int;
     /// Let a Context parameter take the place of a scalar.
     Helfrich_MembraneForce_setContextParameter =>
         helfrich_shim_setContextParameter(force: *mut Force, parameter: *const c_char, name: *const c_char) -> c_int;

@@ -32,7 +32,7 @@ pub enum Error {
     OpenEdge { edge: [u32; 2], triangle: usize },
 
     /// More than two sheets meet in an edge.
-    #[error("edge ({}, {}) is shared by {count} triangles (the first three: {}, {}, {}); a surface has exactly two at each edge", .edge[0], .edge[1], .triangles[0], .triangles[1], .triangles[2])]
+    #[error("edge ({}, {}) is shared by {count} triangles (the first three: {}, {}, {}); a surface has exactly two at each edge (around a periodic box it needs three vertices or more)", .edge[0], .edge[1], .triangles[0], .triangles[1], .triangles[2])]
     NonManifoldEdge { edge: [u32; 2], count: usize, triangles: [usize; 3] },
 
     /// Two neighbours are listed with opposite senses of rotation.
@@ -72,6 +72,16 @@ pub enum Error {
     /// A triangle is so large that its area is not a number.
     #[error("triangle {triangle} ({}, {}, {}) has grown beyond all numbers: the simulation has blown up; use a smaller time step or a better relaxed start", .corners[0], .corners[1], .corners[2])]
     OverflownTriangle { triangle: usize, corners: [u32; 3] },
+
+    /// An edge has no image that is certainly the nearest.
+    #[error("particles {} and {} are joined by an edge of {length:.6} nm, but in the periodic box with vectors {:?}, {:?} and {:?} nm edges must be shorter than {limit:.6} nm, half of its least width, so that it is clear which images they connect; use a larger box, or a mesh of shorter edges (around the box it needs three vertices, better four)", .edge[0], .edge[1], .vectors[0], .vectors[1], .vectors[2])]
+    LongEdge { edge: [u32; 2], length: f64, limit: f64, vectors: Box<[[f64; 3]; 3]> },
+
+    /// The surface of a potential that needs an outside goes on beyond the periodic box.
+    #[error(
+        "the surface with particle {particle} spans the periodic box, so it encloses no volume; leave {force} out, or give it the triangles of closed surfaces only"
+    )]
+    Spanning { force: &'static str, particle: u32 },
 
     /// The surface of a potential that needs an outside is turned inside out.
     #[error(
@@ -141,7 +151,7 @@ impl Error {
     /// together report in the name of one of them.
     pub fn class(&self) -> Option<&'static str> {
         match self {
-            Self::InsideOut { force, .. } => Some(force),
+            Self::InsideOut { force, .. } | Self::Spanning { force, .. } => Some(force),
             _ => None,
         }
     }

@@ -144,6 +144,7 @@ mod tests {
                 1,
                 4,
                 [0.0; 12].as_ptr(),
+                std::ptr::null(),
                 &mut contribution,
                 std::ptr::null_mut(),
             );

@@ -3,9 +3,10 @@
 use crate::backend::Choice;
 use crate::error::{Error, Result};
 use crate::evaluator::{ChosenEvaluator, Present};
+use crate::mesh::cell::Image;
 use crate::mesh::numbering::breadth_first;
 use crate::mesh::orientation::is_inside_out;
-use crate::mesh::{Topology, Triangulation};
+use crate::mesh::{Cell, Topology, Triangulation, Unfolding};
 use crate::moves::local::LocalEnergy;
 use crate::moves::{FlipRules, FlipState, flips};
 use crate::potentials::{Contribution, Element, Term};
@@ -23,6 +24,7 @@ pub fn count() -> i64 {
 /// A mesh with the buffers to evaluate any terms on it, and to change its connectivity.
 pub struct Membrane {
     mesh: Triangulation,
+    unfolding: Unfolding,
     /// The vertices, so that neighbours on the surface are near each other.
     order: Vec<u32>,
     /// How many flips there have been since the order was made.
@@ -50,6 +52,29 @@ pub struct Connectivity {
     pub flips: u64,
 }
 
+/// The positions that a membrane's evaluators shall see. A macro, since the evaluator is needed beside them.
+macro_rules! unfolded {
+    ($membrane:ident, $positions:expr, $cell:expr) => {
+        match $cell {
+            None => {
+                if $membrane.mesh.set_images(Vec::new()) {
+                    let (mesh, order) = (&$membrane.mesh, $membrane.order.as_slice());
+                    $membrane.evaluator.connectivity_changed(Present { mesh, order })?;
+                }
+                $positions
+            }
+            Some(cell) => {
+                let found = $membrane.unfolding.unfold(&mut $membrane.mesh, $positions, cell)?;
+                if found.has_new_images {
+                    let (mesh, order) = (&$membrane.mesh, $membrane.order.as_slice());
+                    $membrane.evaluator.connectivity_changed(Present { mesh, order })?;
+                }
+                found.positions
+            }
+        }
+    };
+}
+
 impl Membrane {
     /// For triangles of particles of a System with `num_particles` of them.
     ///
@@ -63,6 +88,7 @@ impl Membrane {
         Ok(Self {
             initial_fingerprint: mesh.fingerprint(),
             mesh,
+            unfolding: Unfolding::default(),
             order,
             flips_of_order: 0,
             evaluator,
@@ -135,21 +161,24 @@ impl Membrane {
 
     fn take(&mut self, mesh: Triangulation, order: Vec<u32>, flips: u64) -> Result<()> {
         (self.mesh, self.order, self.flips_of_order) = (mesh, order, flips);
+        self.unfolding.connectivity_changed();
         self.remembered.clear();
         self.evaluator.connectivity_changed(Present { mesh: &self.mesh, order: &self.order })
     }
 
-    /// Try to flip so many edges at the present positions (nm), with the energy of some terms. Returns how many flips
-    /// were made. If `force_change` (kJ/mol/nm, in the layout of the positions) is wanted, it gets by how much they
+    /// Try to flip so many edges at the present positions (nm), in a periodic box or none, with the energy of some terms.
+    /// Returns how many flips were made. If `force_change` (kJ/mol/nm, in the layout of the positions) is wanted, it gets by how much they
     /// have changed the forces; it is left alone if there were none.
     ///
     /// # Errors
     /// Rules that make no sense, a term as [`Self::evaluate`] refuses it, a mesh without geometry: nothing has changed
     /// then. A GPU that was asked for and fails: the flips have been made.
+    #[expect(clippy::too_many_arguments, reason = "what a move needs is of several kinds")]
     pub fn flip(
         &mut self,
         terms: &[Term],
         positions: &[f64],
+        cell: Option<&Cell>,
         rules: &FlipRules,
         attempts: u64,
         state: &mut FlipState,
@@ -165,6 +194,8 @@ impl Membrane {
             self.check(term)?;
         }
         self.remembered.clear();
+        let given = positions;
+        let positions = unfolded!(self, given, cell);
         let before = force_change.as_ref().map(|_| {
             self.before.clear();
             self.before.resize(positions.len(), 0.0);
@@ -181,10 +212,14 @@ impl Membrane {
             if self.flips_of_order > 2 * self.mesh.num_edges() as u64 {
                 (self.order, self.flips_of_order) = (breadth_first(&self.mesh), 0);
             }
+            self.unfolding.connectivity_changed();
+            if let Some(cell) = cell {
+                self.unfolding.unfold(&mut self.mesh, given, cell)?;
+            }
             self.evaluator
                 .connectivity_changed(Present { mesh: &self.mesh, order: &self.order })?;
             if let Some(change) = &mut force_change {
-                self.compare_forces(terms, positions, change)?;
+                self.compare_forces(terms, given, cell, change)?;
             }
         }
         Ok(made)
@@ -194,11 +229,13 @@ impl Membrane {
     fn compare_forces(
         &mut self,
         terms: &[Term],
-        positions: &[f64],
+        given: &[f64],
+        cell: Option<&Cell>,
         change: &mut [f64],
     ) -> Result<()> {
+        let positions = unfolded!(self, given, cell);
         let present = Present { mesh: &self.mesh, order: &self.order };
-        let after = self.remembered.fill(terms, positions, |forces| {
+        let after = self.remembered.fill(terms, given, cell, |forces| {
             self.evaluator.evaluate(present, terms, positions, &mut [], Some(forces))
         })?;
         for ((change, after), before) in change.iter_mut().zip(after).zip(&self.before) {
@@ -216,16 +253,18 @@ impl Membrane {
     }
 
     /// Evaluate terms together. Positions (nm) and forces (kJ/mol/nm) are those of all particles of the
-    /// System, x y z of one after the other; forces are added. Without contributions no energies are summed.
+    /// System, x y z of one after the other; forces are added. Without contributions no energies are summed. In a periodic
+    /// box, edges connect nearest images.
     ///
     /// # Errors
-    /// Those of [`ChosenEvaluator::evaluate`], triangles that are turned inside out where a term needs an outside, and
+    /// Those of [`ChosenEvaluator::evaluate`] and of [`Unfolding::unfold`], triangles that are turned inside out where a term needs an outside, and
     /// a parameter outside its domain, as a Context parameter
     /// can come to be.
     pub fn evaluate(
         &mut self,
         terms: &[Term],
         positions: &[f64],
+        cell: Option<&Cell>,
         contributions: &mut [Contribution],
         mut forces: Option<&mut [f64]>,
     ) -> Result<()> {
@@ -241,36 +280,17 @@ impl Membrane {
         for term in terms {
             self.check(term)?;
         }
-        if !self.has_outside {
-            self.look_for_outside(terms, positions)?;
-        }
         if let (true, Some(forces)) = (contributions.is_empty(), &mut forces)
-            && self.remembered.add_once(terms, positions, forces)
+            && self.remembered.add_once(terms, positions, cell, forces)
         {
             return Ok(());
         }
+        let positions = unfolded!(self, positions, cell);
+        if !self.has_outside || !self.mesh.images().is_empty() {
+            look_for_outside(&self.mesh, &mut self.has_outside, terms, positions)?;
+        }
         let present = Present { mesh: &self.mesh, order: &self.order };
         self.evaluator.evaluate(present, terms, positions, contributions, forces)
-    }
-
-    /// Refuse triangles that all run clockwise, as a slip in a mesh has them, before a volume below zero becomes a
-    /// pressure that blows the membrane up. That is settled by the first positions that a term asks about, for good:
-    /// a shape that turns inside out later, or crosses itself, follows the formula, whose volume has a sign.
-    fn look_for_outside(&mut self, terms: &[Term], positions: &[f64]) -> Result<()> {
-        let Some(term) = terms.iter().find(|term| term.potential.needs_outside()) else {
-            return Ok(());
-        };
-        match is_inside_out(&self.mesh, positions) {
-            Some((true, totals)) => {
-                let (force, volume) = (term.potential.name(), totals.volume);
-                Err(Error::InsideOut { force, volume })
-            }
-            found => {
-                // Of positions that are not finite the evaluator names the culprit.
-                self.has_outside = found.is_some();
-                Ok(())
-            }
-        }
     }
 
     /// Refuse a term with values outside their domains, or with more or fewer values for single
@@ -296,6 +316,37 @@ impl Membrane {
             }
         }
         Ok(())
+    }
+}
+
+/// Refuse triangles that all run clockwise, as a slip in a mesh has them, before a volume below zero becomes a
+/// pressure that blows the membrane up. That is settled by the first positions that a term asks about, for good:
+/// a shape that turns inside out later, or crosses itself, follows the formula, whose volume has a sign. What spans a
+/// periodic box has no volume.
+fn look_for_outside(
+    mesh: &Triangulation,
+    has_outside: &mut bool,
+    terms: &[Term],
+    positions: &[f64],
+) -> Result<()> {
+    let Some(term) = terms.iter().find(|term| term.potential.needs_outside()) else {
+        return Ok(());
+    };
+    let outer = |images: &[Image; 3]| *images != [[0; 3]; 3];
+    if let Some(triangle) = mesh.images().iter().position(outer) {
+        let (force, particle) = (term.potential.name(), mesh.particles_of(triangle)[0]);
+        return Err(Error::Spanning { force, particle });
+    }
+    match is_inside_out(mesh, positions) {
+        Some((true, totals)) => {
+            let (force, volume) = (term.potential.name(), totals.volume);
+            Err(Error::InsideOut { force, volume })
+        }
+        found => {
+            // Of positions that are not finite the evaluator names the culprit.
+            *has_outside = found.is_some();
+            Ok(())
+        }
     }
 }
 

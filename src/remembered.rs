@@ -1,14 +1,16 @@
 //! Forces that were computed a moment before somebody asks for them.
 
 use crate::error::Result;
+use crate::mesh::Cell;
 use crate::potentials::{MAX_PARAMETERS, Term};
 
-/// Forces of some terms at some positions.
+/// Forces of some terms at some positions in a periodic box or none.
 #[derive(Default)]
 pub struct Remembered {
     is_there: bool,
     terms: Vec<RememberedTerm>,
     positions: Vec<f64>,
+    cell: Option<Cell>,
     forces: Vec<f64>,
 }
 
@@ -35,6 +37,7 @@ impl Remembered {
         &mut self,
         terms: &[Term],
         positions: &[f64],
+        cell: Option<&Cell>,
         compute: impl FnOnce(&mut [f64]) -> Result<()>,
     ) -> Result<&[f64]> {
         self.is_there = false;
@@ -45,14 +48,21 @@ impl Remembered {
         self.terms.extend(terms.iter().map(RememberedTerm::new));
         self.positions.clear();
         self.positions.extend_from_slice(positions);
+        self.cell = cell.copied();
         self.is_there = true;
         Ok(&self.forces)
     }
 
     /// Add the forces, if they are of these terms at these positions. What is asked for next is something else, so they
     /// are forgotten in any case.
-    pub fn add_once(&mut self, terms: &[Term], positions: &[f64], forces: &mut [f64]) -> bool {
-        let known = self.is_of(terms, positions);
+    pub fn add_once(
+        &mut self,
+        terms: &[Term],
+        positions: &[f64],
+        cell: Option<&Cell>,
+        forces: &mut [f64],
+    ) -> bool {
+        let known = self.is_of(terms, positions, cell);
         self.is_there = false;
         if known {
             forces.iter_mut().zip(&self.forces).for_each(|(sum, force)| *sum += force);
@@ -60,11 +70,12 @@ impl Remembered {
         known
     }
 
-    fn is_of(&self, terms: &[Term], positions: &[f64]) -> bool {
+    fn is_of(&self, terms: &[Term], positions: &[f64], cell: Option<&Cell>) -> bool {
         self.is_there
             && self.terms.len() == terms.len()
             && self.terms.iter().zip(terms).all(|(known, term)| known.is(term))
             && self.positions == positions
+            && self.cell.as_ref() == cell
     }
 }
 

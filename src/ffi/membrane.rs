@@ -1,7 +1,9 @@
 //! The C interface to [`crate::membrane`]: meshes of particles, and evaluations of terms on them.
 
 use super::{TermInput, guarded, slice, text};
+use crate::error::Result;
 use crate::membrane::{self, Membrane};
+use crate::mesh::Cell;
 use crate::potentials::{Contribution, REGISTRY, Term};
 use std::ffi::{c_char, c_int};
 use std::slice as slices;
@@ -68,6 +70,14 @@ pub unsafe extern "C" fn Helfrich_Membrane_edges(membrane: *const Membrane, part
     }
 }
 
+/// The periodic box of some vectors; null for none.
+///
+/// # Safety
+/// `vectors` must be readable or null.
+pub(super) unsafe fn cell(vectors: *const [[f64; 3]; 3]) -> Result<Option<Cell>> {
+    unsafe { vectors.as_ref() }.map(|vectors| Cell::new(*vectors)).transpose()
+}
+
 impl TermInput {
     /// # Safety
     /// The fields must hold as many values as they say.
@@ -108,7 +118,7 @@ pub unsafe extern "C" fn Helfrich_Membrane_setThreads(membrane: *mut Membrane, t
 }
 
 /// Evaluate terms together. `contributions` may be null; then no energies are computed. `forces` may be null;
-/// otherwise forces are added to it.
+/// otherwise forces are added to it. `box_vectors` has those of the periodic box, or is null if there is none.
 ///
 /// # Safety
 /// `subject` must end with a NUL; `membrane` must be alive and used by no other thread; `terms` and
@@ -121,6 +131,7 @@ pub unsafe extern "C" fn Helfrich_Membrane_evaluate(
     num_terms: i64,
     num_particles: i64,
     positions: *const f64,
+    box_vectors: *const [[f64; 3]; 3],
     contributions: *mut Contribution,
     forces: *mut f64,
 ) -> c_int {
@@ -133,11 +144,12 @@ pub unsafe extern "C" fn Helfrich_Membrane_evaluate(
             unsafe { slices::from_raw_parts_mut(contributions, count) }
         };
         let positions = unsafe { slice(positions, length) };
+        let cell = unsafe { cell(box_vectors) }?;
         let forces =
             (!forces.is_null()).then(|| unsafe { slices::from_raw_parts_mut(forces, length) });
         // The usual handful of terms costs no allocation.
         let terms: smallvec::SmallVec<[Term; 8]> =
             inputs.iter().map(|input| unsafe { input.term() }).collect();
-        unsafe { &mut *membrane }.evaluate(&terms, positions, contributions, forces)
+        unsafe { &mut *membrane }.evaluate(&terms, positions, cell.as_ref(), contributions, forces)
     })
 }

@@ -1,5 +1,6 @@
 //! The C interface to moves of a membrane's connectivity, and to the connectivity itself.
 
+use super::membrane::cell;
 use super::{TermInput, guarded, slice, text};
 use crate::membrane::{Connectivity, Membrane};
 use crate::moves::{FlipRules, FlipState};
@@ -22,7 +23,7 @@ pub unsafe extern "C" fn Helfrich_Membrane_checkFlips(
 
 /// Try to flip so many edges at the present positions, with the energy of some terms. `made` gets how many
 /// flips were made; `force_change`, if it is not null, by how much that has changed the forces, or nothing if there were
-/// no flips.
+/// no flips. `box_vectors` has those of the periodic box, or is null if there is none.
 ///
 /// # Safety
 /// `subject` must end with a NUL; `membrane` must be alive and used by no other thread; `terms` must hold
@@ -36,6 +37,7 @@ pub unsafe extern "C" fn Helfrich_Membrane_flip(
     num_terms: i64,
     num_particles: i64,
     positions: *const f64,
+    box_vectors: *const [[f64; 3]; 3],
     rules: *const FlipRules,
     attempts: i64,
     state: *mut FlipState,
@@ -50,7 +52,16 @@ pub unsafe extern "C" fn Helfrich_Membrane_flip(
         let (membrane, rules, state) = unsafe { (&mut *membrane, &*rules, &mut *state) };
         let change = (!force_change.is_null())
             .then(|| unsafe { slices::from_raw_parts_mut(force_change, positions.len()) });
-        let count = membrane.flip(&terms, positions, rules, attempts as u64, state, change)?;
+        let cell = unsafe { cell(box_vectors) }?;
+        let count = membrane.flip(
+            &terms,
+            positions,
+            cell.as_ref(),
+            rules,
+            attempts as u64,
+            state,
+            change,
+        )?;
         unsafe { made.write(count as i64) };
         Ok(())
     })

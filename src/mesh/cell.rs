@@ -24,7 +24,7 @@ impl Cell {
     pub fn new([a, b, c]: [[f64; 3]; 3]) -> Result<Self> {
         let finite = [a, b, c].as_flattened().iter().all(|x| x.is_finite());
         let form = a[1] == 0.0 && a[2] == 0.0 && b[2] == 0.0;
-        if !finite || !form || !(a[0] > 0.0 && b[1] > 0.0 && c[2] > 0.0) {
+        if !(finite && form && a[0] > 0.0 && b[1] > 0.0 && c[2] > 0.0) {
             return Err(Error::Contract(format!(
                 "the periodic box needs vectors (ax, 0, 0), (bx, by, 0) and (cx, cy, cz) with ax, by and cz above zero, \
                  got {a:?}, {b:?} and {c:?} nm"

@@ -7,8 +7,10 @@ pub mod orientation;
 mod parts;
 pub mod topology;
 pub mod triangulation;
+pub mod unfolding;
 pub mod vertex_vectors;
 
 pub use cell::Cell;
 pub use topology::Topology;
 pub use triangulation::Triangulation;
+pub use unfolding::Unfolding;

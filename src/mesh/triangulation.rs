@@ -5,6 +5,7 @@
 //! walked or counted from triangles and twins; nothing else is stored, so a flip rewrites two triangles and
 //! six twins and costs the same however large the mesh is.
 
+use super::cell::Image;
 use super::topology::Topology;
 use crate::error::{Error, Result};
 
@@ -23,6 +24,8 @@ pub struct Triangulation {
     degrees: Vec<u32>,
     /// Of the half-edges that begin at each vertex the one of the lowest number.
     leaving: Vec<u32>,
+    /// The images of the corners of each triangle, where the surface spans a periodic box; otherwise empty.
+    images: Vec<[Image; 3]>,
     /// The sum of numbers that look random, one for each triangle with its corners; so it tells any two sets of
     /// triangles apart, and a flip changes two of its terms.
     fingerprint: u64,
@@ -107,6 +110,7 @@ impl Triangulation {
         let terms = topology.triangles.iter().enumerate().map(|(t, corners)| mixed(t, corners));
         Self {
             fingerprint: terms.fold(0, u64::wrapping_add),
+            images: Vec::new(),
             particles: topology.particles.clone(),
             triangles: topology.triangles.clone(),
             twins,
@@ -157,6 +161,20 @@ impl Triangulation {
     /// The twins of the half-edges of all triangles.
     pub fn twins(&self) -> &[[u32; 3]] {
         &self.twins
+    }
+
+    /// How many box vectors to add to the positions of the corners of each triangle so that they are neighbours, none to
+    /// the first; empty if the surface is in one piece as it is, which it can be unless it spans a periodic box.
+    pub fn images(&self) -> &[[Image; 3]] {
+        &self.images
+    }
+
+    /// Give the corners of all triangles their images, or none. Returns whether that makes a difference.
+    pub fn set_images(&mut self, images: Vec<[Image; 3]>) -> bool {
+        debug_assert!(images.is_empty() || images.len() == self.triangles.len());
+        let changes = self.images != images;
+        self.images = images;
+        changes
     }
 
     /// How many edges end at each vertex.

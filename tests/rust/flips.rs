@@ -147,10 +147,10 @@ fn many_flips_leave_a_valid_surface_and_current_evaluators() {
     let mut state = seeded(5);
     let hot = FlipRules { temperature: 1e6, ..ANY };
     // That the surface is not inside out is settled before it is crumpled.
-    membrane.evaluate(&terms, &positions, &mut [], None).unwrap();
+    membrane.evaluate(&terms, &positions, None, &mut [], None).unwrap();
     let mut made = 0;
     for round in 0.. {
-        made += membrane.flip(&terms[..1], &positions, &hot, 3000, &mut state, None).unwrap();
+        made += membrane.flip(&terms[..1], &positions, None, &hot, 3000, &mut state, None).unwrap();
         let mesh = corners(membrane.mesh());
         let valid = Triangulation::new(&Topology::new(&mesh, count).unwrap());
         assert_eq!(valid.twins(), membrane.mesh().twins());
@@ -158,7 +158,7 @@ fn many_flips_leave_a_valid_surface_and_current_evaluators() {
         if round % 40 == 0 {
             let mut sums = vec![Contribution::default(); terms.len()];
             let mut forces = vec![0.0; positions.len()];
-            membrane.evaluate(&terms, &positions, &mut sums, Some(&mut forces)).unwrap();
+            membrane.evaluate(&terms, &positions, None, &mut sums, Some(&mut forces)).unwrap();
             let topology = Arc::new(Topology::new(&mesh, count).unwrap());
             let (mut expected, mut exact) = (sums.clone(), vec![0.0; positions.len()]);
             let borrowed: Vec<_> = terms.iter().collect();
@@ -189,11 +189,19 @@ fn what_was_saved_goes_on_with_the_same_bits() {
     let terms = all_terms(true);
     let run = |membrane: &mut Membrane, state: &mut FlipState| {
         membrane
-            .flip(&terms, &positions, &FlipRules { temperature: 50.0, ..ANY }, 2000, state, None)
+            .flip(
+                &terms,
+                &positions,
+                None,
+                &FlipRules { temperature: 50.0, ..ANY },
+                2000,
+                state,
+                None,
+            )
             .unwrap();
         let mut sums = vec![Contribution::default(); terms.len()];
         let mut forces = vec![0.0; positions.len()];
-        membrane.evaluate(&terms, &positions, &mut sums, Some(&mut forces)).unwrap();
+        membrane.evaluate(&terms, &positions, None, &mut sums, Some(&mut forces)).unwrap();
         (membrane.connectivity(), sums, forces)
     };
     let mut unbroken = Membrane::new(&triangles, count).unwrap();
@@ -221,7 +229,7 @@ fn a_demon_keeps_the_energy() {
     let before = total(&membrane) + state.demon_energy;
     for _ in 0..20 {
         let rules = FlipRules { demon: 1, ..ANY };
-        membrane.flip(&terms, &positions, &rules, 500, &mut state, None).unwrap();
+        membrane.flip(&terms, &positions, None, &rules, 500, &mut state, None).unwrap();
         assert!(state.demon_energy >= 0.0);
         let after = total(&membrane) + state.demon_energy;
         assert!((after - before).abs() < 1e-9 * before.abs(), "{after} {before}");
@@ -248,7 +256,7 @@ fn bounds_are_kept() {
     };
     let start = edges(membrane.mesh());
     for _ in 0..50 {
-        membrane.flip(&[term], &positions, &hot, 200, &mut state, None).unwrap();
+        membrane.flip(&[term], &positions, None, &hot, 200, &mut state, None).unwrap();
         assert!(membrane.mesh().degrees().iter().all(|degree| (4..=9).contains(degree)));
         for edge in edges(membrane.mesh()).difference(&start) {
             assert!((place(edge[0]) - place(edge[1])).norm() <= longest);
@@ -365,7 +373,7 @@ fn visits_are_boltzmann(
     let (rules, mut state) = (FlipRules { temperature, ..ANY }, seeded(seed));
     let mut visits = vec![0usize; states.len()];
     for _ in 0..looks {
-        membrane.flip(terms, &positions, &rules, apart, &mut state, None).unwrap();
+        membrane.flip(terms, &positions, None, &rules, apart, &mut state, None).unwrap();
         let mesh = membrane.mesh();
         visits[index[&key((0..mesh.triangles().len()).map(|t| mesh.particles_of(t)))]] += 1;
     }
@@ -452,7 +460,7 @@ fn the_change_of_forces_is_that_of_two_evaluations() {
     let hot = FlipRules { temperature: 1e6, ..ANY };
     let forces_of = |membrane: &mut Membrane, terms: &[Term], positions: &[f64]| {
         let mut forces = vec![0.0; positions.len()];
-        membrane.evaluate(terms, positions, &mut [], Some(&mut forces)).unwrap();
+        membrane.evaluate(terms, positions, None, &mut [], Some(&mut forces)).unwrap();
         forces
     };
     for seed in 0..4 {
@@ -460,8 +468,9 @@ fn the_change_of_forces_is_that_of_two_evaluations() {
         let before = forces_of(&mut membrane, &terms, &positions);
         let mut change = vec![0.0; positions.len()];
         let mut state = seeded(seed);
-        let made =
-            membrane.flip(&terms, &positions, &hot, 100, &mut state, Some(&mut change)).unwrap();
+        let made = membrane
+            .flip(&terms, &positions, None, &hot, 100, &mut state, Some(&mut change))
+            .unwrap();
         assert!(made > 0);
         let saved = membrane.connectivity();
         let mut other = Membrane::new(&triangles, count).unwrap();

@@ -149,12 +149,14 @@ fn dynamics_with_flips(mesh: &Mesh, steps: usize) -> Vec<Sample> {
     let mut samples = Vec::new();
     for step in 0..steps {
         if step % 5 == 0 {
-            membrane.flip(&terms, &positions, &rules, count as u64, &mut state, None).unwrap();
+            membrane
+                .flip(&terms, &positions, None, &rules, count as u64, &mut state, None)
+                .unwrap();
         }
         forces.fill(0.0);
         let wanted = step % 10 == 0 && step > steps / 20;
         let energies = if wanted { &mut sums[..] } else { &mut [] };
-        membrane.evaluate(&terms, &positions, energies, Some(&mut forces)).unwrap();
+        membrane.evaluate(&terms, &positions, None, energies, Some(&mut forces)).unwrap();
         if wanted {
             let energies: Vec<f64> = sums.iter().map(|sum| sum.energy).collect();
             samples.push(sample(&energies, membrane.mesh().degrees().iter().copied()));

@@ -48,6 +48,10 @@ extern int Helfrich_MembraneForce_setForm(OpenMM_Force* force, int form);
 extern int Helfrich_MembraneForce_setSwitch(OpenMM_Force* force, const char* name, int on);
 /** What computes the force: "cpu", "gpu", "gpu:single", "gpu:double", "auto", or "" for what the process has chosen. */
 extern int Helfrich_MembraneForce_setBackend(OpenMM_Force* force, const char* backend);
+/** Say whether the surface lives in the periodic box of the Context. */
+extern int Helfrich_MembraneForce_setUsesPeriodicBoundaryConditions(OpenMM_Force* force, int periodic);
+/** Returns 1, 0, or -1 for failure. */
+extern int Helfrich_MembraneForce_usesPeriodicBoundaryConditions(OpenMM_Force* force);
 extern int Helfrich_MembraneForce_setContextParameter(OpenMM_Force* force, const char* parameter, const char* name);
 extern int Helfrich_MembraneForce_addEnergyParameterDerivative(OpenMM_Force* force, const char* name);
 extern int Helfrich_MembraneForce_updateParametersInContext(OpenMM_Force* force, OpenMM_Context* context);

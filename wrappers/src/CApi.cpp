@@ -124,6 +124,16 @@ int helfrich_shim_setBackend(void* force, const char* backend) {
     return guarded([&] { asForce(force).setBackend(backend); });
 }
 
+int helfrich_shim_setPeriodic(void* force, int periodic) {
+    return guarded([&] { asForce(force).setUsesPeriodicBoundaryConditions(periodic != 0); });
+}
+
+int helfrich_shim_usesPeriodic(void* force) {
+    int periodic = -1;
+    guarded([&] { periodic = asForce(force).usesPeriodicBoundaryConditions(); });
+    return periodic;
+}
+
 int helfrich_shim_setContextParameter(void* force, const char* parameter, const char* name) {
     return guarded([&] { asForce(force).setContextParameter(parameter, name); });
 }

@@ -13,7 +13,8 @@ using std::string;
 using std::vector;
 
 MembraneForceImpl::MembraneForceImpl(const MembraneForce& owner)
-    : CustomCPPForceImpl(owner), owner(owner), term(), inPlace(false), group(owner.getForceGroup()) {
+    : CustomCPPForceImpl(owner), owner(owner), term(), inPlace(false), group(owner.getForceGroup()),
+      periodic(owner.usesPeriodicBoundaryConditions()) {
     // OpenMM asks for the default parameters before it initialises the force.
     for (int i = 0; i < owner.getNumParameters(); i++)
         contextParameters.push_back(owner.getContextParameter(owner.getParameterName(i)));
@@ -38,6 +39,7 @@ void MembraneForceImpl::initialize(ContextImpl& context) {
     term.wantsDerivatives = !derivatives.empty();
     membrane = SharedMembrane::acquire(owner.getTypeName(), context, owner.getTriangles());
     try {
+        membrane->checkAgreement(*this);
         copyValues();
         membrane->choose(owner.getTypeName(), owner.getBackend());
     } catch (...) {
@@ -127,6 +129,10 @@ void MembraneForceImpl::updateParametersInContext(ContextImpl& context) {
     if (owner.getTriangles() != membrane->getTriangles())
         throw OpenMMException(owner.getTypeName() + ": the triangles have changed since the Context was made; call " +
                               "Context::reinitialize()");
+    if (owner.usesPeriodicBoundaryConditions() != periodic)
+        throw OpenMMException(owner.getTypeName() +
+                              ": whether it uses periodic boundary conditions has changed since " +
+                              "the Context was made; call Context::reinitialize()");
     copyValues();
     context.systemChanged();
 }

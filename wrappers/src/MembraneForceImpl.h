@@ -45,6 +45,10 @@ public:
     }
     /** Whether the force belongs to one of some groups, given as bits. */
     bool isInGroups(int groups) const;
+    /** Whether the surface was in the periodic box when the Context was made. */
+    bool isPeriodic() const {
+        return periodic;
+    }
     /** Whether a scalar is a Context parameter. */
     bool usesContextParameters() const;
     /** What to compute, with the present values of Context parameters. */
@@ -68,6 +72,7 @@ private:
     bool inPlace;
     /** The force's group when the Context was made, as OpenMM's own forces have it: a change needs reinitialize. */
     const int group;
+    const bool periodic;
 };
 
 } // namespace HelfrichPlugin

@@ -15,7 +15,8 @@ using std::vector;
 
 namespace {
 
-const int VERSION = 1;
+/** Forces in a periodic box have a version of their own, since earlier releases would compute something else. */
+const int VERSION = 1, PERIODIC_VERSION = 2;
 
 /** Find the variants of a potential: what they are called, and the name of one. False if there is none. */
 bool findForm(const string& force, int index, string& what, string& name) {
@@ -44,7 +45,8 @@ MembraneForceProxy::MembraneForceProxy(const string& forceName, Factory create)
 
 void MembraneForceProxy::serialize(const void* object, SerializationNode& node) const {
     const MembraneForce& force = *static_cast<const MembraneForce*>(object);
-    node.setIntProperty("version", VERSION);
+    bool isPeriodic = force.usesPeriodicBoundaryConditions();
+    node.setIntProperty("version", isPeriodic ? PERIODIC_VERSION : VERSION);
     node.setIntProperty("forceGroup", force.getForceGroup());
     node.setStringProperty("name", force.getName());
     string what, name;
@@ -54,6 +56,8 @@ void MembraneForceProxy::serialize(const void* object, SerializationNode& node) 
         node.setBoolProperty(name, force.getSwitch(name));
     if (!force.getBackend().empty())
         node.setStringProperty("backend", force.getBackend());
+    if (isPeriodic)
+        node.setBoolProperty("usesPeriodic", true);
     SerializationNode& parameters = node.createChildNode("Parameters");
     for (int i = 0; i < force.getNumParameters(); i++) {
         const string& parameter = force.getParameterName(i);
@@ -79,14 +83,14 @@ void* MembraneForceProxy::deserialize(const SerializationNode& node) const {
 
 void MembraneForceProxy::readForce(const SerializationNode& node, MembraneForce& force) const {
     int version = integer(forceName, node, "version");
-    if (version != VERSION)
+    if (version < VERSION || version > PERIODIC_VERSION)
         throw OpenMMException(about(forceName, node) + "has version " + std::to_string(version) + ", but only " +
-                              std::to_string(VERSION) +
-                              " is known; it was written by another release of openmm-helfrich");
+                              std::to_string(VERSION) + " to " + std::to_string(PERIODIC_VERSION) +
+                              " are known; it was written by another release of openmm-helfrich");
     string what, name;
     bool hasForms = findForm(forceName, 0, what, name);
     vector<string> switches = findSwitches(forceName);
-    set<string> attributes = {"type", "version", "forceGroup", "name", "backend"};
+    set<string> attributes = {"type", "version", "forceGroup", "name", "backend", "usesPeriodic"};
     attributes.insert(switches.begin(), switches.end());
     if (hasForms)
         attributes.insert(what);
@@ -98,6 +102,8 @@ void MembraneForceProxy::readForce(const SerializationNode& node, MembraneForce&
         force.setName(text(forceName, node, "name"));
     if (node.hasProperty("backend"))
         force.setBackend(text(forceName, node, "backend"));
+    if (node.hasProperty("usesPeriodic"))
+        force.setUsesPeriodicBoundaryConditions(boolean(forceName, node, "usesPeriodic"));
     if (hasForms) {
         string wanted = text(forceName, node, what);
         int form = 0;

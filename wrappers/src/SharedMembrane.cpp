@@ -91,6 +91,24 @@ void SharedMembrane::join(MembraneForceImpl* member) {
     members.push_back(member);
 }
 
+void SharedMembrane::checkAgreement(const MembraneForceImpl& joining) const {
+    if (members.empty() || members[0]->isPeriodic() == joining.isPeriodic())
+        return;
+    const MembraneForceImpl& periodic = joining.isPeriodic() ? joining : *members[0];
+    const MembraneForceImpl& other = joining.isPeriodic() ? *members[0] : joining;
+    throw OpenMMException(joining.getOwner().getTypeName() + ": of the forces on the same triangles, \"" +
+                          periodic.getOwner().getName() + "\" uses periodic boundary conditions and \"" +
+                          other.getOwner().getName() +
+                          "\" does not; call setUsesPeriodicBoundaryConditions() of both with the same value");
+}
+
+const double* SharedMembrane::findBox(ContextImpl& context) {
+    if (members.empty() || !members[0]->isPeriodic())
+        return nullptr;
+    context.getPeriodicBoxVectors(box[0], box[1], box[2]);
+    return reinterpret_cast<const double*>(box);
+}
+
 void SharedMembrane::leave(MembraneForceImpl* member) {
     members.erase(std::remove(members.begin(), members.end(), member), members.end());
 }
@@ -144,6 +162,7 @@ double SharedMembrane::evaluate(const string& subject, ContextImpl& context, int
     static_assert(sizeof(Vec3) == 3 * sizeof(double), "an array of Vec3 is an array of coordinates");
     check(Helfrich_Membrane_evaluate(subject.c_str(), core, terms.data(), (int64_t) terms.size(),
                                      (int64_t) positions.size(), reinterpret_cast<const double*>(positions.data()),
+                                     findBox(context),
                                      includeEnergy || wantsDerivatives ? contributions.data() : nullptr,
                                      forces == nullptr ? nullptr : reinterpret_cast<double*>(forces->data())));
     double energy = 0;
@@ -166,8 +185,8 @@ int64_t SharedMembrane::flip(const string& subject, ContextImpl& context, int gr
         change = reinterpret_cast<double*>(forceChange->data());
     }
     check(Helfrich_Membrane_flip(subject.c_str(), core, terms.data(), (int64_t) terms.size(),
-                                 (int64_t) positions.size(), reinterpret_cast<const double*>(positions.data()), &rules,
-                                 attempts, &state, &made, change));
+                                 (int64_t) positions.size(), reinterpret_cast<const double*>(positions.data()),
+                                 findBox(context), &rules, attempts, &state, &made, change));
     return made;
 }
 

@@ -51,6 +51,8 @@ public:
     SharedMembrane& operator=(const SharedMembrane&) = delete;
     /** Add a force to the membrane; OpenMM makes them in the order in which it will call them. */
     void join(MembraneForceImpl* member);
+    /** Refuse a force that sees another periodic box than those that are there: one of them sees none. */
+    void checkAgreement(const MembraneForceImpl& joining) const;
     void leave(MembraneForceImpl* member);
     /** Add what flips edges, of which there can be one. */
     void join(MonteCarloBondFlipImpl* mover, OpenMM::ContextImpl& context);
@@ -174,6 +176,8 @@ private:
     static void refuseOthers(const std::string& subject, const SharedMembrane& one, const SharedMembrane& other);
     /** Note the members in some force groups, and their terms. */
     void collect(OpenMM::ContextImpl& context, int groups);
+    /** The vectors of the box that the members live in, nm, or null. */
+    const double* findBox(OpenMM::ContextImpl& context);
     Connectivity getConnectivity() const;
     void setConnectivity(const std::string& subject, const Connectivity& connectivity);
     /** Refuse the present triangles if the mover cannot go on from there, and go back to others. */
@@ -200,6 +204,7 @@ private:
     std::unique_ptr<Left> inherited;
     /** OpenCL and CUDA evaluate on a thread of their own. */
     std::mutex settling;
+    OpenMM::Vec3 box[3];
     std::vector<MembraneForceImpl*> active;
     std::vector<HelfrichTerm> terms;
     std::vector<HelfrichContribution> contributions;

@@ -123,12 +123,25 @@ public:
         return backend;
     }
     /**
-     * Membranes do not know periodic boundary conditions.
+     * Set whether the surface lives in the periodic box of the Context, which may be triclinic. Each edge then
+     * connects nearest images, so positions may be wrapped into the box or not: the result has the same bits. A surface
+     * may cross faces of the box, or span it: a sheet, a tube, a surface that goes on in three directions. Every edge
+     * must be shorter than half of the least distance between opposite faces; the evaluation throws an OpenMMException
+     * that names one which is not.
      *
-     * @return false
+     * Forces on the same triangles must agree. It is not periodic unless this is called, and existing Contexts do not
+     * change.
+     *
+     * @param periodic  whether it is periodic
+     */
+    void setUsesPeriodicBoundaryConditions(bool periodic) {
+        isPeriodic = periodic;
+    }
+    /**
+     * Get whether the surface lives in the periodic box of the Context.
      */
     bool usesPeriodicBoundaryConditions() const {
-        return false;
+        return isPeriodic;
     }
     /**
      * Get which variant of the potential is computed, 0 if there are none.
@@ -191,13 +204,14 @@ private:
     int form;
     unsigned int switches;
     std::string backend;
+    bool isPeriodic;
 };
 
 #ifndef SWIG
 
 inline MembraneForce::MembraneForce(const std::string& type, const std::vector<int>& triangles,
                                     const std::vector<double>& values, int form)
-    : TriangulatedForce(type, triangles), form(0), switches(0) {
+    : TriangulatedForce(type, triangles), form(0), switches(0), isPeriodic(false) {
     for (double value : values) {
         int index = (int) parameters.size();
         HelfrichParameterInfo info;

@@ -82,13 +82,15 @@ int64_t Helfrich_Membrane_numEdges(const HelfrichMembrane* membrane);
 void Helfrich_Membrane_edges(const HelfrichMembrane* membrane, int* particles);
 int Helfrich_Membrane_checkTerm(const char* subject, const HelfrichMembrane* membrane, const HelfrichTerm* term);
 void Helfrich_Membrane_setThreads(HelfrichMembrane* membrane, int threads);
+/** `box` has the three box vectors, or is null where the surface is not in a periodic box. */
 int Helfrich_Membrane_evaluate(const char* subject, HelfrichMembrane* membrane, const HelfrichTerm* terms,
-                               int64_t numTerms, int64_t numParticles, const double* positions,
+                               int64_t numTerms, int64_t numParticles, const double* positions, const double* box,
                                HelfrichContribution* contributions, double* forces);
 int Helfrich_Membrane_checkFlips(const char* subject, const HelfrichMembrane* membrane, const HelfrichFlipRules* rules);
 int Helfrich_Membrane_flip(const char* subject, HelfrichMembrane* membrane, const HelfrichTerm* terms, int64_t numTerms,
-                           int64_t numParticles, const double* positions, const HelfrichFlipRules* rules,
-                           int64_t attempts, HelfrichFlipState* state, int64_t* made, double* forceChange);
+                           int64_t numParticles, const double* positions, const double* box,
+                           const HelfrichFlipRules* rules, int64_t attempts, HelfrichFlipState* state, int64_t* made,
+                           double* forceChange);
 int64_t Helfrich_Membrane_numTriangles(const HelfrichMembrane* membrane);
 int64_t Helfrich_Membrane_numVertices(const HelfrichMembrane* membrane);
 void Helfrich_Membrane_triangles(const HelfrichMembrane* membrane, int* corners);
