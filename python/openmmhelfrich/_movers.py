@@ -1,4 +1,4 @@
-"""What the Monte Carlo movers share of the arguments that users give them; see ``_arguments.py``."""
+"""What the Monte Carlo movers share of their arguments; see ``_arguments.py``."""
 
 from __future__ import annotations
 
