@@ -59,7 +59,11 @@ macro_rules! unfolded {
             None => {
                 if $membrane.mesh.set_images(Vec::new()) {
                     let (mesh, order) = (&$membrane.mesh, $membrane.order.as_slice());
-                    $membrane.evaluator.connectivity_changed(Present { mesh, order })?;
+                    $membrane.evaluator.connectivity_changed(Present {
+                        mesh,
+                        order,
+                        cell: None,
+                    })?;
                 }
                 $positions
             }
@@ -67,7 +71,11 @@ macro_rules! unfolded {
                 let found = $membrane.unfolding.unfold(&mut $membrane.mesh, $positions, cell)?;
                 if found.has_new_images {
                     let (mesh, order) = (&$membrane.mesh, $membrane.order.as_slice());
-                    $membrane.evaluator.connectivity_changed(Present { mesh, order })?;
+                    $membrane.evaluator.connectivity_changed(Present {
+                        mesh,
+                        order,
+                        cell: None,
+                    })?;
                 }
                 found.positions
             }
@@ -163,7 +171,8 @@ impl Membrane {
         (self.mesh, self.order, self.flips_of_order) = (mesh, order, flips);
         self.unfolding.connectivity_changed();
         self.remembered.clear();
-        self.evaluator.connectivity_changed(Present { mesh: &self.mesh, order: &self.order })
+        let present = Present { mesh: &self.mesh, order: &self.order, cell: None };
+        self.evaluator.connectivity_changed(present)
     }
 
     /// Try to flip so many edges at the present positions (nm), in a periodic box or none, with the energy of some terms.
@@ -201,8 +210,8 @@ impl Membrane {
             self.before.resize(positions.len(), 0.0);
             self.before.as_mut_slice()
         });
-        let present = Present { mesh: &self.mesh, order: &self.order };
-        self.local.fill(terms, |survey| {
+        let present = Present { mesh: &self.mesh, order: &self.order, cell };
+        self.local.fill(terms, cell, |survey| {
             self.evaluator.survey(present, terms, positions, before, survey)
         })?;
         let made = flips::attempt(&mut self.mesh, &mut self.local, terms, rules, attempts, state);
@@ -216,8 +225,11 @@ impl Membrane {
             if let Some(cell) = cell {
                 self.unfolding.unfold(&mut self.mesh, given, cell)?;
             }
-            self.evaluator
-                .connectivity_changed(Present { mesh: &self.mesh, order: &self.order })?;
+            self.evaluator.connectivity_changed(Present {
+                mesh: &self.mesh,
+                order: &self.order,
+                cell,
+            })?;
             if let Some(change) = &mut force_change {
                 self.compare_forces(terms, given, cell, change)?;
             }
@@ -234,7 +246,7 @@ impl Membrane {
         change: &mut [f64],
     ) -> Result<()> {
         let positions = unfolded!(self, given, cell);
-        let present = Present { mesh: &self.mesh, order: &self.order };
+        let present = Present { mesh: &self.mesh, order: &self.order, cell };
         let after = self.remembered.fill(terms, given, cell, |forces| {
             self.evaluator.evaluate(present, terms, positions, &mut [], Some(forces))
         })?;
@@ -289,7 +301,7 @@ impl Membrane {
         if !self.has_outside || !self.mesh.images().is_empty() {
             look_for_outside(&self.mesh, &mut self.has_outside, terms, positions)?;
         }
-        let present = Present { mesh: &self.mesh, order: &self.order };
+        let present = Present { mesh: &self.mesh, order: &self.order, cell };
         self.evaluator.evaluate(present, terms, positions, contributions, forces)
     }
 

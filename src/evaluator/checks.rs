@@ -19,10 +19,10 @@ pub fn check_energies<'a>(
 }
 
 /// Why a mesh has no usable geometry: a position that is not finite, or a triangle without area. The mesh is given
-/// by its particles and by those of each triangle.
+/// by its particles and by those of each triangle, with how far the corners are from them.
 pub fn culprit(
     particles: &[u32],
-    triangles: impl Iterator<Item = [u32; 3]>,
+    triangles: impl Iterator<Item = [(u32, Vec3); 3]>,
     positions: &[f64],
 ) -> Error {
     let position =
@@ -37,8 +37,10 @@ pub fn culprit(
     let origin = Vec3::from(position(particles[0]));
     let (mut smallest, mut thinnest) = (f64::INFINITY, (0, [0; 3]));
     let mut sum = 0.0;
-    for (triangle, corners) in triangles.enumerate() {
-        let [a, b, c] = corners.map(|particle| Vec3::from(position(particle)) - origin);
+    for (triangle, places) in triangles.enumerate() {
+        let corners = places.map(|(particle, _)| particle);
+        let [a, b, c] =
+            places.map(|(particle, shift)| Vec3::from(position(particle)) - origin + shift);
         let twice_area = TriangleGeometry::new(&a, &b, &c).twice_area;
         if !twice_area.is_finite() {
             return Error::OverflownTriangle { triangle, corners };

@@ -7,7 +7,7 @@ use crate::backend::{self, Choice, Kind};
 use crate::error::{Error, Result};
 #[cfg(feature = "gpu")]
 use crate::mesh::Topology;
-use crate::mesh::Triangulation;
+use crate::mesh::{Cell, Triangulation};
 use crate::potentials::{Contribution, Term};
 #[cfg(feature = "gpu")]
 use crate::team::default_threads;
@@ -41,6 +41,8 @@ pub struct Present<'a> {
     pub mesh: &'a Triangulation,
     /// All vertices.
     pub order: &'a [u32],
+    /// The periodic box, if there is one.
+    pub cell: Option<&'a Cell>,
 }
 
 impl Default for ChosenEvaluator {
@@ -134,7 +136,8 @@ impl ChosenEvaluator {
         if self.choice.is_none() {
             self.choose(present.mesh, None)?;
         }
-        if self.settled_on_cpu {
+        // What spans a periodic box is for the processor.
+        if self.settled_on_cpu || !present.mesh.images().is_empty() {
             return self.on_cpu(present, terms, positions, contributions, forces);
         }
         self.on_gpu(present, terms, positions, contributions, forces)
@@ -171,9 +174,13 @@ impl ChosenEvaluator {
 
     fn cpu(&mut self, present: Present) -> &mut CpuEvaluator {
         let threads = self.threads;
-        self.cpu.get_or_insert_with(|| {
+        let cpu = self.cpu.get_or_insert_with(|| {
             CpuEvaluator::of(present.mesh, present.order, InstructionSet::Best, threads)
-        })
+        });
+        if let Some(cell) = present.cell {
+            cpu.set_cell(cell);
+        }
+        cpu
     }
 }
 

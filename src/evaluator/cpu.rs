@@ -4,7 +4,7 @@ use super::Survey;
 use super::simd::{Level, SimdEvaluator};
 use crate::error::Result;
 use crate::mesh::numbering::breadth_first;
-use crate::mesh::{Topology, Triangulation};
+use crate::mesh::{Cell, Topology, Triangulation};
 use crate::potentials::{Contribution, Term};
 use crate::team::default_threads;
 use std::sync::Arc;
@@ -65,6 +65,12 @@ impl CpuEvaluator {
     /// Go on with a mesh whose connectivity has changed, or with another order of its vertices.
     pub fn lay_out(&mut self, mesh: &Triangulation, order: &[u32]) {
         self.simd.lay_out(mesh, order);
+    }
+
+    /// Say in which periodic box the mesh is; needed before each evaluation where it spans the box, and the box has
+    /// changed.
+    pub fn set_cell(&mut self, cell: &Cell) {
+        self.simd.set_cell(cell);
     }
 
     /// Let so many threads share the work, 0 for as many as there are; fewer if the system has no more.

@@ -4,6 +4,7 @@ use super::checks::{check_energies, culprit};
 use super::passes::{Nothing, fill, fill_pair};
 use crate::error::Result;
 use crate::mesh::Topology;
+use crate::mesh::cell::{Cell, Image};
 use crate::mesh::geometry::{
     EdgeGeometry, EdgePartials, EdgeTension, TotalPartials, Totals, TriangleGeometry,
     TrianglePartials, Vec3, VertexGeometry, VertexPartials, corner_forces,
@@ -25,6 +26,8 @@ pub struct ReferenceEvaluator {
     parallel: bool,
     /// Relative to the first vertex, so that a mesh far from the origin loses no digits.
     positions: Vec<Vec3>,
+    /// How far corners of triangles are from their vertices where the mesh spans a periodic box; otherwise empty.
+    shifts: Vec<[Vec3; 3]>,
     triangles: Vec<TriangleGeometry>,
     edges: Vec<EdgeGeometry>,
     vertices: Vec<VertexGeometry>,
@@ -60,6 +63,42 @@ impl AddAssign for TriangleSums {
     }
 }
 
+/// Where the corners of triangles are.
+struct Places<'a> {
+    topology: &'a Topology,
+    positions: &'a [Vec3],
+    shifts: &'a [[Vec3; 3]],
+}
+
+/// A macro, since passes write to other fields meanwhile.
+macro_rules! places {
+    ($evaluator:ident) => {
+        Places {
+            topology: &$evaluator.topology,
+            positions: &$evaluator.positions,
+            shifts: &$evaluator.shifts,
+        }
+    };
+}
+
+impl Places<'_> {
+    fn corners(&self, triangle: usize) -> [Vec3; 3] {
+        let corners = self.topology.triangles[triangle].map(|v| self.positions[v as usize]);
+        match self.shifts.get(triangle) {
+            None => corners,
+            Some(shifts) => std::array::from_fn(|k| corners[k] + shifts[k]),
+        }
+    }
+
+    /// The corners, beginning with that of a vertex.
+    fn from(&self, triangle: u32, vertex: u32) -> [Vec3; 3] {
+        let mut corners = self.corners(triangle as usize);
+        let vertices = self.topology.triangles[triangle as usize];
+        corners.rotate_left(vertices.iter().position(|v| *v == vertex).unwrap_or(0));
+        corners
+    }
+}
+
 impl ReferenceEvaluator {
     /// Buffers for a mesh.
     pub fn new(topology: Arc<Topology>) -> Self {
@@ -68,6 +107,7 @@ impl ReferenceEvaluator {
         Self {
             parallel: t >= PARALLEL_TRIANGLES,
             positions: vec![Vec3::zeros(); v],
+            shifts: Vec::new(),
             triangles: vec![geometry; t],
             edges: vec![EdgeGeometry::default(); topology.edges.len()],
             vertices: vec![VertexGeometry::default(); v],
@@ -83,6 +123,13 @@ impl ReferenceEvaluator {
         }
     }
 
+    /// Let corners of triangles be images of their vertices in a periodic box, as [`Triangulation::images`] has them.
+    ///
+    /// [`Triangulation::images`]: crate::mesh::Triangulation::images
+    pub fn set_images(&mut self, images: &[[Image; 3]], cell: &Cell) {
+        self.shifts = images.iter().map(|images| images.map(|image| cell.shift(image))).collect();
+    }
+
     /// As [`super::CpuEvaluator::evaluate`].
     pub fn evaluate(
         &mut self,
@@ -95,8 +142,12 @@ impl ReferenceEvaluator {
         self.gather_positions(positions);
         let totals = self.forward_triangles().ok_or_else(|| {
             let topology = &self.topology;
-            let triangles = 0..topology.triangles.len();
-            culprit(&topology.particles, triangles.map(|t| topology.particles_of(t)), positions)
+            let triangles = (0..topology.triangles.len()).map(|triangle| {
+                let shifts = self.shifts.get(triangle).copied().unwrap_or_default();
+                let particles = topology.particles_of(triangle);
+                std::array::from_fn(|k| (particles[k], shifts[k]))
+            });
+            culprit(&topology.particles, triangles, positions)
         })?;
         if needs.intersects(Needs::EDGES | Needs::CURVATURES) {
             self.forward_edges();
@@ -136,12 +187,12 @@ impl ReferenceEvaluator {
     /// Fails where the mesh has no geometry: at a triangle without area, or where positions are not
     /// finite.
     fn forward_triangles(&mut self) -> Option<Totals> {
-        let (positions, topology) = (&self.positions, &self.topology);
+        let places = places!(self);
         let sums = fill(self.parallel, &mut self.triangles, |first, chunk| {
             let mut sums = TriangleSums::default();
-            for (triangle, corners) in chunk.iter_mut().zip(&topology.triangles[first..]) {
-                let [a, b, c] = corners.map(|v| &positions[v as usize]);
-                *triangle = TriangleGeometry::new(a, b, c);
+            for (offset, triangle) in chunk.iter_mut().enumerate() {
+                let [a, b, c] = places.corners(first + offset);
+                *triangle = TriangleGeometry::new(&a, &b, &c);
                 sums.area += triangle.area();
                 sums.six_volumes += a.dot(&triangle.normal);
                 sums.smallest = sums.smallest.min(triangle.twice_area);
@@ -153,14 +204,13 @@ impl ReferenceEvaluator {
     }
 
     fn forward_edges(&mut self) {
-        let (positions, triangles) = (&self.positions, &self.triangles);
+        let (places, triangles) = (places!(self), &self.triangles);
         let topology = &self.topology;
         fill(self.parallel, &mut self.edges, |first, chunk| {
             for (slot, edge) in chunk.iter_mut().zip(&topology.edges[first..]) {
-                let [start, end] = edge.vertices.map(|v| &positions[v as usize]);
                 let [left, right] = edge.triangles.map(|t| &triangles[t as usize]);
-                let right_tip = &positions[edge.opposite[1] as usize];
-                *slot = EdgeGeometry::new(start, end, right_tip, left, right);
+                let [tip, end, start] = places.from(edge.triangles[1], edge.opposite[1]);
+                *slot = EdgeGeometry::new(&start, &end, &tip, left, right);
             }
             Nothing
         });
@@ -196,7 +246,7 @@ impl ReferenceEvaluator {
     fn forward_vectors(&mut self, needs: Needs) {
         self.vectors.resize(self.vertices.len(), VertexVectors::default());
         self.vector_partials.resize(self.vertices.len(), VertexVectors::default());
-        let (positions, triangles) = (&self.positions, &self.triangles);
+        let (places, triangles) = (places!(self), &self.triangles);
         let topology = &self.topology;
         let normals = needs.contains(Needs::NORMALS);
         fill_pair(
@@ -208,9 +258,9 @@ impl ReferenceEvaluator {
                     *vectors = VertexVectors::default();
                     for &corner in &topology.corners[topology.ring(first + offset)] {
                         let (triangle, k) = (corner as usize / 3, corner as usize % 3);
-                        let corners = topology.triangles[triangle];
-                        let around = [k, (k + 1) % 3, (k + 2) % 3];
-                        let points = around.map(|k| &positions[corners[k] as usize]);
+                        let mut points = places.corners(triangle);
+                        points.rotate_left(k);
+                        let points = points.each_ref();
                         add_corner(vertex, vectors, points, &triangles[triangle], k, normals);
                     }
                 }
@@ -309,7 +359,7 @@ impl ReferenceEvaluator {
 
     fn backward_triangles(&mut self, needs: Needs, totals: &TotalPartials) {
         let topology = &self.topology;
-        let (positions, triangles) = (&self.positions, &self.triangles);
+        let (places, triangles) = (places!(self), &self.triangles);
         let (tensions, triangle_partials) = (&self.tensions, &self.triangle_partials);
         let (vertex_partials, vector_partials) = (&self.vertex_partials, &self.vector_partials);
         let by_edges = needs.intersects(Needs::EDGES | Needs::CURVATURES);
@@ -318,7 +368,8 @@ impl ReferenceEvaluator {
                 let triangle = first + offset;
                 let geometry = &triangles[triangle];
                 let vertices = topology.triangles[triangle].map(|v| v as usize);
-                let corners = vertices.map(|v| &positions[v]);
+                let corners = places.corners(triangle);
+                let corners = corners.each_ref();
                 let mut area = totals.area;
                 let mut lengths = [0.0; 3];
                 let mut edges = [EdgeTension::default(); 3];

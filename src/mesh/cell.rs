@@ -16,6 +16,18 @@ pub struct Cell {
 /// How many times each of the box vectors.
 pub type Image = [i32; 3];
 
+/// One after another.
+#[inline]
+pub fn plus(one: Image, other: Image) -> Image {
+    std::array::from_fn(|k| one[k].wrapping_add(other[k]))
+}
+
+/// What leads from the other to the one.
+#[inline]
+pub fn minus(one: Image, other: Image) -> Image {
+    std::array::from_fn(|k| one[k].wrapping_sub(other[k]))
+}
+
 impl Cell {
     /// A box of three vectors.
     ///

@@ -5,7 +5,7 @@
 //! walked or counted from triangles and twins; nothing else is stored, so a flip rewrites two triangles and
 //! six twins and costs the same however large the mesh is.
 
-use super::cell::Image;
+use super::cell::{Image, minus, plus};
 use super::topology::Topology;
 use crate::error::{Error, Result};
 
@@ -301,6 +301,9 @@ impl Triangulation {
             Turn::Right => ([previous(a), previous(b)], [a, b]),
         };
         let outside = lost.map(|half| self.twin(half));
+        if !self.images.is_empty() {
+            self.flip_images(quad, taking);
+        }
         let changing = quad.triangles();
         for triangle in changing {
             let term = mixed(triangle, &self.triangles[triangle]);
@@ -337,6 +340,34 @@ impl Triangulation {
         self.degrees[j as usize] -= 1;
         self.degrees[k as usize] += 1;
         self.degrees[l as usize] += 1;
+    }
+
+    /// The images of i, j, k and l beside each other, if corners have images.
+    #[inline]
+    pub fn images_of(&self, quad: &Quad) -> Option<[Image; 4]> {
+        if self.images.is_empty() {
+            return None;
+        }
+        let [a, b] = quad.halves;
+        let image = |half: u32| self.images.as_flattened()[half as usize];
+        // B is moved so that it has its corner i where A has it.
+        let step = minus(image(a), image(next(b)));
+        let l = plus(image(previous(b)), step);
+        Some([image(a), image(next(a)), image(previous(a)), l])
+    }
+
+    /// The images of the corners that A and B will have.
+    fn flip_images(&mut self, quad: &Quad, taking: [u32; 2]) {
+        let Some([i, _, k, l]) = self.images_of(quad) else { return };
+        let [a, b] = quad.halves;
+        let images = self.images.as_flattened_mut();
+        let step = minus(i, images[next(b) as usize]);
+        images[taking[0] as usize] = l;
+        images[taking[1] as usize] = minus(k, step);
+        for triangle in [a, b].map(|half| half as usize / 3) {
+            let first = self.images[triangle][0];
+            self.images[triangle] = self.images[triangle].map(|image| minus(image, first));
+        }
     }
 
     /// The half-edge of the new edge in triangle A after a flip of a half-edge.

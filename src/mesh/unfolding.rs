@@ -9,7 +9,7 @@
 //! comes out is a function of positions, box and connectivity, whatever was there before. Every edge need not be looked at
 //! again before vertices have moved so far that one could have grown too long.
 
-use super::cell::{Cell, Image};
+use super::cell::{Cell, Image, minus, plus};
 use super::geometry::Vec3;
 use super::triangulation::{Triangulation, next};
 use crate::error::{Error, Result};
@@ -98,11 +98,9 @@ impl Unfolding {
                 continue;
             }
             for &[vertex, _] in &self.tree[part.clone()] {
-                let image = &mut self.images[vertex as usize];
-                *image = std::array::from_fn(|k| {
-                    image[k].wrapping_add(wanted[k]).wrapping_sub(known[k])
-                });
-                self.shifts[vertex as usize] = cell.shift(*image);
+                let image = plus(self.images[vertex as usize], minus(wanted, known));
+                self.images[vertex as usize] = image;
+                self.shifts[vertex as usize] = cell.shift(image);
             }
         }
     }
@@ -135,8 +133,7 @@ impl Unfolding {
                 cell.wrap(&here)
             } else {
                 let step = cell.nearest(&(here - position(mesh, positions, parent)));
-                let from = self.images[parent];
-                std::array::from_fn(|k| from[k].wrapping_add(step[k]))
+                plus(self.images[parent], step)
             };
         }
         self.place(mesh, positions, cell);

@@ -149,8 +149,8 @@ fn one(
         state.by_degree += 1;
         return;
     }
-    let longest = rules.max_edge_length;
-    if longest > 0.0 && local.new_length_squared(&quad) > longest * longest {
+    let longest = local.longest(rules.max_edge_length);
+    if longest > 0.0 && local.new_length_squared(mesh, &quad) >= longest * longest {
         state.by_length += 1;
         return;
     }

@@ -8,6 +8,7 @@
 use super::hinges::{HINGES, Hinges};
 use crate::error::Result;
 use crate::evaluator::{Survey, SurveyedTriangle};
+use crate::mesh::Cell;
 use crate::mesh::geometry::{
     EdgeGeometry, TotalPartials, Totals, TriangleGeometry, Vec3, VertexGeometry,
 };
@@ -23,6 +24,8 @@ const SMALLEST_AREA: f64 = 1e-140;
 #[derive(Default)]
 pub struct LocalEnergy {
     survey: Survey,
+    /// The periodic box, if there is one.
+    cell: Option<Cell>,
     acting: Acting,
     /// Whether no vertex can have an energy below zero.
     vertices_never_negative: bool,
@@ -86,16 +89,18 @@ impl LocalEnergy {
             .sum()
     }
 
-    /// Begin with what a survey finds at some positions.
+    /// Begin with what a survey finds at some positions in a periodic box or none.
     ///
     /// # Errors
     /// Those of the survey; nothing is known then.
     pub fn fill(
         &mut self,
         terms: &[Term],
+        cell: Option<&Cell>,
         survey: impl FnOnce(&mut Survey) -> Result<()>,
     ) -> Result<()> {
         survey(&mut self.survey)?;
+        self.cell = cell.copied();
         self.acting = Acting::new(terms);
         self.vertices_never_negative =
             at(terms, &self.acting.vertices).all(|term| term.potential.is_never_negative(term));
@@ -122,9 +127,38 @@ impl LocalEnergy {
 
     /// The square of the length, nm², that the edge kl would have.
     #[inline]
-    pub fn new_length_squared(&self, quad: &Quad) -> f64 {
-        let [_, _, k, l] = quad.vertices;
-        (self.position(k) - self.position(l)).norm_squared()
+    pub fn new_length_squared(&self, mesh: &Triangulation, quad: &Quad) -> f64 {
+        let [_, _, k, l] = self.points(mesh, quad);
+        (k - l).norm_squared()
+    }
+
+    /// The length, nm, that new edges must stay below: that of the rules, or what a periodic box allows; 0 for any.
+    pub fn longest(&self, max_edge_length: f64) -> f64 {
+        match self.cell.map(|cell| cell.half_width()) {
+            Some(limit) if max_edge_length == 0.0 || limit < max_edge_length => limit,
+            _ => max_edge_length,
+        }
+    }
+
+    /// Where i, j, k and l are, beside each other.
+    #[inline(always)]
+    fn points(&self, mesh: &Triangulation, quad: &Quad) -> [Vec3; 4] {
+        let mut points = quad.vertices.map(|vertex| *self.position(vertex));
+        if let (Some(images), Some(cell)) = (mesh.images_of(quad), &self.cell) {
+            for (point, image) in points.iter_mut().zip(images) {
+                *point += cell.shift(image);
+            }
+        }
+        points
+    }
+
+    /// Where the vertex is that a half-edge begins at, beside the other corners of its triangle.
+    fn corner(&self, mesh: &Triangulation, half: u32) -> Vec3 {
+        let position = *self.position(mesh.origin(half));
+        match (mesh.images().as_flattened().get(half as usize), &self.cell) {
+            (Some(image), Some(cell)) => position + cell.shift(*image),
+            _ => position,
+        }
     }
 
     /// All elements as they are.
@@ -158,7 +192,8 @@ impl LocalEnergy {
     ) -> f64 {
         let survey = &self.survey;
         let [slot_a, slot_b] = quad.triangles();
-        let [i, j, k, l] = quad.vertices.map(|vertex| self.position(vertex));
+        let points = self.points(mesh, quad);
+        let [i, j, k, l] = &points;
         let triangles = [TriangleGeometry::new(i, l, k), TriangleGeometry::new(j, k, l)];
         flipped.slots = match turn {
             Turn::Left => [slot_a, slot_b],
@@ -195,13 +230,13 @@ impl LocalEnergy {
         }
         flipped.vertices = quad.vertices.map(|vertex| survey.vertices[vertex as usize].scalars);
         if survey.needs.intersects(Needs::EDGES | Needs::CURVATURES) {
-            difference += self.edges_of(mesh, terms, quad, flipped);
+            difference += self.edges_of(mesh, terms, quad, &points, flipped);
         }
         if difference - most > limit {
             return difference - most;
         }
         if survey.needs.contains(Needs::VERTICES) {
-            self.vertices_of(terms, quad, flipped);
+            self.vertices_of(terms, quad, &points, flipped);
             difference += flipped.vertex_energies.iter().sum::<f64>() - at_hand;
         }
         difference
@@ -224,7 +259,7 @@ impl LocalEnergy {
     fn edge_of(&self, mesh: &Triangulation, half: u32) -> EdgeGeometry {
         let twin = mesh.twin(half);
         let (left, right) = (self.beside(half), self.beside(twin));
-        let [start, tip] = [half, previous(twin)].map(|half| self.position(mesh.origin(half)));
+        let [start, tip] = [next(twin), previous(twin)].map(|half| self.corner(mesh, half));
         let mut hinges = Hinges::default();
         let length_squared = left.length_squared(half as usize % 3);
         hinges.set(0, left, right, length_squared, &(start - tip));
@@ -243,10 +278,10 @@ impl LocalEnergy {
         mesh: &Triangulation,
         terms: &[Term],
         quad: &Quad,
+        [i, j, k, l]: &[Vec3; 4],
         flipped: &mut Flipped,
     ) -> f64 {
         let [a, b] = quad.halves;
-        let [i, j, k, l] = quad.vertices.map(|vertex| self.position(vertex));
         let [new_i, new_j] = &flipped.triangles;
         let (old_a, old_b) = (self.beside(a), self.beside(b));
         // ki, il, jk and lj with what lies beyond them.
@@ -287,7 +322,7 @@ impl LocalEnergy {
     }
 
     /// Areas, vectors and energies of the four vertices.
-    fn vertices_of(&self, terms: &[Term], quad: &Quad, flipped: &mut Flipped) {
+    fn vertices_of(&self, terms: &[Term], quad: &Quad, points: &[Vec3; 4], flipped: &mut Flipped) {
         let [old_a, old_b] =
             quad.triangles().map(|slot| self.survey.triangles[slot].geometry.area() / 3.0);
         let [new_i, new_j] = flipped.triangles.map(|triangle| triangle.area() / 3.0);
@@ -309,7 +344,7 @@ impl LocalEnergy {
                 (&new_i, [0, 3, 2], 1.0),
                 (&new_j, [1, 2, 3], 1.0),
             ] {
-                self.add_corners(quad, geometry, corners, sign, flipped);
+                self.add_corners(points, geometry, corners, sign, flipped);
             }
         }
         flipped.vertex_energies = [0.0; 4];
@@ -326,14 +361,14 @@ impl LocalEnergy {
     /// Add or take away what the corners of a triangle give to Voronoi areas and vectors.
     fn add_corners(
         &self,
-        quad: &Quad,
+        points: &[Vec3; 4],
         geometry: &TriangleGeometry,
         corners: [usize; 3],
         sign: f64,
         flipped: &mut Flipped,
     ) {
         let normals = self.survey.needs.contains(Needs::NORMALS);
-        let points = corners.map(|n| self.position(quad.vertices[n]));
+        let points = corners.map(|n| &points[n]);
         for k in 0..3 {
             let (mut scalars, mut vectors) = (VertexGeometry::default(), VertexVectors::default());
             let around = [points[k], points[(k + 1) % 3], points[(k + 2) % 3]];

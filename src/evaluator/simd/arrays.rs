@@ -77,7 +77,7 @@ impl Arrays {
     /// For a mesh.
     pub fn new(layout: &Layout) -> Self {
         Self {
-            positions: Numbers::new(4 * layout.vertex_ids.len()),
+            positions: Numbers::new(4 * layout.places_of_vertices()),
             normals: Numbers::new(4 * (layout.triangle_ids.len() + 1)),
             tensions: Numbers::new(0),
             angles: Numbers::new(0),
@@ -85,7 +85,7 @@ impl Arrays {
             bends: Numbers::new(0),
             lengths_squared: Numbers::new(0),
             moments: Numbers::new(0),
-            slopes: Numbers::new(2 * layout.vertex_ids.len()),
+            slopes: Numbers::new(2 * layout.places_of_vertices()),
             vector_slopes: Numbers::new(0),
             umbrella_slopes: Numbers::new(0),
             normal_slopes: Numbers::new(0),

@@ -4,8 +4,10 @@
 //! needs is in the cache. Within a tile they are sorted by degree, so that the lanes of a block go round rings of the same length. Triangles follow
 //! the vertices. The user's order is kept outside: `particles`, `vertex_ids` and `triangle_ids` translate.
 
+use super::ghosts::Ghosts;
 use super::records::BLOCK;
 use crate::mesh::Triangulation;
+use crate::mesh::geometry::Vec3;
 use crate::mesh::triangulation::next;
 use std::ops::Range;
 use std::sync::OnceLock;
@@ -49,6 +51,8 @@ pub struct Layout {
     pub neighbours_before: Vec<[u32; BLOCK]>,
     /// How many triangles must be known before a tile of vertices can be handled.
     pub frontier: Vec<u32>,
+    /// Images of vertices, whose places are behind those of the last block of vertices.
+    pub ghosts: Ghosts,
     opposite: OnceLock<Vec<[u32; BLOCK]>>,
     /// The number of each vertex and triangle by its index in the mesh; kept for their memory.
     number: Vec<u32>,
@@ -73,6 +77,7 @@ impl Layout {
             before: Vec::new(),
             neighbours_before: Vec::new(),
             frontier: Vec::new(),
+            ghosts: Ghosts::default(),
             opposite: OnceLock::new(),
             number: Vec::new(),
             triangle_number: Vec::new(),
@@ -88,7 +93,13 @@ impl Layout {
         self.number_vertices(mesh, order);
         self.lay_rings(mesh);
         self.lay_corners(mesh);
+        self.lay_ghosts(mesh);
         self.opposite = OnceLock::new();
+    }
+
+    /// Number of places of vertices, with those that fill the last block and the ghosts.
+    pub fn places_of_vertices(&self) -> usize {
+        self.vertex_ids.len() + self.ghosts.len()
     }
 
     /// The vertices of a tile.
@@ -233,13 +244,17 @@ impl Layout {
         }));
     }
 
-    /// The particles at the corners of each triangle, in the user's order.
-    pub fn triangles(&self) -> Vec<[u32; 3]> {
-        let mut triangles = vec![[0; 3]; self.num_triangles];
+    /// The particles at the corners of each triangle, in the user's order, and how far the corners are from them.
+    pub fn triangles(&self) -> Vec<[(u32, Vec3); 3]> {
+        let mut triangles = vec![[(0, Vec3::zeros()); 3]; self.num_triangles];
         for (index, &id) in self.triangle_ids[..self.num_triangles].iter().enumerate() {
-            let corners = &self.corners[index / BLOCK];
-            let particle = |k: usize| self.particles[corners[k][index % BLOCK] as usize / 4];
-            triangles[id as usize] = [particle(0), particle(1), particle(2)];
+            let places = self.corners[index / BLOCK].map(|lanes| lanes[index % BLOCK] as usize / 4);
+            triangles[id as usize] = places.map(|place| {
+                let ghost = place.checked_sub(self.vertex_ids.len());
+                let (vertex, shift) = ghost
+                    .map_or((place, Vec3::zeros()), |ghost| self.ghosts.vertex_and_shift(ghost));
+                (self.particles[vertex], shift)
+            });
         }
         triangles
     }
@@ -296,7 +311,10 @@ mod tests {
             assert_eq!((&layout.neighbours, &layout.places), (&anew.neighbours, &anew.places));
             assert_eq!((&layout.steps, &layout.corners), (&anew.steps, &anew.corners));
             assert_eq!(layout.opposite(), anew.opposite());
-            assert_eq!(layout.triangles(), mesh.triangles());
+            let particles = |triangle: [(u32, Vec3); 3]| triangle.map(|(particle, _)| particle);
+            assert!(
+                layout.triangles().into_iter().map(particles).eq(mesh.triangles().iter().copied())
+            );
         }
     }
 

@@ -14,6 +14,7 @@ mod arrays;
 mod backward;
 mod choice;
 mod forward;
+mod ghosts;
 mod instructions;
 mod lanes;
 mod layout;
@@ -33,8 +34,8 @@ pub use tiles::{EdgeBlock, TriangleTile, VertexTile};
 use super::Survey;
 use super::checks::{check_energies, culprit};
 use crate::error::{Error, Result};
-use crate::mesh::Triangulation;
 use crate::mesh::geometry::{TotalPartials, Totals};
+use crate::mesh::{Cell, Triangulation};
 use crate::potentials::{Contribution, Needs, Term};
 use crate::team::{Parts, Team};
 use arrays::Arrays;
@@ -116,6 +117,11 @@ impl SimdEvaluator {
         let scratch =
             || Scratch { triangles: TriangleTile::EMPTY, vertices: VertexTile::new(steps) };
         self.scratch.resize_with(self.team.as_ref().map_or(1, Team::size), scratch);
+    }
+
+    /// Where a surface that spans it goes on.
+    pub fn set_cell(&mut self, cell: &Cell) {
+        self.layout.ghosts.set_cell(cell);
     }
 
     /// As [`super::CpuEvaluator::evaluate`] and [`super::CpuEvaluator::survey`].
@@ -205,6 +211,7 @@ impl SimdEvaluator {
         }
         if let Some(forces) = forces {
             let (layout, arrays, level) = (&self.layout, &self.arrays, self.level);
+            layout.ghosts.copy_slopes(arrays, needs, layout.vertex_ids.len());
             let needs = if silent { needs - Needs::TRIANGLES } else { needs };
             let (totals, forces) = (&total_partials, Forces(forces.as_mut_ptr()));
             team.run(|member| {
@@ -219,8 +226,10 @@ impl SimdEvaluator {
     /// Allocate what is needed for the first time.
     fn make_room(&mut self, needs: Needs, terms: usize) {
         let (layout, arrays) = (&self.layout, &mut self.arrays);
-        let (vertices, triangles) = (layout.vertex_ids.len(), layout.triangle_ids.len());
+        let (vertices, triangles) = (layout.places_of_vertices(), layout.triangle_ids.len());
         let steps = BLOCK * layout.neighbours.len();
+        arrays.positions.require(4 * vertices, 0.0);
+        arrays.slopes.require(2 * vertices, 0.0);
         if needs.intersects(Needs::EDGES | Needs::CURVATURES) {
             arrays.bends.require(steps, 0.0);
         }

@@ -96,6 +96,16 @@ impl Sweep<'_, '_> {
                 *records.add(index) = [position[0] - x, position[1] - y, position[2] - z, 0.0]
             };
         }
+        if member.index() == 0 {
+            let ghosts = self.arrays.positions.at(4 * particles.len()).cast::<[f64; 4]>();
+            for index in 0..self.layout.ghosts.len() {
+                let (vertex, shift) = self.layout.ghosts.vertex_and_shift(index);
+                let position = all[particles[vertex] as usize];
+                let [dx, dy, dz] = [0, 1, 2].map(|k| position[k] + shift[k]);
+                // SAFETY: nobody else writes ghosts.
+                unsafe { *ghosts.add(index) = [dx - x, dy - y, dz - z, 0.0] };
+            }
+        }
     }
 
     /// Geometry and potentials of a tile of triangles; `silent` says whether its tensions are zero.
