@@ -45,6 +45,8 @@ using namespace HelfrichPlugin;
 %ignore HelfrichPlugin::TriangulatedForce::restoreConnectivity;
 %ignore HelfrichPlugin::MonteCarloBondFlip::getStatistics;
 %ignore HelfrichPlugin::MonteCarloMembraneTension::getStatistics;
+%ignore HelfrichPlugin::MonteCarloMembraneTension::saveState;
+%ignore HelfrichPlugin::MonteCarloMembraneTension::restoreState;
 %ignore HelfrichPlugin::MembraneForce::setParameterValue;
 %rename(_setElementValues) HelfrichPlugin::MembraneForce::setElementValues;
 %nodefaultctor HelfrichPlugin::TriangulatedForce;
@@ -104,6 +106,13 @@ static PyObject* toDict(const Mover& mover, OpenMM::Context& context) {
 %extend HelfrichPlugin::MonteCarloMembraneTension {
     PyObject* _getStatistics(OpenMM::Context& context) {
         return toDict(*$self, context);
+    }
+    PyObject* _saveState(OpenMM::Context& context) {
+        std::string saved = $self->saveState(context);
+        return toBytes(saved.data(), saved.size());
+    }
+    void _restoreState(OpenMM::Context& context, const char* data, size_t size) {
+        $self->restoreState(context, std::string(data, size));
     }
 }
 

@@ -361,6 +361,32 @@ class TestState:
         assert found[0] == found[1]
         assert found[0][1] != sheet()[2].tobytes()
 
+    def test_a_file_goes_on_with_the_same_moves(self, tmp_path):
+        """Without heat and flips, which have random numbers of their own."""
+        triangles, positions, box = sheet()
+        found = []
+        for _ in range(2):
+            mover = mover_of(tension=0.5, seed=7 + len(found), adaptive=20)
+            context = tense(*forces_of(triangles), mover, positions=positions, box=box)
+            if found:
+                helfrich.load_state(context, tmp_path / "state")
+            else:
+                context.getIntegrator().step(31)
+                helfrich.save_state(context, tmp_path / "state")
+            context.getIntegrator().step(40)
+            found.append((self.bits(context), mover.getStatistics(context)))
+        assert found[0] == found[1]
+        assert found[0][1]["attempts"] == 71
+        other = tense(
+            *forces_of(triangles),
+            mover_of(),
+            mover_of(axes="ZOnly"),
+            positions=positions,
+            box=box,
+        )
+        with pytest.raises(ValueError, match=r"has 1 MonteCarloMembraneTension.* has 2"):
+            helfrich.load_state(other, tmp_path / "state")
+
     def test_reinitialize_keeps_it(self):
         context, movers = self.start()
         context.getIntegrator().step(31)

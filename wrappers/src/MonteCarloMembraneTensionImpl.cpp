@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 using namespace HelfrichPlugin;
@@ -287,6 +288,17 @@ map<string, double> MonteCarloMembraneTensionImpl::getStatistics(ContextImpl&) c
         statistics["width"] = state.kinds[0].width;
     }
     return statistics;
+}
+
+string MonteCarloMembraneTensionImpl::saveState() const {
+    return string(reinterpret_cast<const char*>(&state), sizeof(state));
+}
+
+void MonteCarloMembraneTensionImpl::restoreState(const string& saved) {
+    if (saved.size() != sizeof(state))
+        throw OpenMMException(NAME + ": the saved state has " + std::to_string(saved.size()) + " bytes, not " +
+                              std::to_string(sizeof(state)) + "; it is damaged");
+    std::memcpy(&state, saved.data(), sizeof(state));
 }
 
 vector<TensionState> MonteCarloMembraneTensionImpl::saveAll(const ContextImpl& context) {

@@ -31,7 +31,10 @@ struct TensionState {
 static_assert(sizeof(TensionState) == 80, "the state of a mover has no gaps");
 
 /** Changes the periodic box at constant tension. */
-class MonteCarloMembraneTensionImpl : public OpenMM::ForceImpl, public UpdatableImpl, public StatisticsImpl {
+class MonteCarloMembraneTensionImpl : public OpenMM::ForceImpl,
+                                      public UpdatableImpl,
+                                      public StatisticsImpl,
+                                      public StateImpl {
 public:
     explicit MonteCarloMembraneTensionImpl(const MonteCarloMembraneTension& owner);
     void initialize(OpenMM::ContextImpl& context);
@@ -48,6 +51,8 @@ public:
     }
     void updateParametersInContext(OpenMM::ContextImpl& context);
     std::map<std::string, double> getStatistics(OpenMM::ContextImpl& context) const;
+    std::string saveState() const;
+    void restoreState(const std::string& saved);
     /** What all movers of a Context have come to, in their order. */
     static std::vector<TensionState> saveAll(const OpenMM::ContextImpl& context);
     /** Let the movers of a Context go on from there; where one is missing on either side, the others do. */

@@ -45,10 +45,9 @@ namespace HelfrichPlugin {
  * in the first two modes, min(1, exp(-beta dE)) at constant area, and for ZOnly with f dL and L in place of tau dA_p
  * and A_p: D. Frenkel and B. Smit, Understanding Molecular Simulation, chapter 5,
  * doi:10.1016/B978-0-12-267351-1.X5000-7. The tension is that of the frame, which is conjugate to A_p, not to the area
- * of the membrane itself: see F. Schmid, doi:10.1209/0295-5075/95/28008, and for membranes of triangles H. Shiba, H.
- * Noguchi, J.-B. Fournier, doi:10.1039/C5SM02900A. For XYIndependent nothing but the energy holds the ratio of L_x and
- * L_y, so that the box of a fluid membrane gets ever longer; XYIsotropic keeps it. For a tube along z, f is the force
- * that pulls it.
+ * of the membrane itself: see F. Schmid, doi:10.1209/0295-5075/95/28008. For XYIndependent nothing but the energy holds
+ * the ratio of L_x and L_y, which wanders for a fluid membrane; XYIsotropic keeps it. For a tube along z, f is the
+ * force that pulls it.
  *
  * The box vectors are scaled in the same way, each of their components with its coordinate, which keeps a triclinic box
  * exactly what it was to the particles; L_x, L_y and L_z are its diagonal. Positions are scaled about the origin.
@@ -64,7 +63,8 @@ namespace HelfrichPlugin {
  * It acts whenever an integrator updates the state of the Context: all integrators of OpenMM do, a CustomIntegrator
  * where it has addUpdateContextState(). RPMDIntegrator, whose beads have positions of their own, is refused, and so are
  * OpenMM's barostats beside it and two of this class that change the same axis. Some force of the System must use
- * periodic boundary conditions. Checkpoints of platform Helfrich hold widths, random numbers and statistics.
+ * periodic boundary conditions. Checkpoints of platform Helfrich hold widths, random numbers and statistics, as
+ * the files of Python's save_state() do.
  *
  * OpenMM's barostats are refused by themselves where a membrane spans the box, unless they scale every particle
  * (setScaleMoleculesAsRigid(False)) or never act (frequency 0).
@@ -263,6 +263,24 @@ public:
      */
     std::map<std::string, double> getStatistics(OpenMM::Context& context) const {
         return dynamic_cast<StatisticsImpl&>(getImplInContext(context)).getStatistics(getContextImpl(context));
+    }
+    /**
+     * Get all that restoreState() needs to go on with the same moves: widths, random numbers and statistics. Neither
+     * box nor positions are among it. The bytes are those of processors with little-endian numbers.
+     *
+     * @param context  the Context
+     */
+    std::string saveState(OpenMM::Context& context) const {
+        return dynamic_cast<StateImpl&>(getImplInContext(context)).saveState();
+    }
+    /**
+     * Go on with what saveState() has returned.
+     *
+     * @param context  a Context with this force
+     * @param saved    the bytes
+     */
+    void restoreState(OpenMM::Context& context, const std::string& saved) {
+        dynamic_cast<StateImpl&>(getImplInContext(context)).restoreState(saved);
     }
     /**
      * Like OpenMM's barostats, this class has neither energy nor forces, and does not make a System periodic.

@@ -29,6 +29,15 @@ public:
     virtual std::map<std::string, double> getStatistics(OpenMM::ContextImpl& context) const = 0;
 };
 
+/** What movers ask of their implementations that keep what they have come to. */
+class StateImpl {
+public:
+    virtual ~StateImpl() {
+    }
+    virtual std::string saveState() const = 0;
+    virtual void restoreState(const std::string& saved) = 0;
+};
+
 } // namespace HelfrichPlugin
 
 #endif /*HELFRICH_CONNECTIVITY_IMPL_H_*/
