@@ -66,7 +66,7 @@ fn main() {
         let fill = |local: &mut LocalEnergy, evaluator: &mut CpuEvaluator| {
             let survey =
                 |survey: &mut Survey| evaluator.survey(&terms_in_use, &positions, None, survey);
-            local.fill(&terms, survey).unwrap();
+            local.fill(&terms, None, survey).unwrap();
         };
         fill(&mut local, &mut evaluator);
         flips::attempt(&mut mesh, &mut local, &terms, &rules, 10 * edges, &mut state);

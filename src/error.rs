@@ -27,12 +27,8 @@ pub enum Error {
     #[error("triangles {first} and {second} have the same corners ({}, {}, {}); remove one of them", .corners[0], .corners[1], .corners[2])]
     DuplicateTriangle { first: usize, second: usize, corners: [u32; 3] },
 
-    /// The surface has a boundary.
-    #[error("edge ({}, {}) belongs to triangle {triangle} only, so the mesh is open there; close the hole", .edge[0], .edge[1])]
-    OpenEdge { edge: [u32; 2], triangle: usize },
-
     /// More than two sheets meet in an edge.
-    #[error("edge ({}, {}) is shared by {count} triangles (the first three: {}, {}, {}); a surface has exactly two at each edge (around a periodic box it needs three vertices or more)", .edge[0], .edge[1], .triangles[0], .triangles[1], .triangles[2])]
+    #[error("edge ({}, {}) is shared by {count} triangles (the first three: {}, {}, {}); a surface has two at each edge, or one at a border (around a periodic box it needs three vertices or more)", .edge[0], .edge[1], .triangles[0], .triangles[1], .triangles[2])]
     NonManifoldEdge { edge: [u32; 2], count: usize, triangles: [usize; 3] },
 
     /// Two neighbours are listed with opposite senses of rotation.
@@ -88,6 +84,12 @@ pub enum Error {
         "the triangles run clockwise seen from outside, so that the enclosed volume is below zero ({volume} nm^3); swap two corners of each triangle, or let openmmhelfrich.Mesh(vertices, triangles) turn them"
     )]
     InsideOut { force: &'static str, volume: f64 },
+
+    /// The surface of a potential of what it encloses has a border.
+    #[error(
+        "needs a closed surface, which encloses something, but this one has a border of {length} edges through particles {}; close the hole, or leave {force} out", some(.particles)
+    )]
+    Border { force: &'static str, length: usize, particles: Vec<u32> },
 
     /// A term has no finite energy on a mesh whose geometry is finite.
     #[error(
@@ -151,7 +153,9 @@ impl Error {
     /// together report in the name of one of them.
     pub fn class(&self) -> Option<&'static str> {
         match self {
-            Self::InsideOut { force, .. } | Self::Spanning { force, .. } => Some(force),
+            Self::InsideOut { force, .. }
+            | Self::Border { force, .. }
+            | Self::Spanning { force, .. } => Some(force),
             _ => None,
         }
     }
@@ -167,6 +171,14 @@ impl Error {
                 | Self::DeviceFailure { .. }
         )
     }
+}
+
+/// The first few of some particles.
+fn some(particles: &[u32]) -> String {
+    const FEW: usize = 6;
+    let names: Vec<_> = particles.iter().take(FEW).map(u32::to_string).collect();
+    let more = if particles.len() > FEW { " …" } else { "" };
+    format!("{}{more}", names.join(", "))
 }
 
 /// The result of everything that can fail in this crate.

@@ -306,12 +306,19 @@ impl Membrane {
     }
 
     /// Refuse a term with values outside their domains, or with more or fewer values for single
-    /// elements than there are elements.
+    /// elements than there are elements, or that needs a closed surface where this one has a border.
     ///
     /// # Errors
     /// Names the parameter.
     pub fn check(&self, term: &Term) -> Result<()> {
         term.check()?;
+        if term.potential.needs_outside() && !self.mesh.is_closed() {
+            let border = &self.mesh.border_loops()[0];
+            let particles: Vec<_> =
+                border.iter().map(|vertex| self.mesh.particles()[*vertex as usize]).collect();
+            let (force, length) = (term.potential.name(), border.len());
+            return Err(Error::Border { force, length, particles });
+        }
         for (parameter, field) in term.potential.parameters().iter().zip(term.fields) {
             let (count, elements) = match parameter.per {
                 _ if field.is_empty() => continue,

@@ -51,7 +51,7 @@ pub fn comparison() -> String {
         text += &structure!(
             FlipState,
             "HelfrichFlipState",
-            key attempts accepted by_degree by_length by_shape by_energy by_edge demon_energy
+            key attempts accepted by_border by_degree by_length by_shape by_energy by_edge demon_energy
         );
         text += &structure!(
             TermInput,

@@ -3,13 +3,13 @@
 use super::checks::{check_energies, culprit};
 use super::passes::{Nothing, fill, fill_pair};
 use crate::error::Result;
-use crate::mesh::Topology;
 use crate::mesh::cell::{Cell, Image};
 use crate::mesh::geometry::{
     EdgeGeometry, EdgePartials, EdgeTension, TotalPartials, Totals, TriangleGeometry,
     TrianglePartials, Vec3, VertexGeometry, VertexPartials, corner_forces,
 };
 use crate::mesh::vertex_vectors::{VertexVectors, add_corner, corner_stress};
+use crate::mesh::{NONE, Topology};
 use crate::potentials::{Contribution, Edges, Needs, Term, Triangles, Vertices};
 use std::ops::AddAssign;
 use std::sync::Arc;
@@ -40,6 +40,8 @@ pub struct ReferenceEvaluator {
     tensions: Vec<EdgeTension>,
     corner_forces: Vec<[Vec3; 3]>,
     forces: Vec<Vec3>,
+    /// Which vertices are on a border; empty if there is none.
+    on_border: Vec<bool>,
 }
 
 /// What the pass over the triangles sums.
@@ -103,6 +105,8 @@ impl ReferenceEvaluator {
     /// Buffers for a mesh.
     pub fn new(topology: Arc<Topology>) -> Self {
         let (v, t) = (topology.num_vertices(), topology.triangles.len());
+        let is_closed = topology.edges.iter().all(|edge| edge.triangles[1] != NONE);
+        let on_border = (0..v).map(|vertex| topology.is_border(vertex));
         let geometry = TriangleGeometry { normal: Vec3::zeros(), twice_area: 0.0, dots: [0.0; 3] };
         Self {
             parallel: t >= PARALLEL_TRIANGLES,
@@ -119,6 +123,7 @@ impl ReferenceEvaluator {
             tensions: vec![EdgeTension::default(); topology.edges.len()],
             corner_forces: vec![[Vec3::zeros(); 3]; t],
             forces: vec![Vec3::zeros(); v],
+            on_border: if is_closed { Vec::new() } else { on_border.collect() },
             topology,
         }
     }
@@ -208,6 +213,13 @@ impl ReferenceEvaluator {
         let topology = &self.topology;
         fill(self.parallel, &mut self.edges, |first, chunk| {
             for (slot, edge) in chunk.iter_mut().zip(&topology.edges[first..]) {
+                if edge.triangles[1] == NONE {
+                    // A border has no dihedral angle.
+                    let [start, end, _] = places.from(edge.triangles[0], edge.vertices[0]);
+                    let length_squared = (end - start).norm_squared();
+                    *slot = EdgeGeometry { length_squared, bend: 0.0 };
+                    continue;
+                }
                 let [left, right] = edge.triangles.map(|t| &triangles[t as usize]);
                 let [tip, end, start] = places.from(edge.triangles[1], edge.opposite[1]);
                 *slot = EdgeGeometry::new(&start, &end, &tip, left, right);
@@ -222,12 +234,12 @@ impl ReferenceEvaluator {
             for (offset, slot) in chunk.iter_mut().enumerate() {
                 let ring = topology.ring(first + offset);
                 let mut twice_area = 0.0;
-                for &corner in &topology.corners[ring.clone()] {
+                for &corner in &topology.corners[ring] {
                     twice_area += triangles[corner as usize / 3].twice_area;
                 }
                 let mut twice_curvature = 0.0;
                 if needs.contains(Needs::CURVATURES) {
-                    for &edge in &topology.vertex_edges[ring] {
+                    for &edge in &topology.vertex_edges[topology.edges_at(first + offset)] {
                         let edge = &edges[edge as usize];
                         twice_curvature += edge.length_squared * edge.bend;
                     }
@@ -322,6 +334,7 @@ impl ReferenceEvaluator {
     fn potential_of_vertices(&mut self, term: &Term, needs: Needs) -> Contribution {
         let (vertices, all_vectors) = (&self.vertices, &self.vectors);
         let wants_vectors = needs.contains(Needs::VECTORS);
+        let left_out = if term.potential.acts_at_borders() { &[] } else { &self.on_border[..] };
         let beside: &mut [_] = if wants_vectors { &mut self.vector_partials } else { &mut [] };
         fill_pair(self.parallel, &mut self.vertex_partials, beside, |first, scalars, vectors| {
             let here = first..first + scalars.len();
@@ -329,6 +342,7 @@ impl ReferenceEvaluator {
             let run = Vertices::Plain {
                 first,
                 total: vertices.len(),
+                left_out: left_out.get(here.clone()).unwrap_or_default(),
                 scalars: &vertices[here],
                 vectors: known,
                 scalar_partials: scalars,

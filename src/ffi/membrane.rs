@@ -4,6 +4,7 @@ use super::{TermInput, guarded, slice, text};
 use crate::error::Result;
 use crate::membrane::{self, Membrane};
 use crate::mesh::Cell;
+use crate::mesh::triangulation::next;
 use crate::potentials::{Contribution, REGISTRY, Term};
 use std::ffi::{c_char, c_int};
 use std::slice as slices;
@@ -64,7 +65,7 @@ pub unsafe extern "C" fn Helfrich_Membrane_numEdges(membrane: *const Membrane) -
 pub unsafe extern "C" fn Helfrich_Membrane_edges(membrane: *const Membrane, particles: *mut c_int) {
     let mesh = unsafe { &*membrane }.mesh();
     let out = unsafe { slices::from_raw_parts_mut(particles, 2 * mesh.num_edges()) };
-    let ends = mesh.edges().flat_map(|half| [mesh.origin(half), mesh.origin(mesh.twin(half))]);
+    let ends = mesh.edges().flat_map(|half| [mesh.origin(half), mesh.origin(next(half))]);
     for (slot, vertex) in out.iter_mut().zip(ends) {
         *slot = mesh.particles()[vertex as usize] as c_int;
     }

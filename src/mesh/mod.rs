@@ -1,4 +1,4 @@
-//! Triangulated closed surfaces: their topology, their orientation and their geometry.
+//! Triangulated surfaces: their topology, their orientation and their geometry.
 
 pub mod cell;
 pub mod geometry;
@@ -11,6 +11,6 @@ pub mod unfolding;
 pub mod vertex_vectors;
 
 pub use cell::Cell;
-pub use topology::Topology;
+pub use topology::{NONE, Topology};
 pub use triangulation::Triangulation;
 pub use unfolding::Unfolding;

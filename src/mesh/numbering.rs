@@ -1,7 +1,6 @@
 //! An order of the vertices in which neighbours on the surface are near each other.
 
 use super::Triangulation;
-use super::triangulation::next;
 
 /// All vertices, breadth first, component by component, each from a vertex that is far from another.
 pub fn breadth_first(mesh: &Triangulation) -> Vec<u32> {
@@ -9,16 +8,15 @@ pub fn breadth_first(mesh: &Triangulation) -> Vec<u32> {
     let mut order: Vec<u32> = Vec::with_capacity(count);
     // 0: unseen; 1: seen by the walk that looks for the rim; 2: numbered.
     let mut seen = vec![0u8; count];
-    let mut ring = Vec::new();
+    let mut neighbours = Vec::new();
     let mut walk = |start: u32, mark: u8, seen: &mut [u8], order: &mut Vec<u32>| {
         let mut head = order.len();
         order.push(start);
         seen[start as usize] = mark;
         while head < order.len() {
-            mesh.ring(order[head], &mut ring);
+            mesh.neighbours(order[head], &mut neighbours);
             head += 1;
-            for &half in &ring {
-                let other = mesh.origin(next(half));
+            for &other in &neighbours {
                 if seen[other as usize] < mark {
                     seen[other as usize] = mark;
                     order.push(other);

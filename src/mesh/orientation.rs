@@ -8,10 +8,11 @@ use crate::error::{Error, Result};
 use nalgebra::Vector3;
 use std::collections::HashMap;
 
-/// Validate a mesh and turn its triangles so that each closed component has positive volume.
+/// Validate a mesh and turn its triangles so that each closed component has positive volume. A component with borders
+/// keeps the orientation of its first triangle.
 ///
 /// Neighbours are made to agree by walking over the surface, so the shape need not be star-shaped;
-/// what remains, one sign for each component, is decided by the sign of the component's volume.
+/// what remains, one sign for each closed component, is decided by the sign of the component's volume.
 /// The order of the triangles and the first corner of each stay as they are.
 ///
 /// # Errors
@@ -33,7 +34,7 @@ pub fn oriented(vertices: &[[f64; 3]], triangles: &[[i64; 3]]) -> Result<Vec<[i6
         if flipped[seed].is_some() {
             continue;
         }
-        let component = walk(seed, &neighbours, &mut flipped).map_err(|triangles| {
+        let (component, closed) = walk(seed, &neighbours, &mut flipped).map_err(|triangles| {
             let shared: Vec<u32> = corners[triangles[0]]
                 .into_iter()
                 .filter(|v| corners[triangles[1]].contains(v))
@@ -54,8 +55,9 @@ pub fn oriented(vertices: &[[f64; 3]], triangles: &[[i64; 3]]) -> Result<Vec<[i6
             let sign = if flipped[triangle] == Some(true) { -1.0 } else { 1.0 };
             volume += sign * a.dot(&normal);
         }
+        let inward = closed && volume < 0.0;
         for &triangle in &component {
-            if (flipped[triangle] == Some(true)) != (volume < 0.0) {
+            if (flipped[triangle] == Some(true)) != inward {
                 result[triangle].swap(1, 2);
             }
         }
@@ -87,20 +89,24 @@ pub fn is_inside_out(mesh: &Triangulation, positions: &[f64]) -> Option<(bool, T
     sphere.is_finite().then_some((totals.volume < -NOTHING * sphere, totals))
 }
 
-/// Visit the component of `seed` and note which of its triangles must be flipped to agree with it.
-/// Fails with the two triangles that cannot agree.
+/// Visit the component of `seed` and note which of its triangles must be flipped to agree with it. Returns the
+/// component, and whether it is closed. Fails with the two triangles that cannot agree.
 fn walk(
     seed: usize,
-    neighbours: &[[(u32, bool); 3]],
+    neighbours: &[[Option<(u32, bool)>; 3]],
     flipped: &mut [Option<bool>],
-) -> std::result::Result<Vec<usize>, [usize; 2]> {
+) -> std::result::Result<(Vec<usize>, bool), [usize; 2]> {
     flipped[seed] = Some(false);
-    let mut component = vec![seed];
+    let (mut component, mut closed) = (vec![seed], true);
     let mut next = 0;
     while let Some(&triangle) = component.get(next) {
         next += 1;
         let here = flipped[triangle] == Some(true);
-        for (neighbour, agree) in neighbours[triangle] {
+        for across in neighbours[triangle] {
+            let Some((neighbour, agree)) = across else {
+                closed = false;
+                continue;
+            };
             let neighbour = neighbour as usize;
             let wanted = here == agree;
             match flipped[neighbour] {
@@ -113,7 +119,7 @@ fn walk(
             }
         }
     }
-    Ok(component)
+    Ok((component, closed))
 }
 
 /// Every vertex must be used, and be the only one in its place.
@@ -163,6 +169,20 @@ mod tests {
         triangles.extend(triangles.clone().iter().map(|t| [t[0] + 6, t[2] + 6, t[1] + 6]));
         vertices.extend(vertices.clone().iter().map(|v| [v[0] + 5.0, v[1] * 2.0, v[2]]));
         assert_eq!(oriented(&vertices, &triangles).unwrap(), good);
+    }
+
+    #[test]
+    fn an_open_component_keeps_the_orientation_of_its_first_triangle() {
+        let (vertices, mut good) = icosahedron();
+        good.truncate(19);
+        let turned: Vec<_> = good.iter().map(|t| [t[0], t[2], t[1]]).collect();
+        for wanted in [good, turned] {
+            let mut mixed = wanted.clone();
+            for triangle in [3, 4, 11, 18] {
+                mixed[triangle].swap(1, 2);
+            }
+            assert_eq!(oriented(&vertices, &mixed).unwrap(), wanted);
+        }
     }
 
     /// The minimal triangulation of the projective plane: ten triangles on six vertices.

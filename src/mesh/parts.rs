@@ -1,12 +1,14 @@
 //! The connected parts of a surface, and whether another has the same.
 
+use super::topology::NONE;
 use super::triangulation::{Triangulation, next};
 use crate::error::{Error, Result};
 
 impl Triangulation {
-    /// Refuse a surface whose connected parts have other vertices, or other numbers of triangles. For each part V − E + F
-    /// with E = 3F/2 is then the same, hence its genus.
+    /// Refuse a surface whose connected parts have other vertices, or other numbers of triangles, or whose borders have
+    /// other edges. For each part V − E + F with E = (3F + B)/2 is then the same, hence its genus.
     pub(super) fn compare_parts(&self, other: &Self) -> Result<()> {
+        self.compare_borders(other)?;
         let (mine, theirs) = (self.parts(), other.parts());
         if let Some(vertex) = (0..mine.len()).find(|vertex| mine[*vertex] != theirs[*vertex]) {
             // One of the two parts has a smaller first vertex, which the vertex has left or come to.
@@ -38,10 +40,32 @@ impl Triangulation {
         }
     }
 
+    fn compare_borders(&self, other: &Self) -> Result<()> {
+        let borders = [self, other].map(|mesh| {
+            let edges = mesh.edges().filter(|half| mesh.twin(*half) == NONE);
+            let ends = edges.map(|half| [mesh.origin(half), mesh.origin(next(half))]);
+            let mut ends: Vec<_> = ends.map(|[a, b]| [a.min(b), a.max(b)]).collect();
+            ends.sort_unstable();
+            ends
+        });
+        let (was, is) = ("is a border, and would no longer be one", "would become a border");
+        for (here, change) in [(0, was), (1, is)] {
+            let there = &borders[1 - here];
+            let is_new = |ends: &&[u32; 2]| there.binary_search(ends).is_err();
+            if let Some(ends) = borders[here].iter().find(is_new) {
+                let [a, b] = ends.map(|vertex| self.particles()[vertex as usize]);
+                return Err(Error::Contract(format!(
+                    "connectivity changes, but not topology: the edge of particles {a} and {b} {change}"
+                )));
+            }
+        }
+        Ok(())
+    }
+
     /// For each vertex the lowest vertex of the connected part that it is on.
     fn parts(&self) -> Vec<u32> {
         let mut parts = vec![u32::MAX; self.num_vertices()];
-        let (mut ring, mut waiting) = (Vec::new(), Vec::new());
+        let (mut neighbours, mut waiting) = (Vec::new(), Vec::new());
         for first in 0..parts.len() {
             if parts[first] != u32::MAX {
                 continue;
@@ -49,9 +73,8 @@ impl Triangulation {
             parts[first] = first as u32;
             waiting.push(first as u32);
             while let Some(vertex) = waiting.pop() {
-                self.ring(vertex, &mut ring);
-                for half in &ring {
-                    let neighbour = self.origin(next(*half));
+                self.neighbours(vertex, &mut neighbours);
+                for &neighbour in &neighbours {
                     if parts[neighbour as usize] == u32::MAX {
                         parts[neighbour as usize] = first as u32;
                         waiting.push(neighbour);
@@ -105,6 +128,21 @@ mod tests {
         );
         let words = refused(&mixed, &two);
         assert!(words.contains("particle 5 is now") && words.contains("as particle 0"), "{words}");
+    }
+
+    #[test]
+    fn borders_keep_their_edges() {
+        // Without a triangle, and without another one.
+        let whole = octahedron_of([0, 1, 2, 3, 4, 5]);
+        let (mut one, mut other) = (whole.clone(), whole);
+        let hole = one.remove(0);
+        other.remove(6);
+        let words = refused(&one, &other);
+        let named = [0, 1, 2].map(|k| {
+            let (a, b) = (hole[k], hole[(k + 1) % 3]);
+            format!("particles {} and {} is a border", a.min(b), a.max(b))
+        });
+        assert!(named.iter().any(|name| words.contains(name)), "{words}");
     }
 
     #[test]

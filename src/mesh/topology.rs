@@ -1,9 +1,13 @@
-//! Which triangles, edges and vertices of a closed surface touch which.
+//! Which triangles, edges and vertices of a surface touch which.
 
 use super::Triangulation;
 use crate::error::{Error, Result};
+use std::ops::Range;
 
-/// A validated closed, oriented 2-manifold triangulation.
+/// What stands for the neighbour that an edge or half-edge at a border does not have.
+pub const NONE: u32 = u32::MAX;
+
+/// A validated, oriented 2-manifold triangulation, closed or with borders.
 ///
 /// Vertices are numbered locally, from 0 without gaps, in ascending order of the indices that the user
 /// gave; [`Topology::particles`] translates back. Corner `3 t + k` is the `k`-th corner of triangle `t`.
@@ -26,16 +30,17 @@ pub struct Topology {
     pub triangle_edges: Vec<[u32; 3]>,
     /// Each edge once.
     pub edges: Vec<Edge>,
-    /// Where the corners of each vertex begin in `corners` (and its edges in `vertex_edges`, since a
-    /// closed surface has as many of the one as of the other); one entry more than vertices.
+    /// Where the corners of each vertex begin in `corners`; one entry more than vertices.
     pub offsets: Vec<u32>,
     /// The corners at each vertex, in ascending order.
     pub corners: Vec<u32>,
+    /// Where the edges of each vertex begin in `vertex_edges`; at a border there is one edge more than corners.
+    pub edge_offsets: Vec<u32>,
     /// The edges at each vertex, in ascending order.
     pub vertex_edges: Vec<u32>,
 }
 
-/// An edge with its two triangles.
+/// An edge with its two triangles, or one at a border: then the second triangle and its vertex are [`NONE`].
 ///
 /// ```text
 ///            opposite[0]
@@ -77,20 +82,24 @@ impl Topology {
     ///
     /// # Errors
     /// Names the triangle, edge or vertex at fault: empty mesh, index out of range, repeated corner,
-    /// duplicate triangle, open or non-manifold edge, inconsistent orientation, pinched vertex.
+    /// duplicate triangle, non-manifold edge, inconsistent orientation, pinched vertex.
     pub fn new(triangles: &[[i64; 3]], count: usize) -> Result<Self> {
         let triangles = checked_indices(triangles, count)?;
         let pairs = paired_half_edges(&triangles)?;
-        for pair in &pairs {
-            if pair[0].ascending == pair[1].ascending {
+        for (here, there) in &pairs {
+            if let Some(there) = there
+                && here.ascending == there.ascending
+            {
                 return Err(Error::InconsistentOrientation {
-                    edge: pair[0].ends,
-                    triangles: pair.map(|half| half.corner as usize / 3),
+                    edge: here.ends,
+                    triangles: [here, there].map(|half| half.corner as usize / 3),
                 });
             }
         }
         let (particles, triangles) = renumbered(&triangles);
-        let pairs: Vec<_> = pairs.into_iter().map(|pair| pair.map(|half| half.corner)).collect();
+        let corner = |half: Option<HalfEdge>| half.map_or(NONE, |half| half.corner);
+        let pairs: Vec<_> =
+            pairs.into_iter().map(|(here, there)| [here.corner, corner(there)]).collect();
         let topology = Self::from_pairs(particles, triangles, &pairs);
         topology.check_fans()?;
         Ok(topology)
@@ -114,61 +123,81 @@ impl Topology {
         self.triangles[triangle].map(|v| self.particles[v as usize])
     }
 
-    /// The range of a vertex in `corners` and `vertex_edges`.
+    /// The range of a vertex in `corners`.
     #[inline]
-    pub fn ring(&self, vertex: usize) -> std::ops::Range<usize> {
+    pub fn ring(&self, vertex: usize) -> Range<usize> {
         self.offsets[vertex] as usize..self.offsets[vertex + 1] as usize
     }
 
-    /// Each pair are the two half-edges of an edge, by triangle and side as a corner index, the lower one first.
+    /// The range of a vertex in `vertex_edges`.
+    #[inline]
+    pub fn edges_at(&self, vertex: usize) -> Range<usize> {
+        self.edge_offsets[vertex] as usize..self.edge_offsets[vertex + 1] as usize
+    }
+
+    /// Whether a vertex is on a border.
+    #[inline]
+    pub fn is_border(&self, vertex: usize) -> bool {
+        self.edges_at(vertex).len() > self.ring(vertex).len()
+    }
+
+    /// Each pair are the two half-edges of an edge, by triangle and side as a corner index, the lower one first;
+    /// [`NONE`] is the second at a border.
     fn from_pairs(particles: Vec<u32>, triangles: Vec<[u32; 3]>, pairs: &[[u32; 2]]) -> Self {
         let num_vertices = particles.len();
         let mut triangle_edges = vec![[0; 3]; triangles.len()];
         let mut edges = Vec::with_capacity(pairs.len());
-        for (index, pair) in pairs.iter().enumerate() {
-            let corners = pair.map(|corner| corner as usize);
-            for corner in corners {
-                triangle_edges[corner / 3][corner % 3] = index as u32;
+        for (index, &[here, there]) in pairs.iter().enumerate() {
+            let mut edge = Edge { vertices: [0; 2], opposite: [NONE; 2], triangles: [NONE; 2] };
+            for (place, half) in [here, there].into_iter().enumerate() {
+                if half == NONE {
+                    continue;
+                }
+                let (triangle, side) = (half as usize / 3, half as usize % 3);
+                let corners = &triangles[triangle];
+                triangle_edges[triangle][side] = index as u32;
+                edge.opposite[place] = corners[(side + 2) % 3];
+                edge.triangles[place] = triangle as u32;
+                if place == 0 {
+                    edge.vertices = [corners[side], corners[(side + 1) % 3]];
+                }
             }
-            let [left, right] = corners.map(|corner| (triangles[corner / 3], corner % 3));
-            let (triangle, side) = left;
-            edges.push(Edge {
-                vertices: [triangle[side], triangle[(side + 1) % 3]],
-                opposite: [triangle[(side + 2) % 3], right.0[(right.1 + 2) % 3]],
-                triangles: corners.map(|corner| (corner / 3) as u32),
-            });
+            edges.push(edge);
         }
         let corner_ends = triangles.iter().flatten().copied();
         let (offsets, corners) = incidence(num_vertices, corner_ends, 1);
         let edge_ends = edges.iter().flat_map(|edge| edge.vertices);
         let (edge_offsets, vertex_edges) = incidence(num_vertices, edge_ends, 2);
-        debug_assert_eq!(offsets, edge_offsets);
-        Self { particles, triangles, triangle_edges, edges, offsets, corners, vertex_edges }
+        Self {
+            particles,
+            triangles,
+            triangle_edges,
+            edges,
+            offsets,
+            corners,
+            edge_offsets,
+            vertex_edges,
+        }
     }
 
-    /// Every vertex must be surrounded by a single closed fan of triangles.
+    /// Every vertex must be surrounded by a single fan of triangles, closed unless the vertex is on a border.
     fn check_fans(&self) -> Result<()> {
         for vertex in 0..self.num_vertices() {
             let ring = self.ring(vertex);
-            let degree = ring.len();
-            let start = self.corners[ring.start] as usize;
-            let mut corner = start;
-            let mut steps = 0;
-            // Crossing the edge that enters the corner leads to the next triangle counter-clockwise.
-            loop {
-                let (triangle, k) = (corner / 3, corner % 3);
-                let edge = &self.edges[self.triangle_edges[triangle][(k + 2) % 3] as usize];
-                let other = if edge.triangles[0] as usize == triangle { 1 } else { 0 };
-                let next = edge.triangles[other] as usize;
-                let position = |v: &u32| *v as usize == vertex;
-                let k = self.triangles[next].iter().position(position).unwrap_or(0);
-                corner = 3 * next + k;
-                steps += 1;
-                if corner == start || steps > degree {
+            let start = self.corners[ring.start];
+            let mut met = 1;
+            // Counter-clockwise, and where that ends at a border, clockwise from the start again.
+            for side in [2, 0] {
+                let mut corner = self.across(start, side);
+                while corner != start && corner != NONE {
+                    met += 1;
+                    corner = self.across(corner, side);
+                }
+                if corner == start {
                     break;
                 }
             }
-            if steps != degree {
+            if met != ring.len() {
                 return Err(Error::NonManifoldVertex {
                     vertex: self.particles[vertex],
                     fans: self.count_fans(vertex),
@@ -178,11 +207,26 @@ impl Topology {
         Ok(())
     }
 
+    /// The same vertex' corner in the triangle beyond a side: 0 is the side that leaves the corner, 2 the one that
+    /// enters it.
+    fn across(&self, corner: u32, side: usize) -> u32 {
+        let (triangle, k) = (corner as usize / 3, corner as usize % 3);
+        let edge = &self.edges[self.triangle_edges[triangle][(k + side) % 3] as usize];
+        let other = edge.triangles[usize::from(edge.triangles[0] as usize == triangle)];
+        if other == NONE {
+            return NONE;
+        }
+        let vertex = self.triangles[triangle][k];
+        let place = self.triangles[other as usize].iter().position(|v| *v == vertex);
+        3 * other + place.expect("both triangles of an edge have its ends") as u32
+    }
+
     /// The number of groups of triangles at a vertex that hang together by edges at this vertex.
     fn count_fans(&self, vertex: usize) -> usize {
         let mut fans: Vec<Vec<u32>> = Vec::new();
-        for &edge in &self.vertex_edges[self.ring(vertex)] {
-            let pair = self.edges[edge as usize].triangles;
+        for &edge in &self.vertex_edges[self.edges_at(vertex)] {
+            let [here, there] = self.edges[edge as usize].triangles;
+            let pair = if there == NONE { [here; 2] } else { [here, there] };
             let touches = |fan: &Vec<u32>| fan.contains(&pair[0]) || fan.contains(&pair[1]);
             let (joined, rest): (Vec<_>, Vec<_>) = fans.into_iter().partition(touches);
             fans = rest;
@@ -237,11 +281,11 @@ pub(super) fn checked_indices(triangles: &[[i64; 3]], count: usize) -> Result<Ve
     Ok(checked)
 }
 
-/// Match the two half-edges of every edge; the one of the lower triangle comes first.
+/// Match the two half-edges of every edge; the one of the lower triangle comes first. At a border there is no second.
 ///
 /// Edges come in the order in which the triangles first mention them, which keeps the edges of
 /// neighbouring triangles together in memory.
-fn paired_half_edges(triangles: &[[u32; 3]]) -> Result<Vec<[HalfEdge; 2]>> {
+fn paired_half_edges(triangles: &[[u32; 3]]) -> Result<Vec<(HalfEdge, Option<HalfEdge>)>> {
     let mut halves = Vec::with_capacity(3 * triangles.len());
     for (triangle, corners) in triangles.iter().enumerate() {
         for side in 0..3 {
@@ -258,10 +302,8 @@ fn paired_half_edges(triangles: &[[u32; 3]]) -> Result<Vec<[HalfEdge; 2]>> {
     for group in halves.chunk_by(|a, b| a.ends == b.ends) {
         let triangle = |k: usize| group[k].corner as usize / 3;
         match group {
-            [_] => {
-                return Err(Error::OpenEdge { edge: group[0].ends, triangle: triangle(0) });
-            }
-            [first, second] => pairs.push([*first, *second]),
+            [only] => pairs.push((*only, None)),
+            [first, second] => pairs.push((*first, Some(*second))),
             _ => {
                 return Err(Error::NonManifoldEdge {
                     edge: group[0].ends,
@@ -271,19 +313,20 @@ fn paired_half_edges(triangles: &[[u32; 3]]) -> Result<Vec<[HalfEdge; 2]>> {
             }
         }
     }
-    pairs.sort_unstable_by_key(|pair| pair[0].corner);
+    pairs.sort_unstable_by_key(|pair| pair.0.corner);
     Ok(pairs)
 }
 
 /// The triangles on the other side of each triangle's edges 01, 12 and 20, with whether the two agree
-/// in orientation. The surface need not be oriented, but must be closed and manifold at its edges.
-pub(super) fn neighbours(triangles: &[[u32; 3]]) -> Result<Vec<[(u32, bool); 3]>> {
-    let mut neighbours = vec![[(0, true); 3]; triangles.len()];
-    for pair in paired_half_edges(triangles)? {
-        let agree = pair[0].ascending != pair[1].ascending;
-        for (here, there) in [(pair[0], pair[1]), (pair[1], pair[0])] {
+/// in orientation. The surface need not be oriented, but must be manifold at its edges.
+pub(super) fn neighbours(triangles: &[[u32; 3]]) -> Result<Vec<[Option<(u32, bool)>; 3]>> {
+    let mut neighbours = vec![[None; 3]; triangles.len()];
+    for (here, there) in paired_half_edges(triangles)? {
+        let Some(there) = there else { continue };
+        let agree = here.ascending != there.ascending;
+        for (here, there) in [(here, there), (there, here)] {
             let corner = here.corner as usize;
-            neighbours[corner / 3][corner % 3] = (there.corner / 3, agree);
+            neighbours[corner / 3][corner % 3] = Some((there.corner / 3, agree));
         }
     }
     Ok(neighbours)
@@ -385,7 +428,6 @@ mod tests {
             broken(&|t| t.push([t[1][1], t[1][2], t[1][0]])),
             Error::DuplicateTriangle { first: 1, second: 8, .. }
         ));
-        assert!(matches!(broken(&|t| t.truncate(7)), Error::OpenEdge { .. }));
         let [a, b, _] = good[0].map(|v| v as u32);
         assert!(matches!(
             broken(&|t| t.push([t[0][0], t[0][1], 7])),
@@ -396,6 +438,33 @@ mod tests {
             Error::InconsistentOrientation { triangles: [_, 5], .. }
                 | Error::InconsistentOrientation { triangles: [5, _], .. }
         ));
+    }
+
+    #[test]
+    fn borders_have_edges_of_one_triangle() {
+        let mut triangles = octahedron().1;
+        let hole = triangles.remove(5).map(|vertex| vertex as u32);
+        let topology = Topology::new(&triangles, 6).unwrap();
+        let of_one = |edge: &&Edge| edge.triangles[1] == NONE;
+        let rim: Vec<_> = topology.edges.iter().filter(of_one).collect();
+        assert_eq!((topology.edges.len(), rim.len()), (12, 3));
+        for edge in rim {
+            assert!(edge.opposite[1] == NONE && edge.vertices.iter().all(|v| hole.contains(v)));
+        }
+        for vertex in 0..6 {
+            assert_eq!(topology.is_border(vertex), hole.contains(&(vertex as u32)));
+            assert_eq!(topology.edges_at(vertex).len(), 4);
+        }
+    }
+
+    #[test]
+    fn holes_that_share_a_vertex_are_pinched() {
+        let mut triangles = octahedron().1;
+        // Opposite to each other at vertex 0.
+        triangles.remove(7);
+        triangles.remove(0);
+        let error = Topology::new(&triangles, 6).unwrap_err();
+        assert_eq!(error, Error::NonManifoldVertex { vertex: 0, fans: 2 });
     }
 
     #[test]

@@ -1,15 +1,15 @@
-//! Connectivity as state: a closed triangulated surface whose edges can be flipped in place.
+//! Connectivity as state: a triangulated surface whose edges can be flipped in place.
 //!
 //! Half-edge h = 3 t + k is the passage of triangle t along its side k, from its corner k to its corner k + 1. Its
-//! **twin** is the passage of the neighbour along the same edge, the other way. Rings, edges and degrees are
+//! **twin** is the passage of the neighbour along the same edge, the other way, or [`NONE`] at a border. Rings, edges and degrees are
 //! walked or counted from triangles and twins; nothing else is stored, so a flip rewrites two triangles and
 //! six twins and costs the same however large the mesh is.
 
 use super::cell::{Image, minus, plus};
-use super::topology::Topology;
+use super::topology::{NONE, Topology};
 use crate::error::{Error, Result};
 
-/// A closed, oriented 2-manifold triangulation whose connectivity may change.
+/// An oriented 2-manifold triangulation, closed or with borders, whose connectivity may change.
 ///
 /// Vertices are numbered locally as in [`Topology`], from which one is made.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -22,10 +22,12 @@ pub struct Triangulation {
     twins: Vec<[u32; 3]>,
     /// How many edges end at each vertex.
     degrees: Vec<u32>,
-    /// Of the half-edges that begin at each vertex the one of the lowest number.
+    /// Of the half-edges that begin at each vertex the one of the lowest number, or the one along the border.
     leaving: Vec<u32>,
     /// The images of the corners of each triangle, where the surface spans a periodic box; otherwise empty.
     images: Vec<[Image; 3]>,
+    /// How many edges are borders; there are as many vertices on borders.
+    num_border_edges: usize,
     /// The sum of numbers that look random, one for each triangle with its corners; so it tells any two sets of
     /// triangles apart, and a flip changes two of its terms.
     fingerprint: u64,
@@ -96,8 +98,11 @@ pub fn previous(half: u32) -> u32 {
 impl Triangulation {
     /// The connectivity that a validated mesh starts with.
     pub fn new(topology: &Topology) -> Self {
-        let mut twins = vec![[0; 3]; topology.triangles.len()];
+        let mut twins = vec![[NONE; 3]; topology.triangles.len()];
         for (index, edge) in topology.edges.iter().enumerate() {
+            if edge.triangles[1] == NONE {
+                continue;
+            }
             let [a, b] = edge.triangles.map(|triangle| {
                 let sides = &topology.triangle_edges[triangle as usize];
                 let side = sides.iter().position(|side| *side as usize == index);
@@ -106,16 +111,22 @@ impl Triangulation {
             twins.as_flattened_mut()[a as usize] = b;
             twins.as_flattened_mut()[b as usize] = a;
         }
-        let vertices = 0..topology.num_vertices();
+        let along_border = |half: &&u32| twins.as_flattened()[**half as usize] == NONE;
+        let leaving = (0..topology.num_vertices()).map(|vertex| {
+            let halves = &topology.corners[topology.ring(vertex)];
+            *halves.iter().find(along_border).unwrap_or(&halves[0])
+        });
+        let degree = |vertex: usize| topology.edges_at(vertex).len() as u32;
         let terms = topology.triangles.iter().enumerate().map(|(t, corners)| mixed(t, corners));
         Self {
             fingerprint: terms.fold(0, u64::wrapping_add),
             images: Vec::new(),
             particles: topology.particles.clone(),
             triangles: topology.triangles.clone(),
+            degrees: (0..topology.num_vertices()).map(degree).collect(),
+            leaving: leaving.collect(),
+            num_border_edges: twins.as_flattened().iter().filter(|twin| **twin == NONE).count(),
             twins,
-            degrees: vertices.clone().map(|vertex| topology.ring(vertex).len() as u32).collect(),
-            leaving: vertices.map(|vertex| topology.corners[topology.ring(vertex).start]).collect(),
         }
     }
 
@@ -199,7 +210,49 @@ impl Triangulation {
 
     /// Number of edges; flips keep it.
     pub fn num_edges(&self) -> usize {
-        3 * self.triangles.len() / 2
+        (3 * self.triangles.len() + self.num_border_edges) / 2
+    }
+
+    /// Number of edges that are borders; flips keep them.
+    pub fn num_border_edges(&self) -> usize {
+        self.num_border_edges
+    }
+
+    /// Whether there are no borders.
+    #[inline(always)]
+    pub fn is_closed(&self) -> bool {
+        self.num_border_edges == 0
+    }
+
+    /// Whether a vertex is on a border.
+    #[inline(always)]
+    pub fn is_border(&self, vertex: u32) -> bool {
+        !self.is_closed() && self.twin(self.leaving(vertex)) == NONE
+    }
+
+    /// How many triangles there are at a vertex: as many as edges, or one fewer on a border.
+    #[inline(always)]
+    pub fn num_corners(&self, vertex: u32) -> u32 {
+        self.degrees[vertex as usize] - u32::from(self.is_border(vertex))
+    }
+
+    /// The vertices of each border, with the surface on the left, from the lowest one.
+    pub fn border_loops(&self) -> Vec<Vec<u32>> {
+        let mut loops: Vec<Vec<u32>> = Vec::new();
+        let mut met = vec![false; self.num_vertices()];
+        for first in 0..self.num_vertices() as u32 {
+            let mut vertex = first;
+            let mut border = Vec::new();
+            while self.is_border(vertex) && !met[vertex as usize] {
+                met[vertex as usize] = true;
+                border.push(vertex);
+                vertex = self.origin(next(self.leaving(vertex)));
+            }
+            if !border.is_empty() {
+                loops.push(border);
+            }
+        }
+        loops
     }
 
     /// The vertex that a half-edge begins at.
@@ -208,31 +261,46 @@ impl Triangulation {
         self.triangles.as_flattened()[half as usize]
     }
 
-    /// The same edge in the neighbour.
+    /// The same edge in the neighbour, [`NONE`] at a border.
     #[inline(always)]
     pub fn twin(&self, half: u32) -> u32 {
         self.twins.as_flattened()[half as usize]
     }
 
-    /// The half-edges that leave a vertex, counter-clockwise from the one of the lowest number, so that the
-    /// order depends on the triangles only and not on how they came about. They replace what is in `ring`.
+    /// The half-edges that leave a vertex, one for each triangle, counter-clockwise from the one along the border, or
+    /// from the one of the lowest number, so that the order depends on the triangles only and not on how they came
+    /// about. They replace what is in `ring`.
     #[inline]
     pub fn ring(&self, vertex: u32, ring: &mut Vec<u32>) {
         let mut half = self.leaving[vertex as usize];
-        ring.resize(self.degrees[vertex as usize] as usize, 0);
+        ring.resize(self.num_corners(vertex) as usize, 0);
         for slot in ring {
             *slot = half;
             half = self.after(half);
         }
     }
 
-    /// Of the half-edges that leave a vertex the one of the lowest number, where rings begin.
+    /// The vertices that a vertex is joined to, in the order of its ring. They replace what is in `neighbours`.
+    #[inline]
+    pub fn neighbours(&self, vertex: u32, neighbours: &mut Vec<u32>) {
+        self.ring(vertex, neighbours);
+        let last = neighbours[neighbours.len() - 1];
+        for slot in neighbours.iter_mut() {
+            *slot = self.origin(next(*slot));
+        }
+        if self.is_border(vertex) {
+            neighbours.push(self.origin(previous(last)));
+        }
+    }
+
+    /// Where rings begin: of the half-edges that leave a vertex the one along the border, or the one of the lowest
+    /// number.
     #[inline(always)]
     pub fn leaving(&self, vertex: u32) -> u32 {
         self.leaving[vertex as usize]
     }
 
-    /// The lowest of the half-edges that leave the same vertex as this one.
+    /// The lowest of the half-edges that leave the same vertex as this one, which is not on a border.
     fn lowest(&self, half: u32) -> u32 {
         let (mut lowest, mut other) = (half, self.after(half));
         while other != half {
@@ -242,13 +310,13 @@ impl Triangulation {
         lowest
     }
 
-    /// The next half-edge counter-clockwise that leaves the same vertex.
+    /// The next half-edge counter-clockwise that leaves the same vertex; [`NONE`] at the end of a border vertex' ring.
     #[inline(always)]
     pub fn after(&self, half: u32) -> u32 {
         self.twin(previous(half))
     }
 
-    /// Each edge once, by the lower of its two half-edges, in ascending order.
+    /// Each edge once, by the lower of its half-edges, in ascending order.
     pub fn edges(&self) -> impl Iterator<Item = u32> {
         let twins = self.twins.as_flattened().iter().enumerate();
         twins.filter(|(half, twin)| *half < **twin as usize).map(|(half, _)| half as u32)
@@ -265,14 +333,18 @@ impl Triangulation {
             if self.origin(next(half)) == there {
                 return true;
             }
-            half = self.after(half);
+            let after = self.after(half);
+            if after == NONE {
+                return self.origin(previous(half)) == there;
+            }
+            half = after;
             if half == start {
                 return false;
             }
         }
     }
 
-    /// The two triangles at the edge of a half-edge.
+    /// The two triangles at the edge of a half-edge, which must not be at a border.
     #[inline(always)]
     pub fn quad(&self, half: u32) -> Quad {
         let twin = self.twin(half);
@@ -286,7 +358,7 @@ impl Triangulation {
     }
 
     /// Replace the edge ij of a quadrilateral by kl. The caller has made sure that k and l are not joined, and that
-    /// i and j have four neighbours or more.
+    /// i and j have four neighbours or more, or three on a border.
     ///
     /// Turned left, A keeps i and k and takes l for j; B keeps j and l and takes k for i. Turned right, A keeps j
     /// and k and takes l for i; B keeps i and l and takes k for j. The other corners stay at their places in the
@@ -304,6 +376,7 @@ impl Triangulation {
         if !self.images.is_empty() {
             self.flip_images(quad, taking);
         }
+        let on_border = quad.vertices.map(|vertex| self.is_border(vertex));
         let changing = quad.triangles();
         for triangle in changing {
             let term = mixed(triangle, &self.triangles[triangle]);
@@ -321,20 +394,34 @@ impl Triangulation {
         let twins = self.twins.as_flattened_mut();
         for (one, other) in [(lost[0], lost[1]), (b, outside[0]), (a, outside[1])] {
             twins[one as usize] = other;
-            twins[other as usize] = one;
+            if other != NONE {
+                twins[other as usize] = one;
+            }
+        }
+        // Half-edges along borders have gone over to the other triangle.
+        for (half, outside) in [(b, outside[0]), (a, outside[1])] {
+            if outside == NONE {
+                let vertex = self.origin(half);
+                self.leaving[vertex as usize] = half;
+            }
         }
         // The half-edges of two corners leave other vertices now.
         for (vertex, gone, another) in [
             (left_behind[0], taking[0], if turn == Turn::Left { b } else { next(b) }),
             (left_behind[1], taking[1], if turn == Turn::Left { a } else { next(a) }),
         ] {
-            if self.leaving[vertex as usize] == gone {
+            let on_border = on_border[usize::from(vertex == j)];
+            if self.leaving[vertex as usize] == gone && !on_border {
                 self.leaving[vertex as usize] = self.lowest(another);
             }
         }
-        for (vertex, come) in [(l, taking[0]), (k, taking[1])] {
-            let leaving = &mut self.leaving[vertex as usize];
-            *leaving = come.min(*leaving);
+        for (vertex, come, on_border) in
+            [(l, taking[0], on_border[3]), (k, taking[1], on_border[2])]
+        {
+            if !on_border {
+                let leaving = &mut self.leaving[vertex as usize];
+                *leaving = come.min(*leaving);
+            }
         }
         self.degrees[i as usize] -= 1;
         self.degrees[j as usize] -= 1;

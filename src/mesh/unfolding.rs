@@ -11,7 +11,7 @@
 
 use super::cell::{Cell, Image, minus, plus};
 use super::geometry::Vec3;
-use super::triangulation::{Triangulation, next};
+use super::triangulation::Triangulation;
 use crate::error::{Error, Result};
 use std::ops::Range;
 
@@ -153,7 +153,7 @@ impl Unfolding {
     fn grow_tree(&mut self, mesh: &Triangulation) {
         self.parts.clear();
         let mut met = vec![false; mesh.num_vertices()];
-        let mut ring = Vec::new();
+        let mut neighbours = Vec::new();
         for first in 0..mesh.num_vertices() {
             if std::mem::replace(&mut met[first], true) {
                 continue;
@@ -163,9 +163,8 @@ impl Unfolding {
             let mut head = start;
             while let Some(&[vertex, _]) = self.tree.get(head) {
                 head += 1;
-                mesh.ring(vertex, &mut ring);
-                for &half in &ring {
-                    let other = mesh.origin(next(half));
+                mesh.neighbours(vertex, &mut neighbours);
+                for &other in &neighbours {
                     if !std::mem::replace(&mut met[other as usize], true) {
                         self.tree.push([other, vertex]);
                     }

@@ -1,6 +1,7 @@
 //! Bringing near what later attempts will read, in three steps, since each finds out where the next has to look.
 
 use super::local::LocalEnergy;
+use crate::mesh::NONE;
 use crate::mesh::triangulation::{Triangulation, next, previous};
 
 impl LocalEnergy {
@@ -16,9 +17,13 @@ impl LocalEnergy {
     /// Then, of the other triangle and the vertices.
     #[inline(always)]
     pub fn fetch_quad(&self, mesh: &Triangulation, half: u32) {
-        self.fetch_triangle(mesh, mesh.twin(half));
-        fetch(&self.survey().triangles[mesh.twin(next(half)) as usize / 3]);
-        fetch(&self.survey().triangles[mesh.twin(previous(half)) as usize / 3]);
+        let twin = mesh.twin(half);
+        if twin == NONE {
+            return;
+        }
+        self.fetch_triangle(mesh, twin);
+        self.fetch_beyond(mesh, next(half));
+        self.fetch_beyond(mesh, previous(half));
         for half in [half, next(half), previous(half)] {
             let vertex = mesh.origin(half) as usize;
             fetch(&self.survey().vertices[vertex]);
@@ -30,11 +35,22 @@ impl LocalEnergy {
     #[inline(always)]
     pub fn fetch_rest(&self, mesh: &Triangulation, half: u32) {
         let twin = mesh.twin(half);
-        fetch(&self.survey().triangles[mesh.twin(next(twin)) as usize / 3]);
-        fetch(&self.survey().triangles[mesh.twin(previous(twin)) as usize / 3]);
+        if twin == NONE {
+            return;
+        }
+        self.fetch_beyond(mesh, next(twin));
+        self.fetch_beyond(mesh, previous(twin));
         let vertex = mesh.origin(previous(twin)) as usize;
         fetch(&self.survey().vertices[vertex]);
         fetch(&mesh.degrees()[vertex]);
+    }
+
+    /// The triangle on the other side of a half-edge, if there is one.
+    #[inline(always)]
+    fn fetch_beyond(&self, mesh: &Triangulation, half: u32) {
+        if let Some(triangle) = self.survey().triangles.get(mesh.twin(half) as usize / 3) {
+            fetch(triangle);
+        }
     }
 }
 

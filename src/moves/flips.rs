@@ -3,7 +3,7 @@
 //! The edge ij of two triangles (i, j, k) and (j, i, l) becomes kl. An edge is chosen uniformly among all, with one of
 //! two ways to turn it, which decides which triangle keeps which index; the number of edges never changes, so proposals
 //! are symmetric. A flip is refused if it would leave a vertex with fewer neighbours than
-//! allowed or give it more, if kl would be too long or exists already, or if a new triangle would have no area: all of
+//! allowed (on a border, one fewer) or give it more, if kl would be too long or exists already, or if a new triangle would have no area: all of
 //! these limit the set of states, and a move out of it is a move that is not made. Otherwise it is accepted with
 //! probability min(1, exp(−ΔE / kT)) (N. Metropolis et al., doi:10.1063/1.1699114), or, without a bath, if a demon can
 //! pay for it (M. Creutz, doi:10.1103/PhysRevLett.50.1411). Either leaves the weight of positions, momenta and
@@ -16,8 +16,8 @@ use super::records::{FlipRules, FlipState};
 use crate::dynamics::instructions::{Arithmetic, Kernel, run};
 use crate::dynamics::random;
 use crate::error::{Error, Result};
-use crate::mesh::Triangulation;
 use crate::mesh::triangulation::Turn;
+use crate::mesh::{NONE, Triangulation};
 use crate::potentials::Term;
 
 /// Attempts whose random numbers are made together.
@@ -78,16 +78,25 @@ impl FlipRules {
                 "maxEdgeLength must be a finite number of nm, or 0 for any length, got {max_edge_length}"
             ));
         }
-        let bad = |degree: &u32| *degree < min_degree as u32 || *degree > max_degree as u32;
-        if let Some(vertex) = mesh.degrees().iter().position(bad) {
+        let bad = |vertex: &usize| {
+            let degree = mesh.degrees()[*vertex];
+            degree < self.least(mesh, *vertex as u32) || degree > max_degree as u32
+        };
+        if let Some(vertex) = (0..mesh.num_vertices()).find(bad) {
             return refuse(format!(
-                "particle {} has {} neighbours, but flips are to keep between minDegree = {min_degree} and \
-                 maxDegree = {max_degree}; widen these, or start from another mesh",
+                "particle {} has {} neighbours, but flips are to keep between minDegree = {min_degree} (one fewer at \
+                 borders) and maxDegree = {max_degree}; widen these, or start from another mesh",
                 mesh.particles()[vertex],
                 mesh.degrees()[vertex]
             ));
         }
         Ok(())
+    }
+
+    /// The fewest neighbours that a vertex may have.
+    #[inline(always)]
+    fn least(&self, mesh: &Triangulation, vertex: u32) -> u32 {
+        self.min_degree as u32 - u32::from(mesh.is_border(vertex))
     }
 }
 
@@ -139,13 +148,18 @@ fn one(
     flipped: &mut Flipped,
 ) {
     state.attempts += 1;
+    if mesh.twin(draw.half) == NONE {
+        state.by_border += 1;
+        return;
+    }
     let quad = mesh.quad(draw.half);
     let [i, j, k, l] = quad.vertices;
     // Either half-edge of an edge stands for one of the two ways to turn it.
     let turn = if draw.half < quad.halves[1] { Turn::Left } else { Turn::Right };
     let degree = |vertex: u32| mesh.degrees()[vertex as usize];
-    let (least, most) = (rules.min_degree as u32, rules.max_degree as u32);
-    if degree(i).min(degree(j)) <= least || degree(k).max(degree(l)) >= most {
+    let (most, has_least) =
+        (rules.max_degree as u32, |vertex| degree(vertex) <= rules.least(mesh, vertex));
+    if has_least(i) || has_least(j) || degree(k).max(degree(l)) >= most {
         state.by_degree += 1;
         return;
     }

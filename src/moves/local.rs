@@ -8,12 +8,12 @@
 use super::hinges::{HINGES, Hinges};
 use crate::error::Result;
 use crate::evaluator::{Survey, SurveyedTriangle};
-use crate::mesh::Cell;
 use crate::mesh::geometry::{
     EdgeGeometry, TotalPartials, Totals, TriangleGeometry, Vec3, VertexGeometry,
 };
 use crate::mesh::triangulation::{Quad, Triangulation, Turn, next, previous};
 use crate::mesh::vertex_vectors::{VertexVectors, add_corner};
+use crate::mesh::{Cell, NONE};
 use crate::potentials::{Edges, Needs, Term, Triangles, Vertices};
 use smallvec::SmallVec;
 
@@ -134,7 +134,7 @@ impl LocalEnergy {
 
     /// The length, nm, that new edges must stay below: that of the rules, or what a periodic box allows; 0 for any.
     pub fn longest(&self, max_edge_length: f64) -> f64 {
-        match self.cell.map(|cell| cell.half_width()) {
+        match self.cell.as_ref().map(Cell::half_width) {
             Some(limit) if max_edge_length == 0.0 || limit < max_edge_length => limit,
             _ => max_edge_length,
         }
@@ -236,7 +236,7 @@ impl LocalEnergy {
             return difference - most;
         }
         if survey.needs.contains(Needs::VERTICES) {
-            self.vertices_of(terms, quad, &points, flipped);
+            self.vertices_of(mesh, terms, quad, &points, flipped);
             difference += flipped.vertex_energies.iter().sum::<f64>() - at_hand;
         }
         difference
@@ -257,11 +257,14 @@ impl LocalEnergy {
 
     /// An edge as it is.
     fn edge_of(&self, mesh: &Triangulation, half: u32) -> EdgeGeometry {
-        let twin = mesh.twin(half);
-        let (left, right) = (self.beside(half), self.beside(twin));
+        let (twin, left) = (mesh.twin(half), self.beside(half));
+        let length_squared = left.length_squared(half as usize % 3);
+        if twin == NONE {
+            return EdgeGeometry { length_squared, bend: 0.0 };
+        }
+        let right = self.beside(twin);
         let [start, tip] = [next(twin), previous(twin)].map(|half| self.corner(mesh, half));
         let mut hinges = Hinges::default();
-        let length_squared = left.length_squared(half as usize % 3);
         hinges.set(0, left, right, length_squared, &(start - tip));
         hinges.bend()[0]
     }
@@ -286,7 +289,7 @@ impl LocalEnergy {
         let (old_a, old_b) = (self.beside(a), self.beside(b));
         // ki, il, jk and lj with what lies beyond them.
         let rim = [previous(a), next(b), next(a), previous(b)];
-        let outside = rim.map(|half| self.beside(mesh.twin(half)));
+        let beyond = rim.map(|half| mesh.twin(half));
         let lengths = [new_i, new_i, new_j, new_j].into_iter().zip([2, 0, 0, 2]);
         let (old, new) = ([old_a, old_b, old_a, old_b], [new_i, new_i, new_j, new_j]);
         // Seen from outside the quadrilateral, the tip beyond the rim was j or i, and will be l or k. Arms lead from
@@ -298,9 +301,13 @@ impl LocalEnergy {
         hinges.set(0, old_a, old_b, along.norm_squared(), &(i - l));
         hinges.set(1, new_i, new_j, across.norm_squared(), &(k - j));
         for (n, (side, place)) in lengths.enumerate() {
-            let length_squared = side.length_squared(place);
-            hinges.set(2 + n, outside[n], old[n], length_squared, &old_arms[n]);
-            hinges.set(6 + n, outside[n], new[n], length_squared, &new_arms[n]);
+            // At a border they stay flat.
+            if beyond[n] != NONE {
+                let (outside, length_squared) =
+                    (self.beside(beyond[n]), side.length_squared(place));
+                hinges.set(2 + n, outside, old[n], length_squared, &old_arms[n]);
+                hinges.set(6 + n, outside, new[n], length_squared, &new_arms[n]);
+            }
         }
         let edges = hinges.bend();
         if self.survey.needs.contains(Needs::CURVATURES) {
@@ -322,7 +329,14 @@ impl LocalEnergy {
     }
 
     /// Areas, vectors and energies of the four vertices.
-    fn vertices_of(&self, terms: &[Term], quad: &Quad, points: &[Vec3; 4], flipped: &mut Flipped) {
+    fn vertices_of(
+        &self,
+        mesh: &Triangulation,
+        terms: &[Term],
+        quad: &Quad,
+        points: &[Vec3; 4],
+        flipped: &mut Flipped,
+    ) {
         let [old_a, old_b] =
             quad.triangles().map(|slot| self.survey.triangles[slot].geometry.area() / 3.0);
         let [new_i, new_j] = flipped.triangles.map(|triangle| triangle.area() / 3.0);
@@ -351,10 +365,17 @@ impl LocalEnergy {
         let vectors = if wants_vectors { &flipped.vectors[..] } else { &[] };
         let total = self.survey.vertices.len();
         let (ids, scalars) = (&quad.vertices, &flipped.vertices);
+        let on_border = ids.map(|vertex| mesh.is_border(vertex));
         for term in at(terms, &self.acting.vertices) {
-            let energies = &mut flipped.vertex_energies[..];
-            let run = Vertices::Energies { total, ids, scalars, vectors, energies };
+            let mut energies = [0.0; 4];
+            let run = Vertices::Energies { total, ids, scalars, vectors, energies: &mut energies };
             term.potential.vertices(term, run);
+            let everywhere = term.potential.acts_at_borders();
+            for (n, sum) in flipped.vertex_energies.iter_mut().enumerate() {
+                if everywhere || !on_border[n] {
+                    *sum += energies[n];
+                }
+            }
         }
     }
 

@@ -20,7 +20,7 @@ pub struct FlipRules {
 
 /// What a mover has come to. C++ holds it and writes it into checkpoints.
 ///
-/// A flip that is refused is counted at the first of these that it fails: degrees, length, shape, energy, and
+/// A flip that is refused is counted at the first of these that it fails: a border, degrees, length, shape, energy, and
 /// whether the new edge exists.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -31,7 +31,9 @@ pub struct FlipState {
     pub attempts: u64,
     /// How many were made.
     pub accepted: u64,
-    /// How many were refused for a vertex that would have too few or too many neighbours,
+    /// How many were refused for an edge that is a border,
+    pub by_border: u64,
+    /// for a vertex that would have too few or too many neighbours,
     pub by_degree: u64,
     /// for the length of the new edge,
     pub by_length: u64,

@@ -102,6 +102,11 @@ impl Potential for Bending {
         needs
     }
 
+    /// Curvature is not defined at a border, which is free: no moment acts there.
+    fn acts_at_borders(&self) -> bool {
+        false
+    }
+
     /// Over an area above zero the energy is a square: ½ κ a (c / a − C₀)², or more where C₀ takes a component of c.
     fn is_never_negative(&self, term: &Term) -> bool {
         parts(term).1 == Area::Barycentric
@@ -263,6 +268,7 @@ mod tests {
         let run = Vertices::Plain {
             first: 0,
             total: 1,
+            left_out: &[],
             scalars: &scalars,
             vectors: &vectors,
             scalar_partials: &mut slopes.0,
@@ -363,6 +369,7 @@ mod tests {
         let run = Vertices::Plain {
             first: 1,
             total: 3,
+            left_out: &[],
             scalars: &scalars,
             vectors: &[],
             scalar_partials: &mut slopes,

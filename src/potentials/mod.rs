@@ -138,9 +138,14 @@ pub trait Potential: Sync {
     fn needs(&self, term: &Term) -> Needs;
 
     /// Whether the energy makes no sense on a surface that is turned inside out. Such a surface is refused when it is
-    /// first evaluated; what a shape becomes later is not.
+    /// first evaluated; what a shape becomes later is not. One with a border, which has no outside, is refused at once.
     fn needs_outside(&self) -> bool {
         false
+    }
+
+    /// Whether the energy of vertices acts on those at a border, too.
+    fn acts_at_borders(&self) -> bool {
+        true
     }
 
     /// Whether no vertex can have an energy below zero: then a move that must gain more than its vertices have is

@@ -74,6 +74,7 @@ mod tests {
             let run = Vertices::Plain {
                 first: 0,
                 total: 5,
+                left_out: &[],
                 scalars: &scalars,
                 vectors: &[],
                 scalar_partials: &mut partials,

@@ -85,6 +85,8 @@ pub enum Vertices<'a> {
         first: usize,
         /// How many vertices the mesh has.
         total: usize,
+        /// Which of them to leave out; empty if none.
+        left_out: &'a [bool],
         /// Areas and curvatures.
         scalars: &'a [VertexGeometry],
         /// Curvature vectors and normals; empty unless the potential wants them.
@@ -233,9 +235,20 @@ impl Vertices<'_> {
                 }
                 Contribution::default()
             }
-            Self::Plain { first, scalars, vectors, scalar_partials, vector_partials, .. } => {
+            Self::Plain {
+                first,
+                left_out,
+                scalars,
+                vectors,
+                scalar_partials,
+                vector_partials,
+                ..
+            } => {
                 let mut sum = Contribution::default();
                 for (index, (known, partial)) in scalars.iter().zip(scalar_partials).enumerate() {
+                    if left_out.get(index) == Some(&true) {
+                        continue;
+                    }
                     let ids = &[(first + index) as u32];
                     let vertex = Vertex::plain(*known, vectors.get(index));
                     let mut slopes = Vertex::plain(

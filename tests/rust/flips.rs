@@ -53,7 +53,7 @@ fn walk(
         let terms_in_use: Vec<_> = terms.iter().collect();
         let mut evaluator = CpuEvaluator::of(mesh, &breadth_first(mesh), InstructionSet::Best, 1);
         let survey = |survey: &mut _| evaluator.survey(&terms_in_use, &positions, None, survey);
-        local.fill(terms, survey).unwrap();
+        local.fill(terms, None, survey).unwrap();
     };
     fill(&mut local, &mesh);
     let mut flipped = Flipped::default();

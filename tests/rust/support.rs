@@ -38,6 +38,67 @@ pub fn spheroid(rings: i64, sectors: i64, noise: &mut impl FnMut() -> f64) -> Me
     (positions, triangles)
 }
 
+/// A torus of `around` × `along` quadrilaterals, halved into triangles.
+pub fn torus(around: i64, along: i64, noise: &mut impl FnMut() -> f64) -> Mesh {
+    let mut positions = Vec::new();
+    let mut triangles = Vec::new();
+    let at = |i: i64, j: i64| along * i.rem_euclid(around) + j.rem_euclid(along);
+    for i in 0..around {
+        for j in 0..along {
+            let [u, v] = [i as f64 / around as f64, j as f64 / along as f64]
+                .map(|part| std::f64::consts::TAU * part);
+            let wide = 9.0 + 4.0 * v.cos();
+            let point = [wide * u.cos(), wide * u.sin(), 4.0 * v.sin()];
+            positions.extend(point.map(|x| x + 0.3 * noise()));
+            let (p, q, r, s) = (at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+            triangles.extend([[p, q, r], [p, r, s]]);
+        }
+    }
+    (positions, triangles)
+}
+
+/// A mesh without the triangles at some particles, which belong to nothing then.
+pub fn without((positions, mut triangles): Mesh, particles: &[i64]) -> Mesh {
+    triangles.retain(|triangle| !triangle.iter().any(|particle| particles.contains(particle)));
+    (positions, triangles)
+}
+
+/// Two meshes beside each other.
+pub fn beside((mut positions, mut triangles): Mesh, (others, more): Mesh) -> Mesh {
+    let count = (positions.len() / 3) as i64;
+    positions.extend(others.iter().map(|x| x + 40.0));
+    triangles.extend(more.iter().map(|triangle| triangle.map(|v| v + count)));
+    (positions, triangles)
+}
+
+/// Meshes with borders: a disk, an annulus, an open and a closed part in either order, a torus with a hole, a fan of
+/// border vertices about a single inner one, a strip without any inner vertex, and many tiles.
+pub fn open_meshes(seed: u64) -> Vec<Mesh> {
+    let mut noise = random(seed);
+    let disk = without(spheroid(6, 9, &mut noise), &[0]);
+    let annulus = without(spheroid(6, 9, &mut noise), &[0, 55]);
+    let closed = spheroid(5, 7, &mut noise);
+    let cap: Vec<i64> = (8..57).collect();
+    let middle = [0].into_iter().chain(1..8).chain(22..30).collect::<Vec<_>>();
+    vec![
+        disk.clone(),
+        annulus,
+        beside(disk.clone(), closed.clone()),
+        beside(closed, disk),
+        without(torus(7, 6, &mut noise), &[11]),
+        without(spheroid(6, 7, &mut noise), &cap),
+        without(spheroid(4, 7, &mut noise), &middle),
+        without(spheroid(24, 30, &mut noise), &[0, 200, 300, 333, 551, 720]),
+    ]
+}
+
+/// Terms that make sense on a surface with borders.
+pub fn open_terms(wants_derivatives: bool) -> Vec<Term<'static>> {
+    let mut terms = all_terms(wants_derivatives);
+    terms.retain(|term| !term.potential.needs_outside());
+    terms
+}
+
 /// Numbers in [−1, 1) from a seed.
 pub fn random(seed: u64) -> impl FnMut() -> f64 {
     let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;

@@ -300,6 +300,7 @@ map<string, double> MonteCarloBondFlipImpl::getStatistics(ContextImpl& context) 
     auto accepted = (double) flips.accepted, attempts = (double) flips.attempts;
     return {{"attempts", attempts},
             {"accepted", accepted},
+            {"refusedByBorder", (double) flips.byBorder},
             {"refusedByDegree", (double) flips.byDegree},
             {"refusedByLength", (double) flips.byLength},
             {"refusedByShape", (double) flips.byShape},

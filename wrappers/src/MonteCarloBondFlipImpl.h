@@ -19,7 +19,7 @@ struct MoverState {
     double time;
 };
 
-static_assert(sizeof(MoverState) == 96, "the state of a mover has no gaps");
+static_assert(sizeof(MoverState) == 104, "the state of a mover has no gaps");
 
 /** Flips edges of a membrane. */
 class MonteCarloBondFlipImpl : public OpenMM::ForceImpl,

@@ -24,12 +24,12 @@ using std::vector;
  *     int32   3 T corners of triangles, by particle
  *     uint32  N vertices in their order
  *     uint32  whether there is a mover; if so
- *     96      its MoverState
+ *     104     its MoverState
  *     uint64  checksum of all before, FNV-1a
  */
 namespace {
 
-const uint32_t MARK = 0x31434c48;
+const uint32_t MARK = 0x32434c48;
 
 uint64_t findChecksum(const char* data, size_t size) {
     uint64_t sum = 0xcbf29ce484222325;

@@ -5,7 +5,7 @@ use super::device::Device;
 use super::frame::groups;
 use super::interface::{Binding, FORCES_PER_TRIANGLE, SLOPES_PER_VERTEX};
 use crate::error::{Error, Result};
-use crate::mesh::Topology;
+use crate::mesh::{NONE, Topology};
 use crate::potentials::Needs;
 use wgpu::BufferUsages as Usage;
 
@@ -133,6 +133,9 @@ impl Buffers {
             .enumerate()
             .flat_map(|(index, edge)| {
                 edge.triangles.map(|triangle| {
+                    if triangle == NONE {
+                        return NONE;
+                    }
                     let sides = &topology.triangle_edges[triangle as usize];
                     let side = sides.iter().position(|side| *side as usize == index);
                     3 * triangle + side.unwrap_or(0) as u32

@@ -109,8 +109,15 @@ impl Layout {
         for block in 0..self.steps.len() - 1 {
             let steps = self.steps[block] as usize..self.steps[block + 1] as usize;
             for lane in 0..BLOCK {
+                let vertex = self.vertex_ids[block * BLOCK + lane];
+                let is_border = mesh.is_border(vertex);
+                let end = steps.start + mesh.num_corners(vertex) as usize;
                 for step in steps.clone() {
-                    let place = self.places[step][lane];
+                    // The last neighbour on a border belongs to the triangle before.
+                    let (place, further) = match step == end && is_border {
+                        true => (self.places[step - 1][lane], 2),
+                        false => (self.places[step][lane], 1),
+                    };
                     if place == nothing {
                         // Past the end of a ring comes its first neighbour again.
                         self.neighbours[step][lane] = self.neighbours[steps.start][lane];
@@ -118,11 +125,12 @@ impl Layout {
                     }
                     let images = mesh.images()[self.triangle_ids[place as usize / 4] as usize];
                     let corner = place as usize % 4;
-                    let image = minus(images[(corner + 1) % 3], images[corner]);
-                    let vertex = self.neighbours[step][lane] / 4;
-                    self.neighbours[step][lane] = ghosts.offset(vertex, image, behind);
-                    // What is left at the end is the last of the ring.
-                    self.neighbours_before[block][lane] = self.neighbours[step][lane];
+                    let image = minus(images[(corner + further) % 3], images[corner]);
+                    let neighbour = self.neighbours[step][lane] / 4;
+                    self.neighbours[step][lane] = ghosts.offset(neighbour, image, behind);
+                }
+                if !is_border {
+                    self.neighbours_before[block][lane] = self.neighbours[end - 1][lane];
                 }
             }
         }

@@ -1,14 +1,15 @@
 //! The mesh as the fast evaluator wants it: renumbered for locality, in blocks of lanes.
 //!
 //! Vertices that are neighbours on the surface get numbers that are near each other, so that what a pass
-//! needs is in the cache. Within a tile they are sorted by degree, so that the lanes of a block go round rings of the same length. Triangles follow
+//! needs is in the cache. Within a tile they are sorted by degree, so that the lanes of a block go round rings of the same length, and those
+//! on borders come last. Triangles follow
 //! the vertices. The user's order is kept outside: `particles`, `vertex_ids` and `triangle_ids` translate.
 
 use super::ghosts::Ghosts;
 use super::records::BLOCK;
 use crate::mesh::Triangulation;
 use crate::mesh::geometry::Vec3;
-use crate::mesh::triangulation::next;
+use crate::mesh::triangulation::{next, previous};
 use std::ops::Range;
 use std::sync::OnceLock;
 
@@ -23,7 +24,9 @@ pub const TILE: usize = 128;
 /// t_k = (i, j_k, j_k₊₁) between them. The rings of a block of vertices are stored step by step, a step having
 /// an entry for each lane, and one closing step more than the longest of the rings. A ring that is
 /// shorter goes on with its first neighbour and with a triangle that does not exist: the one after the last
-/// of all, without area and normal, which adds nothing.
+/// of all, without area and normal, which adds nothing. So does the ring of a vertex on a border after its last
+/// neighbour, with which no triangle begins; before its first neighbour come the vertex itself and its first triangle,
+/// which make a dihedral angle of zero.
 pub struct Layout {
     /// Number of vertices and of triangles, without those that fill the last blocks.
     pub num_vertices: usize,
@@ -49,6 +52,8 @@ pub struct Layout {
     pub before: Vec<[u32; BLOCK]>,
     /// The neighbour before the first.
     pub neighbours_before: Vec<[u32; BLOCK]>,
+    /// How many vertices of a tile are on no border.
+    pub inner: Vec<u32>,
     /// How many triangles must be known before a tile of vertices can be handled.
     pub frontier: Vec<u32>,
     /// Images of vertices, whose places are behind those of the last block of vertices.
@@ -76,6 +81,7 @@ impl Layout {
             places: Vec::new(),
             before: Vec::new(),
             neighbours_before: Vec::new(),
+            inner: Vec::new(),
             frontier: Vec::new(),
             ghosts: Ghosts::default(),
             opposite: OnceLock::new(),
@@ -122,23 +128,28 @@ impl Layout {
         self.num_triangles.div_ceil(TILE)
     }
 
-    /// Sort the vertices of each tile by degree, and number them.
+    /// Sort the vertices of each tile by degree, those on borders last, and number them.
     fn number_vertices(&mut self, mesh: &Triangulation, order: &[u32]) {
         self.vertex_ids.resize(self.num_vertices, 0);
+        self.inner.clear();
         for (tile, sorted) in order.chunks(TILE).zip(self.vertex_ids.chunks_mut(TILE)) {
             // By counting; the few vertices of more neighbours than that are not told apart.
             const MOST: usize = 31;
-            let degree = |vertex: u32| (mesh.degrees()[vertex as usize] as usize).min(MOST);
-            let mut starts = [0; MOST + 2];
+            let degree = |vertex: u32| match mesh.is_border(vertex) {
+                false => (mesh.degrees()[vertex as usize] as usize).min(MOST),
+                true => MOST + 1,
+            };
+            let mut starts = [0; MOST + 3];
             for &vertex in tile {
                 starts[degree(vertex) + 1] += 1;
             }
-            for degree in 0..MOST {
+            for degree in 0..=MOST {
                 starts[degree + 1] += starts[degree];
             }
+            self.inner.push(starts[MOST + 1]);
             for &vertex in tile {
                 let place = &mut starts[degree(vertex)];
-                sorted[*place] = vertex;
+                sorted[*place as usize] = vertex;
                 *place += 1;
             }
         }
@@ -179,6 +190,8 @@ impl Layout {
             let vertices = &self.vertex_ids[block * BLOCK..][..BLOCK];
             let degrees: [usize; BLOCK] =
                 std::array::from_fn(|lane| mesh.degrees()[vertices[lane] as usize] as usize);
+            let corners: [usize; BLOCK] =
+                std::array::from_fn(|lane| mesh.num_corners(vertices[lane]) as usize);
             let longest = degrees.into_iter().max().unwrap_or(0);
             let start = self.neighbours.len();
             self.neighbours.resize(start + longest + 1, [0; BLOCK]);
@@ -191,7 +204,7 @@ impl Layout {
                 let (neighbours, places) =
                     (&mut self.neighbours[start + step], &mut self.places[start + step]);
                 for lane in 0..BLOCK {
-                    if step >= degrees[lane] {
+                    if step >= corners[lane] {
                         continue;
                     }
                     let half = halves[lane];
@@ -207,6 +220,18 @@ impl Layout {
                     halves[lane] = mesh.after(half);
                     // What is left at the end is the last of the ring.
                     (before[lane], neighbours_before[lane]) = (4 * *number, neighbours[lane]);
+                }
+            }
+            for lane in 0..BLOCK {
+                if corners[lane] < degrees[lane] {
+                    let vertex = vertices[lane];
+                    let last =
+                        (1..corners[lane]).fold(mesh.leaving(vertex), |half, _| mesh.after(half));
+                    let end = triangles[previous(last) as usize];
+                    let number = |vertex: u32| 4 * self.number[vertex as usize];
+                    self.neighbours[start + corners[lane]][lane] = number(end);
+                    before[lane] = self.places[start][lane] & !3;
+                    neighbours_before[lane] = number(vertex);
                 }
             }
             let first = self.neighbours[start];

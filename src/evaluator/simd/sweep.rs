@@ -187,8 +187,10 @@ impl Sweep<'_, '_> {
             tile.slopes.clear(needs, range.len());
         }
         let ids = &layout.vertex_ids[range];
+        let inner = &ids[..layout.inner[index] as usize];
         for (term, contribution) in self.terms.iter().zip(contributions) {
             if term.potential.needs(term).contains(Needs::VERTICES) {
+                let ids = if term.potential.acts_at_borders() { ids } else { inner };
                 let run = Vertices::Lanes { level, total: layout.num_vertices, ids, tile };
                 *contribution += term.potential.vertices(term, run);
             }

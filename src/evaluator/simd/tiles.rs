@@ -4,10 +4,12 @@ use super::instructions::{Level, WithLanes, dispatch};
 use super::lanes::Lane;
 use super::layout::TILE;
 use super::records::{BLOCK, Records};
+use super::triangles::COUNTS;
 use crate::potentials::{
     Contribution, Needs, Place, Sums, Term, Triangle, TriangleFormula, TriangleSlopes, Vertex,
     VertexFormula,
 };
+use crate::real::Real;
 
 /// One quantity of the elements of a tile.
 #[derive(Clone, Copy)]
@@ -224,6 +226,25 @@ impl VertexTile {
     }
 }
 
+/// The slopes of the lanes that count, and others for the rest.
+#[inline(always)]
+fn chosen<S: Records>(
+    counts: <Lane<S> as Real>::Mask,
+    these: Vertex<Lane<S>>,
+    others: Vertex<Lane<S>>,
+) -> Vertex<Lane<S>> {
+    let mut chosen = others;
+    chosen.area = these.area.or_else(counts, others.area);
+    chosen.voronoi_area = these.voronoi_area.or_else(counts, others.voronoi_area);
+    chosen.curvature = these.curvature.or_else(counts, others.curvature);
+    for k in 0..3 {
+        chosen.cotangent[k] = these.cotangent[k].or_else(counts, others.cotangent[k]);
+        chosen.umbrella[k] = these.umbrella[k].or_else(counts, others.umbrella[k]);
+        chosen.normal_sum[k] = these.normal_sum[k].or_else(counts, others.normal_sum[k]);
+    }
+    chosen
+}
+
 /// A formula on its way to the instruction set that the processor has.
 struct InLanes<'a, T, F> {
     term: &'a Term<'a>,
@@ -313,11 +334,22 @@ impl<F: VertexFormula> WithLanes for InLanes<'_, VertexTile, F> {
         let mut sum = Accumulated::new(simd);
         for index in (0..ids.len()).step_by(Lane::<S>::COUNT) {
             let vertex = tile.known.load::<S, F>(simd, index);
-            let mut slopes = tile.slopes.load::<S, F>(simd, index);
+            let before = tile.slopes.load::<S, F>(simd, index);
+            let mut slopes = before;
             let place = Place { term, ids: &ids[index..] };
-            let sums = formula.apply(place, &vertex, &mut slopes);
+            let mut sums = formula.apply(place, &vertex, &mut slopes);
+            let count = ids.len() - index;
+            sum.add(sums, count);
+            if count < Lane::<S>::COUNT {
+                // The other lanes may be vertices on borders, which the formula leaves alone.
+                let zero = Lane::splat(simd, 0.0);
+                // SAFETY: as many ones as count, then zeros, are within the table.
+                let counts = unsafe { Lane::load(simd, COUNTS.as_ptr().add(BLOCK - count)) };
+                let counts = counts.above(zero);
+                sums.energy = sums.energy.or_else(counts, zero);
+                slopes = chosen(counts, slopes, before);
+            }
             tile.energies.add(simd, index, sums.energy);
-            sum.add(sums, ids.len() - index);
             tile.slopes.store::<S, F>(index, slopes);
         }
         sum.total()

@@ -50,8 +50,8 @@ pub struct Forward<'a, const POTENTIALS: bool, const ANGLES: bool> {
     pub tile: &'a mut TriangleTile,
 }
 
-/// Which lanes of a last block that is not full count.
-static COUNTS: [f64; 2 * BLOCK] = {
+/// Which lanes of a last block that is not full count: as many ones from `BLOCK` − that many on, then zeros.
+pub static COUNTS: [f64; 2 * BLOCK] = {
     let mut counts = [0.0; 2 * BLOCK];
     let mut lane = 0;
     while lane < BLOCK {

@@ -226,8 +226,8 @@ public:
     }
     /**
      * Get what has come of the flips that were tried in a Context since it was made: "attempts", those "accepted", and
-     * those refused, by the first of these that they failed: "refusedByDegree", "refusedByLength",
-     * "refusedByShape" (a triangle would have no area), "refusedByEnergy" and "refusedByEdge" (the new edge was there
+     * those refused, by the first of these that they failed: "refusedByBorder" (the edge has one triangle only),
+     * "refusedByDegree", "refusedByLength", "refusedByShape" (a triangle would have no area), "refusedByEnergy" and "refusedByEdge" (the new edge was there
      * already); "acceptance", accepted over attempts; "time", the time that has been simulated, ps; "rate", accepted
      * for each edge and ps; and "demonEnergy", kJ/mol. Ratios are NaN as long as there is nothing to divide by.
      *

@@ -59,7 +59,7 @@ struct HelfrichFlipRules {
  */
 struct HelfrichFlipState {
     uint32_t key[2];
-    uint64_t attempts, accepted, byDegree, byLength, byShape, byEnergy, byEdge;
+    uint64_t attempts, accepted, byBorder, byDegree, byLength, byShape, byEnergy, byEdge;
     /** kJ/mol. */
     double demonEnergy;
 };
