@@ -45,9 +45,9 @@ namespace HelfrichPlugin {
  * in the first two modes, min(1, exp(-beta dE)) at constant area, and for ZOnly with f dL and L in place of tau dA_p
  * and A_p: D. Frenkel and B. Smit, Understanding Molecular Simulation, chapter 5,
  * doi:10.1016/B978-0-12-267351-1.X5000-7. The tension is that of the frame, which is conjugate to A_p, not to the area
- * of the membrane itself: see F. Schmid, doi:10.1209/0295-5075/95/28008. For XYIndependent nothing but the energy holds
- * the ratio of L_x and L_y, which wanders for a fluid membrane; XYIsotropic keeps it. For a tube along z, f is the
- * force that pulls it.
+ * of the membrane itself: see F. Schmid, doi:10.1209/0295-5075/95/28008. For XYIndependent and
+ * XYConstantArea nothing but the energy holds the ratio of L_x and L_y, so that the box of a fluid membrane becomes
+ * ever narrower; XYIsotropic keeps it. For a tube along z, f is the force that pulls it.
  *
  * The box vectors are scaled in the same way, each of their components with its coordinate, which keeps a triclinic box
  * exactly what it was to the particles; L_x, L_y and L_z are its diagonal. Positions are scaled about the origin.
@@ -60,11 +60,11 @@ namespace HelfrichPlugin {
  * of ten moves or more less than a quarter was accepted, multiplied by 1.1 where it was more than three quarters,
  * up to 30 % of the box. From then on it is constant, and the distribution exact.
  *
- * It acts whenever an integrator updates the state of the Context: all integrators of OpenMM do, a CustomIntegrator
- * where it has addUpdateContextState(). RPMDIntegrator, whose beads have positions of their own, is refused, and so are
- * OpenMM's barostats beside it and two of this class that change the same axis. Some force of the System must use
- * periodic boundary conditions. Checkpoints of platform Helfrich hold widths, random numbers and statistics, as
- * the files of Python's save_state() do.
+ * A move costs two evaluations of the energy. It is tried whenever an integrator updates the state of the Context: all
+ * integrators of OpenMM do, a CustomIntegrator where it has addUpdateContextState(). RPMDIntegrator, whose beads have
+ * positions of their own, is refused, and so are OpenMM's barostats beside it and two of this class that change the
+ * same axis. Some force of the System must use periodic boundary conditions. Checkpoints of platform Helfrich hold
+ * widths, random numbers and statistics, as the files of Python's save_state() do.
  *
  * OpenMM's barostats are refused by themselves where a membrane spans the box, unless they scale every particle
  * (setScaleMoleculesAsRigid(False)) or never act (frequency 0).
