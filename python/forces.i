@@ -45,6 +45,9 @@ using namespace HelfrichPlugin;
 %ignore HelfrichPlugin::TriangulatedForce::saveConnectivity;
 %ignore HelfrichPlugin::TriangulatedForce::restoreConnectivity;
 %ignore HelfrichPlugin::MonteCarloBondFlip::getStatistics;
+%ignore HelfrichPlugin::MonteCarloMembraneTension::getStatistics;
+%ignore HelfrichPlugin::MonteCarloMembraneTension::saveState;
+%ignore HelfrichPlugin::MonteCarloMembraneTension::restoreState;
 %ignore HelfrichPlugin::MembraneForce::setParameterValue;
 %rename(_setElementValues) HelfrichPlugin::MembraneForce::setElementValues;
 %nodefaultctor HelfrichPlugin::TriangulatedForce;
@@ -86,15 +89,35 @@ static PyObject* toBytes(const void* data, size_t size) {
     }
 }
 
+%{
+template <class Mover>
+static PyObject* toDict(const Mover& mover, OpenMM::Context& context) {
+    PyObject* statistics = PyDict_New();
+    for (const auto& entry : mover.getStatistics(context)) {
+        PyObject* value = PyFloat_FromDouble(entry.second);
+        PyDict_SetItemString(statistics, entry.first.c_str(), value);
+        Py_DECREF(value);
+    }
+    return statistics;
+}
+%}
+
 %extend HelfrichPlugin::MonteCarloBondFlip {
     PyObject* _getStatistics(OpenMM::Context& context) {
-        PyObject* statistics = PyDict_New();
-        for (const auto& entry : $self->getStatistics(context)) {
-            PyObject* value = PyFloat_FromDouble(entry.second);
-            PyDict_SetItemString(statistics, entry.first.c_str(), value);
-            Py_DECREF(value);
-        }
-        return statistics;
+        return toDict(*$self, context);
+    }
+}
+
+%extend HelfrichPlugin::MonteCarloMembraneTension {
+    PyObject* _getStatistics(OpenMM::Context& context) {
+        return toDict(*$self, context);
+    }
+    PyObject* _saveState(OpenMM::Context& context) {
+        std::string saved = $self->saveState(context);
+        return toBytes(saved.data(), saved.size());
+    }
+    void _restoreState(OpenMM::Context& context, const char* data, size_t size) {
+        $self->restoreState(context, std::string(data, size));
     }
 }
 
@@ -122,6 +145,7 @@ static PyObject* toBytes(const void* data, size_t size) {
 %include "OpenMMHelfrich.h"
 HELFRICH_FORCES(MEMBRANE_FORCE)
 MEMBRANE_FORCE(MonteCarloBondFlip)
+MEMBRANE_FORCE(MonteCarloMembraneTension)
 
 /* For platforms.py: why a System is not one for the platform Helfrich, or an empty text. */
 %inline %{
@@ -131,14 +155,16 @@ std::string _why_not_helfrich(const OpenMM::System& system, const OpenMM::Integr
 %}
 
 %pythoncode %{
-from openmmhelfrich import _arguments, _bond_flips
+from openmmhelfrich import _arguments, _bond_flips, _tension
 for _class in MembraneForce.__subclasses__():
     _arguments.accept_units(_class)
 _arguments.accept_arrays(TriangulatedForce)
 _bond_flips.accept_arguments(MonteCarloBondFlip)
+_tension.accept_arguments(MonteCarloMembraneTension)
 __all__ = [
     "MembraneForce",
     "MonteCarloBondFlip",
+    "MonteCarloMembraneTension",
     "TriangulatedForce",
     *(_class.__name__ for _class in MembraneForce.__subclasses__()),
 ]

@@ -134,21 +134,37 @@ forward! {
     /// Read one of the statistics of a MonteCarloBondFlip in a Context by its name.
     Helfrich_MonteCarloBondFlip_getStatistic =>
         helfrich_shim_getStatistic(force: *mut Force, context: *mut c_void, name: *const c_char, value: *mut c_double) -> c_int;
+    /// Make a MonteCarloMembraneTension; null if an argument is refused.
+    Helfrich_MonteCarloMembraneTension_create =>
+        helfrich_shim_createTension(temperature: c_double, tension: c_double, frequency: c_int, axes: c_int, pulling_force: c_double) -> *mut Force;
+    /// Copy frequency and the number of adaptive moves to a Context.
+    Helfrich_MonteCarloMembraneTension_updateParametersInContext =>
+        helfrich_shim_updateTension(force: *mut Force, context: *mut c_void) -> c_int;
+    /// Read one of the statistics of a MonteCarloMembraneTension in a Context by its name.
+    Helfrich_MonteCarloMembraneTension_getStatistic =>
+        helfrich_shim_getTensionStatistic(force: *mut Force, context: *mut c_void, name: *const c_char, value: *mut c_double) -> c_int;
 }
 
-/// `get` and `set` of values of a MonteCarloBondFlip.
+/// `get` and `set` of values of a mover.
 macro_rules! mover_values {
-    ($($name:ident: $type:ty),*) => { paste::paste! { forward! { $(
-        #[doc = concat!("The ", stringify!($name), " of a MonteCarloBondFlip.")]
-        [<Helfrich_MonteCarloBondFlip_get $name>] => [<helfrich_shim_getMover $name>](force: *mut Force) -> $type;
-        #[doc = concat!("Set the ", stringify!($name), " of a MonteCarloBondFlip.")]
-        [<Helfrich_MonteCarloBondFlip_set $name>] => [<helfrich_shim_setMover $name>](force: *mut Force, value: $type) -> c_int;
+    ($class:ident as $shim:ident, $($name:ident: $type:ty),*) => { paste::paste! { forward! { $(
+        #[doc = concat!("The ", stringify!($name), " of a ", stringify!($class), ".")]
+        [<Helfrich_ $class _get $name>] => [<helfrich_shim_get $shim $name>](force: *mut Force) -> $type;
+        #[doc = concat!("Set the ", stringify!($name), " of a ", stringify!($class), ".")]
+        [<Helfrich_ $class _set $name>] => [<helfrich_shim_set $shim $name>](force: *mut Force, value: $type) -> c_int;
     )* } } };
 }
 
 mover_values! {
+    MonteCarloBondFlip as Mover,
     DefaultTemperature: c_double, Frequency: c_int, AttemptsPerEdge: c_double, MinDegree: c_int, MaxDegree: c_int,
     MaxEdgeLength: c_double, Ensemble: c_int, RandomNumberSeed: c_int
+}
+
+mover_values! {
+    MonteCarloMembraneTension as Tension,
+    DefaultTemperature: c_double, DefaultTension: c_double, DefaultPullingForce: c_double, Frequency: c_int,
+    Axes: c_int, ScaleMoleculesAsRigid: c_int, AdaptiveMoves: c_int, RandomNumberSeed: c_int
 }
 
 /// `create`, and `get` and `set` of each scalar, for a force class.

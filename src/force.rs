@@ -9,7 +9,9 @@ use std::ffi::{CString, c_int};
 use std::ptr::NonNull;
 
 mod bond_flip;
+mod membrane_tension;
 pub use bond_flip::MonteCarloBondFlip;
+pub use membrane_tension::{Axes, MonteCarloMembraneTension};
 
 /// A force on a membrane that no System owns yet.
 ///

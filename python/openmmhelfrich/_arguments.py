@@ -24,7 +24,7 @@ from ._values import (
     triangles,
 )
 
-__all__ = ["accept_arrays", "accept_units", "own_what_is_cast"]
+__all__ = ["accept_arrays", "accept_copies", "accept_units", "own_what_is_cast"]
 
 
 def accept_units(force: type) -> None:
@@ -227,7 +227,15 @@ def accept_arrays(force: type) -> None:
         method.__qualname__ = f"{force.__name__}.{name}"
         setattr(force, name, method)
 
-    # OpenMM's own methods make an openmm.Force, on which the methods of the class do not work.
+    accept_copies(force)
+
+
+def accept_copies(force: type) -> None:
+    """Let copies and what is unpickled know their class.
+
+    OpenMM's own methods make an openmm.Force, on which the methods of the class do not work.
+    """
+
     def adopt(self, plain):
         self.this = type(self).cast(plain).this
         self.thisown = True

@@ -15,7 +15,7 @@ from .analysis import mode_amplitudes, shape
 from .analysis._arrays import triangles_of
 from .analysis.tables import open_table
 from .analysis.vtkhdf import SurfaceFrame, SurfaceSeries
-from .forces import MonteCarloBondFlip
+from .forces import MonteCarloBondFlip, MonteCarloMembraneTension
 
 __all__ = ["MembraneReporter", "ModeReporter", "VTKHDFReporter"]
 
@@ -322,8 +322,11 @@ def _group_names(system):
     """The names of the forces of each force group, joined, by group in ascending order."""
     names = {}
     for force in system.getForces():
-        if not isinstance(force, openmm.CMMotionRemover) and not MonteCarloBondFlip.isinstance(
-            force
+        # These have no energy.
+        if not (
+            isinstance(force, openmm.CMMotionRemover)
+            or MonteCarloBondFlip.isinstance(force)
+            or MonteCarloMembraneTension.isinstance(force)
         ):
             names.setdefault(force.getForceGroup(), []).append(force.getName())
     joined, taken = {}, set()

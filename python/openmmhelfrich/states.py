@@ -13,6 +13,7 @@ from openmm import unit
 
 from . import _blocks, _writing
 from ._present import surfaces_of
+from .forces import MonteCarloMembraneTension
 
 __all__ = ["load_state", "save_state"]
 
@@ -25,8 +26,9 @@ _KNOWN = {
     "parameters": 1,
     "clock": 1,
     "connectivity": 1,
+    "tension": 1,
 }
-_NEEDED = sorted(_KNOWN.keys() - {"connectivity"})
+_NEEDED = sorted(_KNOWN.keys() - {"connectivity", "tension"})
 
 
 def save_state(context, path) -> None:
@@ -34,8 +36,9 @@ def save_state(context, path) -> None:
 
     `load_state` restores them to the last bit of what OpenMM hands out: of all digits on the
     platforms Reference, CPU and Helfrich, and elsewhere in the precision of the platform. What
-    bond flips have come to, with their random numbers and their statistics, is among it; the
-    random numbers of integrators are not (checkpoints of platform Helfrich have them too).
+    bond flips and a `MonteCarloMembraneTension` have come to, with their random numbers and their
+    statistics, is among it; the random numbers of integrators are not (checkpoints of platform
+    Helfrich have them too).
 
     Parameters
     ----------
@@ -69,6 +72,8 @@ def save_state(context, path) -> None:
     blocks["clock"] = _blocks.Block(clock)
     for number, force in enumerate(surfaces_of(context)):
         blocks[f"connectivity/{number}"] = _blocks.Block(force._saveConnectivity(context))
+    for number, force in enumerate(_tensions_of(context)):
+        blocks[f"tension/{number}"] = _blocks.Block(force._saveState(context))
     _writing.write_whole(path, _blocks.pack(_KIND, blocks))
 
 
@@ -105,10 +110,19 @@ def load_state(context, path) -> None:
     values = {key: block.value for key, block in blocks.items()}
     parameters = {key: float.fromhex(text) for key, text in values["parameters"].items()}
     surfaces = surfaces_of(context)
-    connectivity = _in_order(values)
+    connectivity = _in_order(values, "connectivity")
+    tensions, movers = _in_order(values, "tension"), _tensions_of(context)
+    if tensions and len(tensions) != len(movers):
+        raise ValueError(
+            f"load_state: {name} has {len(tensions)} MonteCarloMembraneTension, but the Context "
+            f"has {len(movers)}"
+        )
     _check(context, name, values["positions"], parameters, surfaces, connectivity)
     # First what may be refused.
     _restore(context, surfaces, connectivity)
+    # Files from before there was a mover leave it as it is.
+    for force, saved in zip(movers, tensions, strict=False):
+        force._restoreState(context, saved)
     present = context.getParameters()
     for key, value in parameters.items():
         # Connectivity has set its own.
@@ -135,10 +149,16 @@ def _restore(context, surfaces: list, connectivity: list[bytes]) -> None:
         raise
 
 
-def _in_order(values: dict) -> list[bytes]:
-    """What was saved of the surfaces, in their order."""
+def _tensions_of(context) -> list[MonteCarloMembraneTension]:
+    """What changes the box of a Context, in its order."""
+    cls = MonteCarloMembraneTension
+    return [cls.cast(force) for force in context.getSystem().getForces() if cls.isinstance(force)]
+
+
+def _in_order(values: dict, block: str) -> list[bytes]:
+    """What was saved of surfaces, or of movers, in their order."""
     found = []
-    while (key := f"connectivity/{len(found)}") in values:
+    while (key := f"{block}/{len(found)}") in values:
         found.append(values[key])
     return found
 

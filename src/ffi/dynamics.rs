@@ -52,6 +52,19 @@ pub extern "C" fn Helfrich_Dynamics_usesTeam(num_particles: i64) -> c_int {
     c_int::from(num_particles >= PARALLEL_FROM as i64)
 }
 
+/// The 128 random bits of a number, for a key.
+///
+/// # Safety
+/// `key` and `bits` must hold two values.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Random_bits(
+    key: *const [u32; 2],
+    number: u64,
+    bits: *mut [u64; 2],
+) {
+    unsafe { bits.write(random::bits(*key, number)) };
+}
+
 /// Prepare time steps of particles with these masses.
 ///
 /// # Safety

@@ -71,6 +71,15 @@ pub unsafe extern "C" fn Helfrich_Membrane_edges(membrane: *const Membrane, part
     }
 }
 
+/// Whether a membrane spans the periodic box in which it was evaluated last: 1 or 0.
+///
+/// # Safety
+/// `membrane` must be alive.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Membrane_spans(membrane: *const Membrane) -> c_int {
+    c_int::from(!unsafe { &*membrane }.mesh().images().is_empty())
+}
+
 /// The periodic box of some vectors; null for none.
 ///
 /// # Safety

@@ -7,6 +7,7 @@
 #include "openmm-helfrich/DihedralForce.h"
 #include "openmm-helfrich/EnclosedVolumeForce.h"
 #include "openmm-helfrich/MonteCarloBondFlip.h"
+#include "openmm-helfrich/MonteCarloMembraneTension.h"
 #include "openmm-helfrich/PlaquetteAreaForce.h"
 #include "openmm-helfrich/SurfaceAreaForce.h"
 #include "openmm-helfrich/TriangleAreaForce.h"

@@ -172,6 +172,38 @@ extern int Helfrich_MonteCarloBondFlip_updateParametersInContext(OpenMM_Force* f
 extern int Helfrich_MonteCarloBondFlip_getStatistic(OpenMM_Force* force, OpenMM_Context* context, const char* name,
                                                     double* value);
 
+/** Which edges of the box a MonteCarloMembraneTension changes. */
+typedef enum {
+    Helfrich_MonteCarloMembraneTension_XYIsotropic = 0,
+    Helfrich_MonteCarloMembraneTension_XYIndependent = 1,
+    Helfrich_MonteCarloMembraneTension_XYConstantArea = 2,
+    Helfrich_MonteCarloMembraneTension_ZOnly = 3
+} Helfrich_MonteCarloMembraneTension_Axes;
+
+/* Constant tension. Helfrich_MembraneForce_destroy() is for this class too. Getters return NaN or -1 for failure. */
+extern OpenMM_Force* Helfrich_MonteCarloMembraneTension_create(double temperature, double tension, int frequency,
+                                                               int axes, double pullingForce);
+extern double Helfrich_MonteCarloMembraneTension_getDefaultTemperature(OpenMM_Force* force);
+extern int Helfrich_MonteCarloMembraneTension_setDefaultTemperature(OpenMM_Force* force, double defaultTemperature);
+extern double Helfrich_MonteCarloMembraneTension_getDefaultTension(OpenMM_Force* force);
+extern int Helfrich_MonteCarloMembraneTension_setDefaultTension(OpenMM_Force* force, double defaultTension);
+extern double Helfrich_MonteCarloMembraneTension_getDefaultPullingForce(OpenMM_Force* force);
+extern int Helfrich_MonteCarloMembraneTension_setDefaultPullingForce(OpenMM_Force* force, double defaultPullingForce);
+extern int Helfrich_MonteCarloMembraneTension_getFrequency(OpenMM_Force* force);
+extern int Helfrich_MonteCarloMembraneTension_setFrequency(OpenMM_Force* force, int frequency);
+extern int Helfrich_MonteCarloMembraneTension_getAxes(OpenMM_Force* force);
+extern int Helfrich_MonteCarloMembraneTension_setAxes(OpenMM_Force* force, int axes);
+extern int Helfrich_MonteCarloMembraneTension_getScaleMoleculesAsRigid(OpenMM_Force* force);
+extern int Helfrich_MonteCarloMembraneTension_setScaleMoleculesAsRigid(OpenMM_Force* force, int scaleMoleculesAsRigid);
+extern int Helfrich_MonteCarloMembraneTension_getAdaptiveMoves(OpenMM_Force* force);
+extern int Helfrich_MonteCarloMembraneTension_setAdaptiveMoves(OpenMM_Force* force, int adaptiveMoves);
+extern int Helfrich_MonteCarloMembraneTension_getRandomNumberSeed(OpenMM_Force* force);
+extern int Helfrich_MonteCarloMembraneTension_setRandomNumberSeed(OpenMM_Force* force, int randomNumberSeed);
+extern int Helfrich_MonteCarloMembraneTension_updateParametersInContext(OpenMM_Force* force, OpenMM_Context* context);
+/** `name` is "attempts", "accepted" or another that MonteCarloMembraneTension.h tells. */
+extern int Helfrich_MonteCarloMembraneTension_getStatistic(OpenMM_Force* force, OpenMM_Context* context,
+                                                           const char* name, double* value);
+
 #ifdef __cplusplus
 }
 #endif

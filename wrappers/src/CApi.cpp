@@ -38,8 +38,23 @@ MonteCarloBondFlip& asMover(void* force) {
     return as<MonteCarloBondFlip>("MonteCarloBondFlip", force);
 }
 
+MonteCarloMembraneTension& asTension(void* force) {
+    return as<MonteCarloMembraneTension>("MonteCarloMembraneTension", force);
+}
+
 OpenMM::Context& asContext(void* context) {
     return *static_cast<OpenMM::Context*>(context);
+}
+
+/** One of a mover's statistics. */
+double pick(const string& mover, const std::map<string, double>& statistics, const string& name) {
+    auto found = statistics.find(name);
+    if (found != statistics.end())
+        return found->second;
+    string known;
+    for (const auto& entry : statistics)
+        known += (known.empty() ? "" : ", ") + entry.first;
+    throw OpenMMException(mover + ": there is no statistic \"" + name + "\"; known are: " + known);
 }
 
 /** Run something that may throw; C gets a status and a message. */
@@ -187,37 +202,53 @@ int helfrich_shim_updateMover(void* force, void* context) {
 }
 
 int helfrich_shim_getStatistic(void* force, void* context, const char* name, double* value) {
-    return guarded([&] {
-        std::map<string, double> statistics = asMover(force).getStatistics(asContext(context));
-        auto found = statistics.find(name);
-        if (found == statistics.end()) {
-            string known;
-            for (const auto& entry : statistics)
-                known += (known.empty() ? "" : ", ") + entry.first;
-            throw OpenMMException("MonteCarloBondFlip: there is no statistic \"" + string(name) +
-                                  "\"; known are: " + known);
-        }
-        *value = found->second;
+    return guarded(
+        [&] { *value = pick("MonteCarloBondFlip", asMover(force).getStatistics(asContext(context)), name); });
+}
+
+void* helfrich_shim_createTension(double temperature, double tension, int frequency, int axes, double pullingForce) {
+    OpenMM::Force* created = nullptr;
+    guarded([&] {
+        created = new MonteCarloMembraneTension(temperature, tension, frequency, (MonteCarloMembraneTension::Axes) axes,
+                                                pullingForce);
     });
+    return created;
+}
+
+int helfrich_shim_updateTension(void* force, void* context) {
+    return guarded([&] { asTension(force).updateParametersInContext(asContext(context)); });
+}
+
+int helfrich_shim_getTensionStatistic(void* force, void* context, const char* name, double* value) {
+    return guarded(
+        [&] { *value = pick("MonteCarloMembraneTension", asTension(force).getStatistics(asContext(context)), name); });
 }
 
 // A getter, which gives a value that cannot be if the force is of another class, and a setter.
-#define MOVER_VALUE(Type, Name, Nothing, Cast)                                                                         \
-    Type helfrich_shim_getMover##Name(void* force) {                                                                   \
+#define MOVER_VALUE(Mover, Type, Name, Nothing, Cast)                                                                  \
+    Type helfrich_shim_get##Mover##Name(void* force) {                                                                 \
         Type value = Nothing;                                                                                          \
-        guarded([&] { value = asMover(force).get##Name(); });                                                          \
+        guarded([&] { value = as##Mover(force).get##Name(); });                                                        \
         return value;                                                                                                  \
     }                                                                                                                  \
-    int helfrich_shim_setMover##Name(void* force, Type value) {                                                        \
-        return guarded([&] { asMover(force).set##Name((Cast) value); });                                               \
+    int helfrich_shim_set##Mover##Name(void* force, Type value) {                                                      \
+        return guarded([&] { as##Mover(force).set##Name((Cast) value); });                                             \
     }
-MOVER_VALUE(double, DefaultTemperature, std::nan(""), double)
-MOVER_VALUE(int, Frequency, -1, int)
-MOVER_VALUE(double, AttemptsPerEdge, std::nan(""), double)
-MOVER_VALUE(int, MinDegree, -1, int)
-MOVER_VALUE(int, MaxDegree, -1, int)
-MOVER_VALUE(double, MaxEdgeLength, std::nan(""), double)
-MOVER_VALUE(int, Ensemble, -1, MonteCarloBondFlip::Ensemble)
-MOVER_VALUE(int, RandomNumberSeed, -1, int)
+MOVER_VALUE(Mover, double, DefaultTemperature, std::nan(""), double)
+MOVER_VALUE(Mover, int, Frequency, -1, int)
+MOVER_VALUE(Mover, double, AttemptsPerEdge, std::nan(""), double)
+MOVER_VALUE(Mover, int, MinDegree, -1, int)
+MOVER_VALUE(Mover, int, MaxDegree, -1, int)
+MOVER_VALUE(Mover, double, MaxEdgeLength, std::nan(""), double)
+MOVER_VALUE(Mover, int, Ensemble, -1, MonteCarloBondFlip::Ensemble)
+MOVER_VALUE(Mover, int, RandomNumberSeed, -1, int)
+MOVER_VALUE(Tension, double, DefaultTemperature, std::nan(""), double)
+MOVER_VALUE(Tension, double, DefaultTension, std::nan(""), double)
+MOVER_VALUE(Tension, double, DefaultPullingForce, std::nan(""), double)
+MOVER_VALUE(Tension, int, Frequency, -1, int)
+MOVER_VALUE(Tension, int, Axes, -1, MonteCarloMembraneTension::Axes)
+MOVER_VALUE(Tension, int, ScaleMoleculesAsRigid, -1, bool)
+MOVER_VALUE(Tension, int, AdaptiveMoves, -1, int)
+MOVER_VALUE(Tension, int, RandomNumberSeed, -1, int)
 #undef MOVER_VALUE
 }

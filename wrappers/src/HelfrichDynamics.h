@@ -44,6 +44,8 @@ int Helfrich_Dynamics_langevinMiddle(const HelfrichDynamics* dynamics, HelfrichT
 int Helfrich_Dynamics_brownian(const HelfrichDynamics* dynamics, HelfrichTeam* team,
                                const HelfrichParticleArrays* particles, HelfrichStream* stream, double step,
                                double friction, double kT);
+/** The 128 random bits of a number, for a key: `bits` gets two values. */
+void Helfrich_Random_bits(const uint32_t* key, uint64_t number, uint64_t* bits);
 int Helfrich_Dynamics_clear(HelfrichTeam* team, int64_t numParticles, double* forces);
 }
 

@@ -1,4 +1,5 @@
 #include "HelfrichKernels.h"
+#include "MonteCarloMembraneTensionImpl.h"
 #include "SharedMembrane.h"
 
 #include <openmm/BrownianIntegrator.h>
@@ -26,6 +27,8 @@ namespace {
 const uint32_t CHECKPOINT_MARK = 0x31464c48;
 /** or these and then the connectivity of membranes that is not the System's, or may change. */
 const uint32_t CONNECTIVITY_MARK = 0x32464c48;
+/** or these, connectivity or none, and then what each MonteCarloMembraneTension has come to. */
+const uint32_t TENSION_MARK = 0x33464c48;
 
 Kernel createReferenceKernel(const string& name, const Platform& platform, ContextImpl& context) {
     return Kernel(ReferenceKernelFactory().createKernelImpl(name, platform, context));
@@ -189,17 +192,24 @@ void HelfrichUpdateStateDataKernel::setPeriodicBoxVectors(ContextImpl& context, 
 void HelfrichUpdateStateDataKernel::createCheckpoint(ContextImpl& context, std::ostream& stream) {
     reference.createCheckpoint(context, stream);
     vector<string> connectivity = SharedMembrane::saveAll(context);
-    write(stream, connectivity.empty() ? CHECKPOINT_MARK : CONNECTIVITY_MARK);
+    vector<TensionState> tensions = MonteCarloMembraneTensionImpl::saveAll(context);
+    uint32_t mark = !tensions.empty() ? TENSION_MARK : !connectivity.empty() ? CONNECTIVITY_MARK : CHECKPOINT_MARK;
+    write(stream, mark);
     write(stream, (uint32_t) data.streams.size());
     for (const HelfrichStream& random : data.streams)
         write(stream, random);
-    if (connectivity.empty())
+    if (mark == CHECKPOINT_MARK)
         return;
     write(stream, (uint32_t) connectivity.size());
     for (const string& saved : connectivity) {
         write(stream, (uint64_t) saved.size());
         stream.write(saved.data(), (std::streamsize) saved.size());
     }
+    if (mark == CONNECTIVITY_MARK)
+        return;
+    write(stream, (uint32_t) tensions.size());
+    for (const TensionState& state : tensions)
+        write(stream, state);
 }
 
 void HelfrichUpdateStateDataKernel::loadCheckpoint(ContextImpl& context, std::istream& stream) {
@@ -219,7 +229,7 @@ void HelfrichUpdateStateDataKernel::loadCheckpoint(ContextImpl& context, std::is
 
 void HelfrichUpdateStateDataKernel::loadOurs(ContextImpl& context, std::istream& stream) {
     auto mark = read<uint32_t>(stream);
-    if (mark != CHECKPOINT_MARK && mark != CONNECTIVITY_MARK)
+    if (mark != CHECKPOINT_MARK && mark != CONNECTIVITY_MARK && mark != TENSION_MARK)
         throw OpenMMException("loadCheckpoint: the checkpoint has no random numbers of platform Helfrich; it is "
                               "damaged, or of another version of openmm-helfrich");
     // As with other platforms, a checkpoint may go on with another integrator; its streams stay as they are.
@@ -230,10 +240,15 @@ void HelfrichUpdateStateDataKernel::loadOurs(ContextImpl& context, std::istream&
             data.streams[i] = random;
     }
     vector<string> connectivity;
-    if (mark == CONNECTIVITY_MARK)
+    if (mark != CHECKPOINT_MARK)
         for (uint32_t left = read<uint32_t>(stream); left > 0; left--)
             connectivity.push_back(readBytes(stream, read<uint64_t>(stream)));
+    vector<TensionState> tensions;
+    if (mark == TENSION_MARK)
+        for (uint32_t left = read<uint32_t>(stream); left > 0; left--)
+            tensions.push_back(read<TensionState>(stream));
     SharedMembrane::restoreAll("loadCheckpoint", context, connectivity);
+    MonteCarloMembraneTensionImpl::restoreAll(context, tensions);
 }
 
 TimeStep::TimeStep(const string& name, const Platform& platform, ContextImpl& context)

@@ -1,5 +1,7 @@
 #include "MonteCarloBondFlipImpl.h"
 
+#include "Integrators.h"
+
 #include <openmm/CompoundIntegrator.h>
 #include <openmm/CustomCVForce.h>
 #include <openmm/CustomIntegrator.h>
@@ -16,7 +18,6 @@
 #include <cmath>
 #include <limits>
 #include <set>
-#include <typeinfo>
 
 using namespace HelfrichPlugin;
 using namespace OpenMM;
@@ -69,18 +70,10 @@ void refuseContained(const MonteCarloBondFlip& owner, ContextImpl& context) {
 
 /** Refuse an integrator of many copies of the System, which have their own positions but would share connectivity. */
 void refuseCopies(const MonteCarloBondFlip& owner, const Integrator& integrator) {
-    // Its plugin is not linked; the name of a class is part of what compilers call its type.
-    if (string(typeid(integrator).name()).find("RPMDIntegrator") != string::npos)
+    if (isOfCopies(integrator))
         throw OpenMMException(owner.getTypeName() +
                               ": the beads of an RPMDIntegrator would flip the bonds that they share, each by its own "
                               "energy, which is no ensemble; choose another integrator, or leave out the flips");
-}
-
-/** The integrator that makes the present step. */
-const Integrator& findIntegrator(ContextImpl& context) {
-    const Integrator& integrator = context.getIntegrator();
-    auto* compound = dynamic_cast<const CompoundIntegrator*>(&integrator);
-    return compound == nullptr ? integrator : compound->getIntegrator(compound->getCurrentIntegrator());
 }
 
 /** Whether an integrator keeps velocities of half a step ago and gives them the kick of a whole step at once. */

@@ -41,29 +41,20 @@ void MonteCarloBondFlipProxy::serialize(const void* object, SerializationNode& n
 void* MonteCarloBondFlipProxy::deserialize(const SerializationNode& node) const {
     std::unique_ptr<MonteCarloBondFlip> force;
     within(NAME, node, [&] {
-        int version = integer(NAME, node, "version");
-        if (version != VERSION)
-            throw OpenMMException(about(NAME, node) + "has version " + std::to_string(version) + ", but only " +
-                                  std::to_string(VERSION) +
-                                  " is known; it was written by another release of openmm-helfrich");
+        checkVersion(NAME, node, VERSION);
         allow(NAME, node,
               {"type", "version", "forceGroup", "name", "temperature", "frequency", "attemptsPerEdge", "minDegree",
                "maxDegree", "maxEdgeLength", "ensemble", "randomSeed"},
               {"Triangles"});
-        // What has a default may be left out, as in OpenMM's own XML.
-        auto integerOr = [&](const string& name, int value) {
-            return node.hasProperty(name) ? integer(NAME, node, name) : value;
-        };
-        auto numberOr = [&](const string& name, double value) {
-            return node.hasProperty(name) ? number(NAME, node, name) : value;
-        };
         const MonteCarloBondFlip defaults({}, 1.0);
-        force.reset(new MonteCarloBondFlip(
-            {}, number(NAME, node, "temperature"), integerOr("frequency", defaults.getFrequency()),
-            numberOr("attemptsPerEdge", defaults.getAttemptsPerEdge()), integerOr("minDegree", defaults.getMinDegree()),
-            integerOr("maxDegree", defaults.getMaxDegree()), numberOr("maxEdgeLength", defaults.getMaxEdgeLength())));
-        force->setRandomNumberSeed(integerOr("randomSeed", defaults.getRandomNumberSeed()));
-        force->setForceGroup(integerOr("forceGroup", defaults.getForceGroup()));
+        force.reset(new MonteCarloBondFlip({}, number(NAME, node, "temperature"),
+                                           integerOr(NAME, node, "frequency", defaults.getFrequency()),
+                                           numberOr(NAME, node, "attemptsPerEdge", defaults.getAttemptsPerEdge()),
+                                           integerOr(NAME, node, "minDegree", defaults.getMinDegree()),
+                                           integerOr(NAME, node, "maxDegree", defaults.getMaxDegree()),
+                                           numberOr(NAME, node, "maxEdgeLength", defaults.getMaxEdgeLength())));
+        force->setRandomNumberSeed(integerOr(NAME, node, "randomSeed", defaults.getRandomNumberSeed()));
+        force->setForceGroup(integerOr(NAME, node, "forceGroup", defaults.getForceGroup()));
         if (node.hasProperty("name"))
             force->setName(text(NAME, node, "name"));
         string ensemble = node.hasProperty("ensemble") ? text(NAME, node, "ensemble") : ENSEMBLES[0];

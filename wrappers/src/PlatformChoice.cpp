@@ -1,4 +1,5 @@
 #include "PlatformChoice.h"
+#include "openmm-helfrich/MonteCarloMembraneTension.h"
 #include "openmm-helfrich/TriangulatedForce.h"
 
 #include <OpenMM.h>
@@ -84,6 +85,7 @@ const CheapForce CHEAP_FORCES[] = {
     {typeid(MonteCarloAnisotropicBarostat), countNothing},
     {typeid(MonteCarloMembraneBarostat), countNothing},
     {typeid(MonteCarloFlexibleBarostat), countNothing},
+    {typeid(MonteCarloMembraneTension), countNothing},
     // It is computed in Python, from positions in the processor's memory, on every platform.
     {typeid(PythonForce), countNothing},
 };

@@ -4,6 +4,8 @@
 #include "MembraneForceProxy.h"
 #include "MonteCarloBondFlipImpl.h"
 #include "MonteCarloBondFlipProxy.h"
+#include "MonteCarloMembraneTensionImpl.h"
+#include "MonteCarloMembraneTensionProxy.h"
 #include "PlatformChoice.h"
 
 #include <openmm/Platform.h>
@@ -48,6 +50,7 @@ int helfrich_shim_registerSerialization() {
     HELFRICH_FORCES(REGISTER)
 #undef REGISTER
     OpenMM::SerializationProxy::registerProxy(typeid(MonteCarloBondFlip), new MonteCarloBondFlipProxy());
+    OpenMM::SerializationProxy::registerProxy(typeid(MonteCarloMembraneTension), new MonteCarloMembraneTensionProxy());
     return 0;
 }
 
@@ -92,6 +95,8 @@ void* helfrich_shim_createImpl(const void* force) {
         OpenMM::ForceImpl* impl = nullptr;
         if (auto* mover = dynamic_cast<const MonteCarloBondFlip*>(&owner))
             impl = new MonteCarloBondFlipImpl(*mover);
+        else if (auto* tension = dynamic_cast<const MonteCarloMembraneTension*>(&owner))
+            impl = new MonteCarloMembraneTensionImpl(*tension);
         else
             impl = new MembraneForceImpl(dynamic_cast<const MembraneForce&>(owner));
         return impl;

@@ -1,5 +1,6 @@
 #include "SharedMembrane.h"
 
+#include "Barostats.h"
 #include "HelfrichPlatform.h"
 #include "MembraneForceImpl.h"
 #include "MonteCarloBondFlipImpl.h"
@@ -67,7 +68,7 @@ void SharedMembrane::refuseOthers(const string& subject, const SharedMembrane& o
 }
 
 SharedMembrane::SharedMembrane(const string& subject, ContextImpl& context, const vector<int>& triangles)
-    : triangles(triangles), core(nullptr), mover(nullptr) {
+    : triangles(triangles), core(nullptr), mover(nullptr), spans(false) {
     check(Helfrich_Membrane_create(subject.c_str(), triangles.data(), (int64_t) triangles.size() / 3,
                                    context.getSystem().getNumParticles(), &core));
     if (int threads = helfrichThreads(context))
@@ -165,6 +166,10 @@ double SharedMembrane::evaluate(const string& subject, ContextImpl& context, int
                                      findBox(context),
                                      includeEnergy || wantsDerivatives ? contributions.data() : nullptr,
                                      forces == nullptr ? nullptr : reinterpret_cast<double*>(forces->data())));
+    if (!spans && Helfrich_Membrane_spans(core)) {
+        refuseTearing(subject, context.getSystem());
+        spans = true;
+    }
     double energy = 0;
     for (size_t i = 0; i < active.size(); i++) {
         energy += contributions[i].energy;

@@ -202,6 +202,8 @@ private:
     std::vector<MembraneForceImpl*> members;
     /** What flips edges, or null. */
     MonteCarloBondFlipImpl* mover;
+    /** Whether it has been found to span the box, and no barostat tears it. */
+    bool spans;
     /** What waits to be taken up, or null. */
     std::unique_ptr<Left> inherited;
     /** OpenCL and CUDA evaluate on a thread of their own. */

@@ -68,6 +68,26 @@ inline int integer(const std::string& force, const OpenMM::SerializationNode& no
     return (int) result;
 }
 
+/** What has a default may be left out, as in OpenMM's own XML. */
+inline double numberOr(const std::string& force, const OpenMM::SerializationNode& node, const std::string& property,
+                       double value) {
+    return node.hasProperty(property) ? number(force, node, property) : value;
+}
+
+inline int integerOr(const std::string& force, const OpenMM::SerializationNode& node, const std::string& property,
+                     int value) {
+    return node.hasProperty(property) ? integer(force, node, property) : value;
+}
+
+/** Refuse what another release has written. */
+inline void checkVersion(const std::string& force, const OpenMM::SerializationNode& node, int known) {
+    int version = integer(force, node, "version");
+    if (version != known)
+        throw OpenMM::OpenMMException(about(force, node) + "has version " + std::to_string(version) + ", but only " +
+                                      std::to_string(known) +
+                                      " is known; it was written by another release of openmm-helfrich");
+}
+
 inline bool boolean(const std::string& force, const OpenMM::SerializationNode& node, const std::string& property) {
     std::string value = text(force, node, property);
     if (value != "0" && value != "1" && value != "true" && value != "false")

@@ -23,12 +23,21 @@ public:
     virtual std::vector<double> getVirial(OpenMM::ContextImpl& context, int groups) const = 0;
 };
 
-/** What MonteCarloBondFlip asks of its implementation besides. */
+/** What movers ask of their implementations. */
 class StatisticsImpl {
 public:
     virtual ~StatisticsImpl() {
     }
     virtual std::map<std::string, double> getStatistics(OpenMM::ContextImpl& context) const = 0;
+};
+
+/** What movers ask of their implementations that keep what they have come to. */
+class StateImpl {
+public:
+    virtual ~StateImpl() {
+    }
+    virtual std::string saveState() const = 0;
+    virtual void restoreState(const std::string& saved) = 0;
 };
 
 } // namespace HelfrichPlugin

@@ -80,6 +80,8 @@ int Helfrich_Membrane_choose(const char* subject, HelfrichMembrane* membrane, co
 int Helfrich_checkBackend(const char* subject, const char* backend);
 int64_t Helfrich_Membrane_numEdges(const HelfrichMembrane* membrane);
 void Helfrich_Membrane_edges(const HelfrichMembrane* membrane, int* particles);
+/** Whether it spans the periodic box in which it was evaluated last: 1 or 0. */
+int Helfrich_Membrane_spans(const HelfrichMembrane* membrane);
 int Helfrich_Membrane_checkTerm(const char* subject, const HelfrichMembrane* membrane, const HelfrichTerm* term);
 void Helfrich_Membrane_setThreads(HelfrichMembrane* membrane, int threads);
 /** `box` has the three box vectors, or is null where the surface is not in a periodic box. */
