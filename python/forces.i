@@ -44,6 +44,8 @@ using namespace HelfrichPlugin;
 %ignore HelfrichPlugin::TriangulatedForce::saveConnectivity;
 %ignore HelfrichPlugin::TriangulatedForce::restoreConnectivity;
 %ignore HelfrichPlugin::MonteCarloBondFlip::getStatistics;
+%ignore HelfrichPlugin::MembraneForce::getParticles;
+%ignore HelfrichPlugin::ParticleSurfaceForce::setParticles;
 %ignore HelfrichPlugin::MembraneForce::setParameterValue;
 %rename(_setElementValues) HelfrichPlugin::MembraneForce::setElementValues;
 %nodefaultctor HelfrichPlugin::TriangulatedForce;
@@ -78,6 +80,17 @@ static PyObject* toBytes(const void* data, size_t size) {
     }
     void _restoreConnectivity(OpenMM::Context& context, const char* data, size_t size) {
         $self->restoreConnectivity(context, std::string(data, size));
+    }
+}
+
+%extend HelfrichPlugin::ParticleSurfaceForce {
+    void _setParticleBuffer(const char* data, size_t size) {
+        const int* indices = reinterpret_cast<const int*>(data);
+        $self->setParticles(std::vector<int>(indices, indices + size / sizeof(int)));
+    }
+    PyObject* _particleBuffer() {
+        const std::vector<int>& indices = $self->getParticles();
+        return toBytes(indices.data(), indices.size() * sizeof(int));
     }
 }
 

@@ -85,6 +85,12 @@ pub enum Error {
     )]
     NonFiniteEnergy { force: &'static str, energy: f64 },
 
+    /// Two things that repel each other are in one place.
+    #[error(
+        "the energy of {force} is not finite: a vertex or particle lies on a triangle that it should keep away from, or a triangle cuts a particle; start from positions that do not touch, or use a smaller time step"
+    )]
+    Touching { force: &'static str },
+
     /// A scalar outside its domain.
     #[error("{parameter} must be {domain}, got {value}")]
     Parameter { parameter: String, domain: &'static str, value: f64 },
@@ -141,7 +147,7 @@ impl Error {
     /// together report in the name of one of them.
     pub fn class(&self) -> Option<&'static str> {
         match self {
-            Self::InsideOut { force, .. } => Some(force),
+            Self::InsideOut { force, .. } | Self::Touching { force } => Some(force),
             _ => None,
         }
     }

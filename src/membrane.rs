@@ -1,15 +1,17 @@
 //! A mesh as one OpenMM Context sees it: shared by all its forces on the same triangles.
 
 use crate::backend::Choice;
+use crate::contact::{Contacts, is_contact};
 use crate::error::{Error, Result};
 use crate::evaluator::{ChosenEvaluator, Present};
 use crate::mesh::numbering::breadth_first;
 use crate::mesh::orientation::is_inside_out;
 use crate::mesh::{Topology, Triangulation};
 use crate::moves::local::LocalEnergy;
-use crate::moves::{FlipRules, FlipState, flips};
+use crate::moves::{FlipRules, FlipState, Touched, flips};
 use crate::potentials::{Contribution, Element, Term};
 use crate::remembered::Remembered;
+use smallvec::SmallVec;
 use std::sync::atomic::{AtomicI64, Ordering};
 
 /// How many membranes there are, which tells whether forces share them and whether any are left over.
@@ -30,6 +32,7 @@ pub struct Membrane {
     initial_fingerprint: u64,
     evaluator: ChosenEvaluator,
     local: LocalEnergy,
+    contacts: Contacts,
     /// The forces after the last flips, which the time step asks for next.
     remembered: Remembered,
     /// The forces before them; kept for its memory.
@@ -37,6 +40,17 @@ pub struct Membrane {
     num_particles: usize,
     /// Whether the surface has been looked at and is not inside out.
     has_outside: bool,
+}
+
+/// A membrane that has all triangles of another one among its own, and the terms of contacts on it: the other one's flips
+/// count its energy, and it makes them, too.
+pub struct Follower<'a, 't> {
+    /// The membrane.
+    pub membrane: &'a mut Membrane,
+    /// The place of the other one's first triangle.
+    pub first_triangle: usize,
+    /// Terms of contacts.
+    pub terms: &'a [Term<'t>],
 }
 
 /// What decides the bits of evaluations beside positions: the connectivity, and in which order sums are formed.
@@ -67,6 +81,7 @@ impl Membrane {
             flips_of_order: 0,
             evaluator,
             local,
+            contacts: Contacts::default(),
             remembered: Remembered::default(),
             before: Vec::new(),
             num_particles,
@@ -77,6 +92,7 @@ impl Membrane {
     /// Let so many threads share evaluations, where that turns out faster; 0 for as many as there are.
     pub fn set_threads(&mut self, threads: usize) {
         self.evaluator.set_threads(threads);
+        self.contacts.set_threads(threads);
     }
 
     /// The mesh as it is now.
@@ -153,7 +169,25 @@ impl Membrane {
         rules: &FlipRules,
         attempts: u64,
         state: &mut FlipState,
+        force_change: Option<&mut [f64]>,
+    ) -> Result<u64> {
+        self.flip_together(terms, positions, rules, attempts, state, force_change, &mut [])
+    }
+
+    /// The same with membranes that follow: their energy counts, and they make the same flips.
+    ///
+    /// # Errors
+    /// Those of [`Self::flip`].
+    #[allow(clippy::too_many_arguments, reason = "they are those of `flip` and one more")]
+    pub fn flip_together(
+        &mut self,
+        terms: &[Term],
+        positions: &[f64],
+        rules: &FlipRules,
+        attempts: u64,
+        state: &mut FlipState,
         mut force_change: Option<&mut [f64]>,
+        followers: &mut [Follower],
     ) -> Result<u64> {
         if positions.len() != 3 * self.num_particles {
             return Err(Error::Contract(format!(
@@ -174,7 +208,29 @@ impl Membrane {
         self.local.fill(terms, |survey| {
             self.evaluator.survey(present, terms, positions, before, survey)
         })?;
-        let made = flips::attempt(&mut self.mesh, &mut self.local, terms, rules, attempts, state);
+        let wants_forces = force_change.is_some();
+        let before = wants_forces.then_some(&mut self.before[..]);
+        let mut touched: SmallVec<[Touched; 2]> = SmallVec::new();
+        if terms.iter().any(is_contact) {
+            let contacts = &mut self.contacts;
+            contacts.evaluate(&self.mesh, None, terms, positions, &mut [], before)?;
+            contacts.prepare_flips(&self.mesh, None, terms, positions)?;
+            touched.push(Touched { contacts, terms, mesh: None, first_half: 0 });
+        }
+        for follower in &mut *followers {
+            let Follower { membrane, first_triangle, terms } = follower;
+            let (contacts, mesh) = (&mut membrane.contacts, &mut membrane.mesh);
+            if wants_forces {
+                let before = Some(&mut self.before[..]);
+                contacts.evaluate(mesh, None, terms, positions, &mut [], before)?;
+            }
+            contacts.prepare_flips(mesh, None, terms, positions)?;
+            let first_half = 3 * *first_triangle as u32;
+            touched.push(Touched { contacts, terms, mesh: Some(mesh), first_half });
+        }
+        let (mesh, local) = (&mut self.mesh, &mut self.local);
+        let made = flips::attempt(mesh, local, terms, rules, attempts, state, &mut touched);
+        drop(touched);
         if made > 0 {
             self.flips_of_order += made;
             // By then every vertex has moved on by a few neighbours.
@@ -183,8 +239,16 @@ impl Membrane {
             }
             self.evaluator
                 .connectivity_changed(Present { mesh: &self.mesh, order: &self.order })?;
+            for Follower { membrane, .. } in &mut *followers {
+                let Membrane { mesh, order, evaluator, .. } = &mut **membrane;
+                evaluator.connectivity_changed(Present { mesh, order })?;
+            }
             if let Some(change) = &mut force_change {
                 self.compare_forces(terms, positions, change)?;
+                for Follower { membrane, terms, .. } in followers {
+                    let Membrane { mesh, contacts, .. } = &mut **membrane;
+                    contacts.evaluate(mesh, None, terms, positions, &mut [], Some(change))?;
+                }
             }
         }
         Ok(made)
@@ -199,7 +263,8 @@ impl Membrane {
     ) -> Result<()> {
         let present = Present { mesh: &self.mesh, order: &self.order };
         let after = self.remembered.fill(terms, positions, |forces| {
-            self.evaluator.evaluate(present, terms, positions, &mut [], Some(forces))
+            self.evaluator.evaluate(present, &others(terms), positions, &mut [], Some(&mut *forces))?;
+            self.contacts.evaluate(&self.mesh, None, terms, positions, &mut [], Some(forces))
         })?;
         for ((change, after), before) in change.iter_mut().zip(after).zip(&self.before) {
             *change = after - before;
@@ -249,8 +314,36 @@ impl Membrane {
         {
             return Ok(());
         }
-        let present = Present { mesh: &self.mesh, order: &self.order };
-        self.evaluator.evaluate(present, terms, positions, contributions, forces)
+        if !terms.iter().any(is_contact) {
+            let present = Present { mesh: &self.mesh, order: &self.order };
+            return self.evaluator.evaluate(present, terms, positions, contributions, forces);
+        }
+        self.evaluate_with_contacts(terms, positions, contributions, forces)
+    }
+
+    /// The same where some terms are of contacts, which evaluators know nothing of.
+    fn evaluate_with_contacts(
+        &mut self,
+        terms: &[Term],
+        positions: &[f64],
+        contributions: &mut [Contribution],
+        mut forces: Option<&mut [f64]>,
+    ) -> Result<()> {
+        let others = others(terms);
+        contributions.fill(Contribution::default());
+        if !others.is_empty() {
+            let wanted = if contributions.is_empty() { 0 } else { others.len() };
+            let mut sums: SmallVec<[Contribution; 8]> = SmallVec::new();
+            sums.resize(wanted, Contribution::default());
+            let present = Present { mesh: &self.mesh, order: &self.order };
+            let into = forces.as_deref_mut();
+            self.evaluator.evaluate(present, &others, positions, &mut sums, into)?;
+            let places = terms.iter().enumerate().filter(|(_, term)| !is_contact(term));
+            for ((place, _), sum) in places.zip(sums) {
+                contributions[place] = sum;
+            }
+        }
+        self.contacts.evaluate(&self.mesh, None, terms, positions, contributions, forces)
     }
 
     /// Refuse triangles that all run clockwise, as a slip in a mesh has them, before a volume below zero becomes a
@@ -273,6 +366,14 @@ impl Membrane {
         }
     }
 
+    /// Refuse particles of a term that do not exist, come twice or are vertices.
+    ///
+    /// # Errors
+    /// Names the particle.
+    pub fn check_particles(&self, term: &Term) -> Result<()> {
+        Contacts::check(&self.mesh, term, self.num_particles)
+    }
+
     /// Refuse a term with values outside their domains, or with more or fewer values for single
     /// elements than there are elements.
     ///
@@ -285,18 +386,24 @@ impl Membrane {
                 _ if field.is_empty() => continue,
                 Some(Element::Vertex) => (self.mesh.num_vertices(), "vertices"),
                 Some(Element::Triangle) => (self.mesh.triangles().len(), "triangles"),
+                Some(Element::Particle) => (term.particles.len(), "particles"),
                 None => (0, "elements that can have their own"),
             };
             if field.len() != count {
                 let name = parameter.name.to_string_lossy();
                 return Err(Error::Contract(format!(
-                    "{name} has {} values, but the mesh has {count} {elements}; give one for each",
+                    "{name} has {} values, but there are {count} {elements}; give one for each",
                     field.len()
                 )));
             }
         }
         Ok(())
     }
+}
+
+/// The terms that evaluators know.
+fn others<'t>(terms: &[Term<'t>]) -> SmallVec<[Term<'t>; 8]> {
+    terms.iter().filter(|term| !is_contact(term)).copied().collect()
 }
 
 impl Drop for Membrane {

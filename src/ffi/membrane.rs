@@ -70,7 +70,7 @@ pub unsafe extern "C" fn Helfrich_Membrane_edges(membrane: *const Membrane, part
 
 impl TermInput {
     /// # Safety
-    /// The fields must hold as many values as they say.
+    /// The fields and the particles must be as many as they say.
     pub(super) unsafe fn term(&self) -> Term<'_> {
         let field = |k: usize| unsafe { slice(self.fields[k], self.field_lengths[k] as usize) };
         Term {
@@ -79,6 +79,7 @@ impl TermInput {
             switches: self.switches,
             values: self.values,
             fields: std::array::from_fn(field),
+            particles: unsafe { slice(self.particles, self.num_particles as usize) },
             wants_derivatives: self.wants_derivatives != 0,
         }
     }
@@ -96,6 +97,20 @@ pub unsafe extern "C" fn Helfrich_Membrane_checkTerm(
 ) -> c_int {
     let subject = unsafe { text(subject) };
     guarded(subject, || unsafe { &*membrane }.check(&unsafe { (*term).term() }))
+}
+
+/// Refuse particles of a term that do not exist, come twice or are vertices.
+///
+/// # Safety
+/// As [`Helfrich_Membrane_checkTerm`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Membrane_checkParticles(
+    subject: *const c_char,
+    membrane: *const Membrane,
+    term: *const TermInput,
+) -> c_int {
+    let subject = unsafe { text(subject) };
+    guarded(subject, || unsafe { &*membrane }.check_particles(&unsafe { (*term).term() }))
 }
 
 /// Let so many threads share evaluations, where that turns out faster; 0 for as many as there are.

@@ -30,6 +30,8 @@ bitflags! {
         const NORMALS = 64;
         /// Wants the curvature vectors of the vertices, too.
         const CURVATURE_VECTORS = 128;
+        /// Adds energy of pairs that are near each other in space; `src/contact/` looks after them.
+        const CONTACTS = 512;
     }
 }
 
@@ -81,6 +83,11 @@ variants! {
 variants! {
     /// The forms of `DihedralForce`; `dihedral.rs` has their formulas.
     Form { Quartic, Cosine, Exp, SmoothExp, SmoothExp46 }
+}
+
+variants! {
+    /// The attractions of `ParticleSurfaceForce`; `particle_surface.rs` has their formulas.
+    Attraction { WCA, LennardJones, NineThree }
 }
 
 /// The switches of `BendingForce`; the k-th is bit k.
