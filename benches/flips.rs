@@ -69,13 +69,13 @@ fn main() {
             local.fill(mesh, &terms, None, survey).unwrap();
         };
         fill(&mesh, &mut local, &mut evaluator);
-        flips::attempt(&mut mesh, &mut local, &terms, &rules, 10 * edges, &mut state);
+        flips::attempt(&mut mesh, &mut local, &terms, &rules, 10 * edges, &mut state, &mut []);
         let runs = (200_000 / count).clamp(3, 50);
         evaluator.lay_out(&mesh, &order);
         let begin = shortest(runs, || timed(|| fill(&mesh, &mut local, &mut evaluator)));
         let before = state;
         let attempt = shortest(runs, || {
-            timed(|| flips::attempt(&mut mesh, &mut local, &terms, &rules, edges, &mut state))
+            timed(|| flips::attempt(&mut mesh, &mut local, &terms, &rules, edges, &mut state, &mut []))
                 / edges as f64
         });
         let accepted =

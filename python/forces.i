@@ -48,6 +48,8 @@ using namespace HelfrichPlugin;
 %ignore HelfrichPlugin::MonteCarloMembraneTension::getStatistics;
 %ignore HelfrichPlugin::MonteCarloMembraneTension::saveState;
 %ignore HelfrichPlugin::MonteCarloMembraneTension::restoreState;
+%ignore HelfrichPlugin::MembraneForce::getParticles;
+%ignore HelfrichPlugin::ParticleSurfaceForce::setParticles;
 %ignore HelfrichPlugin::MembraneForce::setParameterValue;
 %rename(_setElementValues) HelfrichPlugin::MembraneForce::setElementValues;
 %nodefaultctor HelfrichPlugin::TriangulatedForce;
@@ -101,6 +103,16 @@ static PyObject* toDict(const Mover& mover, OpenMM::Context& context) {
     return statistics;
 }
 %}
+%extend HelfrichPlugin::ParticleSurfaceForce {
+    void _setParticleBuffer(const char* data, size_t size) {
+        const int* indices = reinterpret_cast<const int*>(data);
+        $self->setParticles(std::vector<int>(indices, indices + size / sizeof(int)));
+    }
+    PyObject* _particleBuffer() {
+        const std::vector<int>& indices = $self->getParticles();
+        return toBytes(indices.data(), indices.size() * sizeof(int));
+    }
+}
 
 %extend HelfrichPlugin::MonteCarloBondFlip {
     PyObject* _getStatistics(OpenMM::Context& context) {

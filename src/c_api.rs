@@ -90,9 +90,12 @@ forward! {
     /// Set a scalar by its name.
     Helfrich_MembraneForce_setParameterValue =>
         helfrich_shim_setValue(force: *mut Force, parameter: *const c_char, value: c_double) -> c_int;
-    /// Give a scalar its own value for each vertex or triangle.
+    /// Give a scalar its own value for each vertex, triangle or particle.
     Helfrich_MembraneForce_setElementValues =>
         helfrich_shim_setElementValues(force: *mut Force, parameter: *const c_char, values: *const c_double, count: c_int) -> c_int;
+    /// Set the particles that a ParticleSurfaceForce acts on.
+    Helfrich_ParticleSurfaceForce_setParticles =>
+        helfrich_shim_setParticles(force: *mut Force, particles: *const c_int, count: c_int) -> c_int;
     /// Choose the variant of the potential.
     Helfrich_MembraneForce_setForm => helfrich_shim_setForm(force: *mut Force, form: c_int) -> c_int;
     /// Switch something on or off.
@@ -218,3 +221,5 @@ force_class!(DihedralForce(stiffness) form);
 force_class!(TriangleAreaForce(modulus, target));
 force_class!(PlaquetteAreaForce(stiffness, target));
 force_class!(TriangleAreaRepulsionForce(minArea, epsilon));
+force_class!(SurfaceRepulsionForce(distance, epsilon));
+force_class!(ParticleSurfaceForce(distance, epsilon, adhesion, radius) attraction);

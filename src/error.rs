@@ -97,6 +97,12 @@ pub enum Error {
     )]
     NonFiniteEnergy { force: &'static str, energy: f64 },
 
+    /// Two things that repel each other are in one place.
+    #[error(
+        "the energy of {force} is not finite: a vertex or particle lies on a triangle that it should keep away from, or a triangle cuts a particle; start from positions that do not touch, or use a smaller time step"
+    )]
+    Touching { force: &'static str },
+
     /// A scalar outside its domain.
     #[error("{parameter} must be {domain}, got {value}")]
     Parameter { parameter: String, domain: &'static str, value: f64 },
@@ -155,7 +161,8 @@ impl Error {
         match self {
             Self::InsideOut { force, .. }
             | Self::Border { force, .. }
-            | Self::Spanning { force, .. } => Some(force),
+            | Self::Spanning { force, .. }
+            | Self::Touching { force } => Some(force),
             _ => None,
         }
     }

@@ -126,6 +126,8 @@ mod tests {
             values: [1.0; MAX_PARAMETERS],
             fields: [std::ptr::null(); MAX_PARAMETERS],
             field_lengths: [0; MAX_PARAMETERS],
+            particles: std::ptr::null(),
+            num_particles: 0,
         };
         let mut contribution = Contribution::default();
         unsafe {

@@ -112,6 +112,19 @@ impl MembraneForce {
         Ok(self)
     }
 
+    /// Set the particles that a ParticleSurfaceForce acts on.
+    ///
+    /// # Errors
+    /// Another class.
+    pub fn set_particles(&mut self, particles: &[c_int]) -> Result<&mut Self> {
+        let (force, count) = (self.force.as_ptr(), particles.len() as c_int);
+        // SAFETY: the force is alive, and the particles are as many as is said.
+        check(unsafe {
+            c_api::Helfrich_ParticleSurfaceForce_setParticles(force, particles.as_ptr(), count)
+        })?;
+        Ok(self)
+    }
+
     /// Choose a variant by its name, such as a bending scheme.
     ///
     /// # Errors

@@ -31,6 +31,7 @@
 
 pub mod backend;
 pub mod c_api;
+pub mod contact;
 pub mod dynamics;
 pub mod error;
 pub mod evaluator;

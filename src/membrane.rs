@@ -1,6 +1,7 @@
 //! A mesh as one OpenMM Context sees it: shared by all its forces on the same triangles.
 
 use crate::backend::Choice;
+use crate::contact::{Contacts, is_contact};
 use crate::error::{Error, Result};
 use crate::evaluator::{BorderEvaluator, ChosenEvaluator, Present, ReferenceEvaluator};
 use crate::mesh::cell::Image;
@@ -8,10 +9,11 @@ use crate::mesh::numbering::breadth_first;
 use crate::mesh::orientation::is_inside_out;
 use crate::mesh::{Cell, Topology, Triangulation, Unfolding};
 use crate::moves::local::LocalEnergy;
-use crate::moves::{FlipRules, FlipState, flips};
+use crate::moves::{FlipRules, FlipState, Touched, flips};
 use crate::potentials::{Contribution, Element, Term};
 use crate::remembered::Remembered;
 use nalgebra::Matrix3;
+use smallvec::SmallVec;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, Ordering};
 
@@ -35,6 +37,7 @@ pub struct Membrane {
     evaluator: ChosenEvaluator,
     borders: BorderEvaluator,
     local: LocalEnergy,
+    contacts: Contacts,
     /// The forces after the last flips, which the time step asks for next.
     remembered: Remembered,
     /// The forces before them; kept for its memory.
@@ -42,6 +45,17 @@ pub struct Membrane {
     num_particles: usize,
     /// Whether the surface has been looked at and is not inside out.
     has_outside: bool,
+}
+
+/// A membrane that has all triangles of another one among its own, and the terms of contacts on it: the other one's flips
+/// count its energy, and it makes them, too.
+pub struct Follower<'a, 't> {
+    /// The membrane.
+    pub membrane: &'a mut Membrane,
+    /// The place of the other one's first triangle.
+    pub first_triangle: usize,
+    /// Terms of contacts.
+    pub terms: &'a [Term<'t>],
 }
 
 /// What decides the bits of evaluations beside positions: the connectivity, and in which order sums are formed.
@@ -105,6 +119,7 @@ impl Membrane {
             evaluator,
             borders: BorderEvaluator::default(),
             local,
+            contacts: Contacts::default(),
             remembered: Remembered::default(),
             before: Vec::new(),
             num_particles,
@@ -115,6 +130,7 @@ impl Membrane {
     /// Let so many threads share evaluations, where that turns out faster; 0 for as many as there are.
     pub fn set_threads(&mut self, threads: usize) {
         self.evaluator.set_threads(threads);
+        self.contacts.set_threads(threads);
     }
 
     /// The mesh as it is now.
@@ -173,8 +189,13 @@ impl Membrane {
 
     fn take(&mut self, mesh: Triangulation, order: Vec<u32>, flips: u64) -> Result<()> {
         (self.mesh, self.order, self.flips_of_order) = (mesh, order, flips);
-        self.unfolding.connectivity_changed();
         self.remembered.clear();
+        self.connectivity_changed()
+    }
+
+    /// The triangles have changed, and with them all that is made of them.
+    fn connectivity_changed(&mut self) -> Result<()> {
+        self.unfolding.connectivity_changed();
         self.borders.connectivity_changed();
         let present = Present { mesh: &self.mesh, order: &self.order, cell: None };
         self.evaluator.connectivity_changed(present)
@@ -196,7 +217,35 @@ impl Membrane {
         rules: &FlipRules,
         attempts: u64,
         state: &mut FlipState,
+        force_change: Option<&mut [f64]>,
+    ) -> Result<u64> {
+        self.flip_together(
+            terms,
+            positions,
+            cell,
+            rules,
+            attempts,
+            state,
+            force_change,
+            &mut [],
+        )
+    }
+
+    /// The same with membranes that follow: their energy counts, and they make the same flips.
+    ///
+    /// # Errors
+    /// Those of [`Self::flip`].
+    #[allow(clippy::too_many_arguments, reason = "they are those of `flip` and one more")]
+    pub fn flip_together(
+        &mut self,
+        terms: &[Term],
+        positions: &[f64],
+        cell: Option<&Cell>,
+        rules: &FlipRules,
+        attempts: u64,
+        state: &mut FlipState,
         mut force_change: Option<&mut [f64]>,
+        followers: &mut [Follower],
     ) -> Result<u64> {
         if positions.len() != 3 * self.num_particles {
             return Err(Error::Contract(format!(
@@ -221,7 +270,29 @@ impl Membrane {
             self.evaluator.survey(present, terms, positions, before.as_deref_mut(), survey)
         })?;
         self.borders.add(&self.mesh, positions, cell, on_borders, &mut [], before);
-        let made = flips::attempt(&mut self.mesh, &mut self.local, terms, rules, attempts, state);
+        let wants_forces = force_change.is_some();
+        let mut touched: SmallVec<[Touched; 2]> = SmallVec::new();
+        if terms.iter().any(is_contact) {
+            let contacts = &mut self.contacts;
+            let before = wants_forces.then_some(&mut self.before[..]);
+            contacts.evaluate(&self.mesh, cell, terms, given, &mut [], before)?;
+            contacts.prepare_flips(&self.mesh, cell, terms, given)?;
+            touched.push(Touched { contacts, terms, mesh: None, first_half: 0 });
+        }
+        for follower in &mut *followers {
+            let Follower { membrane, first_triangle, terms } = follower;
+            let (contacts, mesh) = (&mut membrane.contacts, &mut membrane.mesh);
+            if wants_forces {
+                let before = Some(&mut self.before[..]);
+                contacts.evaluate(mesh, cell, terms, given, &mut [], before)?;
+            }
+            contacts.prepare_flips(mesh, cell, terms, given)?;
+            let first_half = 3 * *first_triangle as u32;
+            touched.push(Touched { contacts, terms, mesh: Some(mesh), first_half });
+        }
+        let (mesh, local) = (&mut self.mesh, &mut self.local);
+        let made = flips::attempt(mesh, local, terms, rules, attempts, state, &mut touched);
+        drop(touched);
         if made > 0 {
             self.flips_of_order += made;
             // By then every vertex has moved on by a few neighbours.
@@ -238,8 +309,15 @@ impl Membrane {
                 order: &self.order,
                 cell,
             })?;
+            for Follower { membrane, .. } in &mut *followers {
+                membrane.connectivity_changed()?;
+            }
             if let Some(change) = &mut force_change {
                 self.compare_forces(terms, given, cell, change)?;
+                for Follower { membrane, terms, .. } in followers {
+                    let Membrane { mesh, contacts, .. } = &mut **membrane;
+                    contacts.evaluate(mesh, cell, terms, given, &mut [], Some(change))?;
+                }
             }
         }
         Ok(made)
@@ -258,8 +336,9 @@ impl Membrane {
         let on_borders = self.borders.forward(&self.mesh, terms, positions, cell)?;
         let after = self.remembered.fill(terms, given, cell, |forces| {
             self.evaluator.evaluate(present, terms, positions, &mut [], Some(&mut *forces))?;
-            self.borders.add(&self.mesh, positions, cell, on_borders, &mut [], Some(forces));
-            Ok(())
+            let into = Some(&mut *forces);
+            self.borders.add(&self.mesh, positions, cell, on_borders, &mut [], into);
+            self.contacts.evaluate(&self.mesh, cell, terms, given, &mut [], Some(forces))
         })?;
         for ((change, after), before) in change.iter_mut().zip(after).zip(&self.before) {
             *change = after - before;
@@ -308,16 +387,22 @@ impl Membrane {
         {
             return Ok(());
         }
-        let positions = unfolded!(self, positions, cell);
-        if !self.has_outside || !self.mesh.images().is_empty() {
-            look_for_outside(&self.mesh, &mut self.has_outside, terms, positions)?;
+        let given = positions;
+        contributions.fill(Contribution::default());
+        // A surface that only contacts act on may be in no condition for the others.
+        if terms.is_empty() || !terms.iter().all(is_contact) {
+            let positions = unfolded!(self, given, cell);
+            if !self.has_outside || !self.mesh.images().is_empty() {
+                look_for_outside(&self.mesh, &mut self.has_outside, terms, positions)?;
+            }
+            let present = Present { mesh: &self.mesh, order: &self.order, cell };
+            let on_borders = self.borders.forward(&self.mesh, terms, positions, cell)?;
+            let (evaluator, energies) = (&mut self.evaluator, &mut *contributions);
+            evaluator.evaluate(present, terms, positions, energies, forces.as_deref_mut())?;
+            let (energies, into) = (&mut *contributions, forces.as_deref_mut());
+            self.borders.add(&self.mesh, positions, cell, on_borders, energies, into);
         }
-        let present = Present { mesh: &self.mesh, order: &self.order, cell };
-        let on_borders = self.borders.forward(&self.mesh, terms, positions, cell)?;
-        let (evaluator, energies) = (&mut self.evaluator, &mut *contributions);
-        evaluator.evaluate(present, terms, positions, energies, forces.as_deref_mut())?;
-        self.borders.add(&self.mesh, positions, cell, on_borders, contributions, forces);
-        Ok(())
+        self.contacts.evaluate(&self.mesh, cell, terms, given, contributions, forces)
     }
 
     /// ∂E/∂ε of some terms for a homogeneous strain ε of all positions and of the periodic box, kJ/mol: where there is
@@ -339,6 +424,14 @@ impl Membrane {
         Ok(of_geometry + of_borders)
     }
 
+    /// Refuse particles of a term that do not exist, come twice or are vertices.
+    ///
+    /// # Errors
+    /// Names the particle.
+    pub fn check_particles(&self, term: &Term) -> Result<()> {
+        Contacts::check(&self.mesh, term, self.num_particles)
+    }
+
     /// Refuse a term with values outside their domains, or with more or fewer values for single
     /// elements than there are elements, or that needs a closed surface where this one has a border.
     ///
@@ -358,12 +451,13 @@ impl Membrane {
                 _ if field.is_empty() => continue,
                 Some(Element::Vertex) => (self.mesh.num_vertices(), "vertices"),
                 Some(Element::Triangle) => (self.mesh.triangles().len(), "triangles"),
+                Some(Element::Particle) => (term.particles.len(), "particles"),
                 None => (0, "elements that can have their own"),
             };
             if field.len() != count {
                 let name = parameter.name.to_string_lossy();
                 return Err(Error::Contract(format!(
-                    "{name} has {} values, but the mesh has {count} {elements}; give one for each",
+                    "{name} has {} values, but there are {count} {elements}; give one for each",
                     field.len()
                 )));
             }

@@ -21,6 +21,7 @@ struct RememberedTerm {
     switches: u32,
     values: [f64; MAX_PARAMETERS],
     fields: [Vec<f64>; MAX_PARAMETERS],
+    particles: Vec<u32>,
 }
 
 impl Remembered {
@@ -87,6 +88,7 @@ impl RememberedTerm {
             switches: term.switches,
             values: term.values,
             fields: term.fields.map(<[f64]>::to_vec),
+            particles: term.particles.to_vec(),
         }
     }
 
@@ -94,6 +96,7 @@ impl RememberedTerm {
         self.name == term.potential.name()
             && (self.form, self.switches) == (term.form, term.switches)
             && self.values == term.values
+            && self.particles == term.particles
             && self.fields.iter().zip(term.fields).all(|(known, field)| known == field)
     }
 }

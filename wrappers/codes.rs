@@ -2,9 +2,9 @@
 //! `src/moves/records.rs`, so that the
 //! build stops where they differ.
 
-use crate::codes::{Contribution, Form, MAX_PARAMETERS, Scheme};
+use crate::codes::{Attraction, Contribution, Form, MAX_PARAMETERS, Scheme};
 use crate::flip_records::{FlipRules, FlipState};
-use crate::records::{ParameterInfo, ParticleArrays, TermInput};
+use crate::records::{FollowerInput, ParameterInfo, ParticleArrays, TermInput};
 use std::ffi::CStr;
 use std::mem::offset_of;
 
@@ -25,9 +25,11 @@ pub fn comparison() -> String {
         "static_assert(HELFRICH_MAX_PARAMETERS == {MAX_PARAMETERS}, \
          \"MAX_PARAMETERS is not what src/potentials/codes.rs says\");\n"
     );
-    for (class, kind, names) in
-        [("BendingForce", "Scheme", Scheme::NAMES), ("DihedralForce", "Form", Form::NAMES)]
-    {
+    for (class, kind, names) in [
+        ("BendingForce", "Scheme", Scheme::NAMES),
+        ("DihedralForce", "Form", Form::NAMES),
+        ("ParticleSurfaceForce", "Attraction", Attraction::NAMES),
+    ] {
         let in_cpp = format!("HelfrichPlugin::{class}::");
         text += &enumeration(&format!("{in_cpp}{kind}"), &in_cpp, names);
         let in_c = format!("Helfrich_{class}_");
@@ -56,7 +58,12 @@ pub fn comparison() -> String {
         text += &structure!(
             TermInput,
             "HelfrichTerm",
-            potential form switches wants_derivatives values fields field_lengths
+            potential form switches wants_derivatives values fields field_lengths particles num_particles
+        );
+        text += &structure!(
+            FollowerInput,
+            "HelfrichFollower",
+            membrane first_triangle terms num_terms
         );
     }
     text

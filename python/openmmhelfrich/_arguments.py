@@ -18,6 +18,7 @@ from ._values import (
     element_values,
     form_name,
     form_number,
+    particles,
     plain_value,
     scalar,
     scalars_of,
@@ -35,6 +36,9 @@ def accept_units(force: type) -> None:
     swig_init = force.__init__
     keyword = inspect.Parameter.POSITIONAL_OR_KEYWORD
     parameters = [inspect.Parameter("triangles", keyword)]
+    has_particles = hasattr(force, "_setParticleBuffer")
+    if has_particles:
+        parameters.append(inspect.Parameter("particles", keyword))
     parameters += [inspect.Parameter(s.name, keyword, default=s.default) for s in known]
     if form is not None:
         parameters.append(inspect.Parameter(form, keyword, default=0))
@@ -61,7 +65,11 @@ def accept_units(force: type) -> None:
             values.append(scalar(name, s, given))
         if form is not None:
             values.append(form_number(name, form, arguments[form]))
-        swig_init(self, [], *values)
+        if has_particles:
+            swig_init(self, [], [], *values)
+            self.setParticles(arguments["particles"])
+        else:
+            swig_init(self, [], *values)
         for s, list_ in elements.items():
             if not list_:
                 raise ValueError(f"{name}: {s.name} is an empty list; give one value or many")
@@ -80,6 +88,8 @@ def accept_units(force: type) -> None:
         _accept_unit_in_setter(force, parameter)
     if form is not None:
         _accept_name_in_setter(force, form)
+    if has_particles:
+        _accept_particles(force)
     own_what_is_cast(force)
 
 
@@ -103,6 +113,34 @@ def _accept_unit_in_setter(force: type, parameter: Scalar) -> None:
         swig_element_setter(self, element_values(name, parameter, values))
 
     setattr(force, parameter.element_setter, element_setter)
+
+
+def _accept_particles(force: type) -> None:
+    """Let particles come and go as arrays."""
+
+    def set_particles(self, given):
+        """Set the particles that the surface acts on.
+
+        Parameters
+        ----------
+        given : array_like of int
+            Their indices, none of them a corner of a triangle.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If they are not integers in one list.
+        """
+        self._setParticleBuffer(particles(force.__name__, given).data)
+
+    def get_particles(self):
+        """The indices of the particles that the surface acts on, shape (num_particles,)."""
+        return np.frombuffer(self._particleBuffer(), dtype=np.intc).astype(np.int64)
+
+    for name, method in (("setParticles", set_particles), ("getParticles", get_particles)):
+        method.__name__ = name
+        method.__qualname__ = f"{force.__name__}.{name}"
+        setattr(force, name, method)
 
 
 def _accept_name_in_setter(force: type, form: str) -> None:

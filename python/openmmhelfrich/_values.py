@@ -23,6 +23,7 @@ __all__ = [
     "element_values",
     "form_name",
     "form_number",
+    "particles",
     "plain_value",
     "scalar",
     "scalars_of",
@@ -53,7 +54,7 @@ class _ParameterInfo(ctypes.Structure):
 
 
 #: How the setters for values of single vertices and triangles are called, by the core's code.
-_ELEMENT_SETTERS = {0: None, 1: "setVertex{}", 2: "setTriangle{}s"}
+_ELEMENT_SETTERS = {0: None, 1: "setVertex{}", 2: "setTriangle{}s", 3: "setParticle{}"}
 
 
 def scalars_of(force: str) -> list[Scalar]:
@@ -200,6 +201,39 @@ def scalar(force: str, parameter: Scalar, value) -> float:
         return float(value)
     except (TypeError, ValueError):
         raise TypeError(f"{where} must be one number, got {value!r}") from None
+
+
+def particles(force: str, given) -> np.ndarray:
+    """Particle indices as a contiguous array of C integers, shape (num_particles,).
+
+    Parameters
+    ----------
+    force : str
+        The name of the class, for messages.
+    given : array_like of int
+        Particle indices.
+
+    Raises
+    ------
+    TypeError
+        If the indices are not integers.
+    ValueError
+        If they are not one list, or an index does not fit a C int.
+    """
+    array = np.asarray(given)
+    if array.ndim != 1:
+        raise ValueError(f"{force}: particles must be one list of indices, got {array.shape}")
+    if array.size and array.dtype.kind not in "iu":
+        raise TypeError(
+            f"{force}: particles must be integers (particle indices), got dtype {array.dtype}"
+        )
+    limits = np.iinfo(np.intc)
+    for index in (int(array.min()), int(array.max())) if array.size else ():
+        if not limits.min <= index <= limits.max:
+            raise ValueError(
+                f"{force}: particle {index} is beyond what OpenMM can number; indices are C ints"
+            )
+    return np.ascontiguousarray(array, dtype=np.intc)
 
 
 def triangles(force: str, given, offset: int = 0) -> np.ndarray:

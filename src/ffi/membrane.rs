@@ -90,7 +90,7 @@ pub(super) unsafe fn cell(vectors: *const [[f64; 3]; 3]) -> Result<Option<Cell>>
 
 impl TermInput {
     /// # Safety
-    /// The fields must hold as many values as they say.
+    /// The fields and the particles must be as many as they say.
     pub(super) unsafe fn term(&self) -> Term<'_> {
         let field = |k: usize| unsafe { slice(self.fields[k], self.field_lengths[k] as usize) };
         Term {
@@ -99,6 +99,7 @@ impl TermInput {
             switches: self.switches,
             values: self.values,
             fields: std::array::from_fn(field),
+            particles: unsafe { slice(self.particles, self.num_particles as usize) },
             wants_derivatives: self.wants_derivatives != 0,
         }
     }
@@ -116,6 +117,20 @@ pub unsafe extern "C" fn Helfrich_Membrane_checkTerm(
 ) -> c_int {
     let subject = unsafe { text(subject) };
     guarded(subject, || unsafe { &*membrane }.check(&unsafe { (*term).term() }))
+}
+
+/// Refuse particles of a term that do not exist, come twice or are vertices.
+///
+/// # Safety
+/// As [`Helfrich_Membrane_checkTerm`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Membrane_checkParticles(
+    subject: *const c_char,
+    membrane: *const Membrane,
+    term: *const TermInput,
+) -> c_int {
+    let subject = unsafe { text(subject) };
+    guarded(subject, || unsafe { &*membrane }.check_particles(&unsafe { (*term).term() }))
 }
 
 /// Let so many threads share evaluations, where that turns out faster; 0 for as many as there are.

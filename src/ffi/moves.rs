@@ -1,10 +1,11 @@
 //! The C interface to moves of a membrane's connectivity, and to the connectivity itself.
 
 use super::membrane::cell;
-use super::{TermInput, guarded, slice, text};
-use crate::membrane::{Connectivity, Membrane};
+use super::{FollowerInput, TermInput, guarded, slice, text};
+use crate::membrane::{Connectivity, Follower, Membrane};
 use crate::moves::{FlipRules, FlipState};
 use crate::potentials::Term;
+use smallvec::SmallVec;
 use std::ffi::{c_char, c_int};
 use std::slice as slices;
 
@@ -28,7 +29,8 @@ pub unsafe extern "C" fn Helfrich_Membrane_checkFlips(
 /// # Safety
 /// `subject` must end with a NUL; `membrane` must be alive and used by no other thread; `terms` must hold
 /// `num_terms` values, `positions` and `force_change` three values for each particle; `rules` must be readable, `state`
-/// and `made` writable.
+/// and `made` writable. `followers` must hold `num_followers` values, of other membranes that are alive and used by no other
+/// thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn Helfrich_Membrane_flip(
     subject: *const c_char,
@@ -43,17 +45,30 @@ pub unsafe extern "C" fn Helfrich_Membrane_flip(
     state: *mut FlipState,
     made: *mut i64,
     force_change: *mut f64,
+    followers: *const FollowerInput,
+    num_followers: i64,
 ) -> c_int {
     guarded(unsafe { text(subject) }, || {
         let inputs = unsafe { slice(terms, num_terms as usize) };
-        let terms: smallvec::SmallVec<[Term; 8]> =
+        let terms: SmallVec<[Term; 8]> =
             inputs.iter().map(|input| unsafe { input.term() }).collect();
         let positions = unsafe { slice(positions, 3 * num_particles as usize) };
         let (membrane, rules, state) = unsafe { (&mut *membrane, &*rules, &mut *state) };
         let change = (!force_change.is_null())
             .then(|| unsafe { slices::from_raw_parts_mut(force_change, positions.len()) });
+        let followers = unsafe { slice(followers, num_followers as usize) };
+        let their_terms: SmallVec<[SmallVec<[Term; 2]>; 1]> =
+            followers.iter().map(|follower| unsafe { follower.terms() }).collect();
+        let pairs = followers.iter().zip(&their_terms);
+        let mut followers: SmallVec<[Follower; 1]> = pairs
+            .map(|(follower, terms)| Follower {
+                membrane: unsafe { &mut *follower.membrane.cast() },
+                first_triangle: follower.first_triangle as usize,
+                terms,
+            })
+            .collect();
         let cell = unsafe { cell(box_vectors) }?;
-        let count = membrane.flip(
+        let count = membrane.flip_together(
             &terms,
             positions,
             cell.as_ref(),
@@ -61,10 +76,20 @@ pub unsafe extern "C" fn Helfrich_Membrane_flip(
             attempts as u64,
             state,
             change,
+            &mut followers,
         )?;
         unsafe { made.write(count as i64) };
         Ok(())
     })
+}
+
+impl FollowerInput {
+    /// # Safety
+    /// The terms must be as many as they say, and as [`TermInput::term`] wants them.
+    unsafe fn terms(&self) -> SmallVec<[Term<'_>; 2]> {
+        let inputs = unsafe { slice(self.terms, self.num_terms as usize) };
+        inputs.iter().map(|input| unsafe { input.term() }).collect()
+    }
 }
 
 /// Number of triangles, which never changes.

@@ -2,7 +2,7 @@
 
 use super::{ParameterInfo, guarded, text};
 use crate::error::Error;
-use crate::potentials::{self, Element, REGISTRY};
+use crate::potentials::{self, Element, REGISTRY, particle_surface, surface_repulsion};
 use std::ffi::{c_char, c_int};
 
 /// Describe the parameter `index` of a potential; fails if there is none.
@@ -27,6 +27,7 @@ pub unsafe extern "C" fn Helfrich_Potential_parameter(
             None => 0,
             Some(Element::Vertex) => 1,
             Some(Element::Triangle) => 2,
+            Some(Element::Particle) => 3,
         };
         let name = parameter.name.as_ptr();
         unsafe { info.write(ParameterInfo { name, energy, length, default_value, per }) };
@@ -100,6 +101,15 @@ pub unsafe extern "C" fn Helfrich_Potential_check(
         Some(parameter) => parameter.check(value),
         None => Err(Error::Contract(format!("there is no parameter {index}"))),
     })
+}
+
+/// Whether a potential is one of contacts, so that it may act on several membranes together.
+///
+/// `potential` must be an index that [`Helfrich_Potential_find`] gave.
+#[unsafe(no_mangle)]
+pub extern "C" fn Helfrich_Potential_isContact(potential: c_int) -> c_int {
+    let named = REGISTRY[potential as usize];
+    c_int::from([surface_repulsion::NAME, particle_surface::NAME].contains(&named.name()))
 }
 
 /// The index of a potential in the registry.

@@ -3,7 +3,7 @@
 //! build.rs includes this file, and has the C++ compiler compare those of `Core.h` and `HelfrichDynamics.h` with their layout.
 
 use crate::potentials::MAX_PARAMETERS;
-use std::ffi::{c_char, c_int};
+use std::ffi::{c_char, c_int, c_void};
 
 /// A scalar of a potential, for C++ and Python: `name` lives as long as the library, the unit is
 /// (kJ/mol)^`energy` nm^`length`, and a default of NaN says that the user must give a value.
@@ -13,7 +13,7 @@ pub struct ParameterInfo {
     pub(super) energy: c_int,
     pub(super) length: c_int,
     pub(super) default_value: f64,
-    /// 0: only as a scalar; 1: also for each vertex; 2: also for each triangle.
+    /// 0: only as a scalar; 1: also for each vertex; 2: also for each triangle; 3: also for each particle.
     pub(super) per: c_int,
 }
 
@@ -28,6 +28,18 @@ pub struct TermInput {
     /// Values of single elements, null where there are none.
     pub(super) fields: [*const f64; MAX_PARAMETERS],
     pub(super) field_lengths: [i64; MAX_PARAMETERS],
+    /// Particles beside the vertices, null where there are none.
+    pub(super) particles: *const u32,
+    pub(super) num_particles: i64,
+}
+
+/// A membrane that follows the flips of another, as C++ hands it over.
+#[repr(C)]
+pub struct FollowerInput {
+    pub(super) membrane: *mut c_void,
+    pub(super) first_triangle: i64,
+    pub(super) terms: *const TermInput,
+    pub(super) num_terms: i64,
 }
 
 /// The arrays of a time step; three values for each particle.

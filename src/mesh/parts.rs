@@ -63,7 +63,7 @@ impl Triangulation {
     }
 
     /// For each vertex the lowest vertex of the connected part that it is on.
-    fn parts(&self) -> Vec<u32> {
+    pub(crate) fn parts(&self) -> Vec<u32> {
         let mut parts = vec![u32::MAX; self.num_vertices()];
         let (mut neighbours, mut waiting) = (Vec::new(), Vec::new());
         for first in 0..parts.len() {

@@ -56,6 +56,16 @@ pub enum Turn {
     Right,
 }
 
+impl Turn {
+    /// The turn that undoes it.
+    pub fn other(self) -> Self {
+        match self {
+            Self::Left => Self::Right,
+            Self::Right => Self::Left,
+        }
+    }
+}
+
 /// The two triangles at an edge:
 ///
 /// ```text

@@ -13,12 +13,14 @@
 
 use super::local::{Flipped, LocalEnergy};
 use super::records::{FlipRules, FlipState};
+use crate::contact::Contacts;
 use crate::dynamics::instructions::{Arithmetic, Kernel, run};
 use crate::dynamics::random;
 use crate::error::{Error, Result};
-use crate::mesh::triangulation::Turn;
+use crate::mesh::triangulation::{Quad, Turn};
 use crate::mesh::{NONE, Triangulation};
 use crate::potentials::Term;
+use smallvec::SmallVec;
 
 /// Attempts whose random numbers are made together.
 const BLOCK: usize = 64;
@@ -100,8 +102,81 @@ impl FlipRules {
     }
 }
 
+/// Contacts whose energy counts, ready for flips.
+pub struct Touched<'a, 't> {
+    /// The contacts,
+    pub contacts: &'a mut Contacts,
+    /// and what they are evaluated with, among other terms.
+    pub terms: &'a [Term<'t>],
+    /// The mesh that they are of, if it is not the one that flips but has its triangles among its own; it makes the same
+    /// flips then.
+    pub mesh: Option<&'a mut Triangulation>,
+    /// The place of the half-edges there.
+    pub first_half: u32,
+}
+
+impl Touched<'_, '_> {
+    /// The quadrilateral of a half-edge, as these contacts see it.
+    fn quad(&self, mesh: &Triangulation, half: u32) -> Quad {
+        self.mesh.as_deref().unwrap_or(mesh).quad(half + self.first_half)
+    }
+
+    /// The most that a flip can gain, kJ/mol.
+    fn most(&mut self, mesh: &Triangulation, half: u32) -> f64 {
+        let quad = self.quad(mesh, half);
+        self.contacts.most(self.mesh.as_deref().unwrap_or(mesh), self.terms, &quad)
+    }
+
+    /// The energy of all that a flip changes, before it or after it, kJ/mol.
+    fn around(&mut self, mesh: &Triangulation, quad: &Quad) -> f64 {
+        let mesh = self.mesh.as_deref().unwrap_or(mesh);
+        self.contacts.around(mesh, self.terms, quad.triangles(), quad.vertices)
+    }
+
+    fn flip(&mut self, quad: &Quad, turn: Turn) {
+        if let Some(mesh) = &mut self.mesh {
+            mesh.flip(quad, turn);
+        }
+    }
+}
+
+/// Flip an edge, on which contacts have a say: unless the energy, of which `difference` is known already, rises above the limit.
+/// Returns its change if the flip is made.
+fn flip_touched(
+    mesh: &mut Triangulation,
+    touched: &mut [Touched],
+    half: u32,
+    turn: Turn,
+    (difference, limit): (f64, f64),
+) -> Option<f64> {
+    let quad = mesh.quad(half);
+    let mut difference = difference;
+    let quads: SmallVec<[Quad; 2]> = touched.iter().map(|one| one.quad(mesh, half)).collect();
+    for (one, quad) in touched.iter_mut().zip(&quads) {
+        difference -= one.around(mesh, quad);
+    }
+    mesh.flip(&quad, turn);
+    for (one, quad) in touched.iter_mut().zip(&quads) {
+        one.flip(quad, turn);
+        difference += one.around(mesh, quad);
+    }
+    if difference <= limit {
+        for (one, quad) in touched.iter_mut().zip(&quads) {
+            one.contacts.follow(one.mesh.as_deref().unwrap_or(mesh), quad);
+        }
+        return Some(difference);
+    }
+    let (back, half) = (turn.other(), Triangulation::flipped(half, turn));
+    for one in touched {
+        let quad = one.quad(mesh, half);
+        one.flip(&quad, back);
+    }
+    mesh.flip(&mesh.quad(half), back);
+    None
+}
+
 /// Try to flip so many edges. `local` is what [`LocalEnergy::fill`] made of the mesh; it is kept current. Returns how
-/// many flips were made.
+/// many flips were made. Energies of contacts are those of `touched` only.
 pub fn attempt(
     mesh: &mut Triangulation,
     local: &mut LocalEnergy,
@@ -109,6 +184,7 @@ pub fn attempt(
     rules: &FlipRules,
     attempts: u64,
     state: &mut FlipState,
+    touched: &mut [Touched],
 ) -> u64 {
     let half_edges = 3 * mesh.triangles().len();
     let before = state.accepted;
@@ -130,7 +206,7 @@ pub fn attempt(
             if let Some(later) = draws[..count].get(n + 4) {
                 local.fetch_rest(mesh, later.half);
             }
-            one(mesh, local, terms, rules, draw, state, &mut flipped);
+            one(mesh, local, terms, rules, draw, state, &mut flipped, touched);
         }
         left -= count as u64;
     }
@@ -138,6 +214,7 @@ pub fn attempt(
 }
 
 /// Try one flip.
+#[allow(clippy::too_many_arguments, reason = "they are what a round of flips has at hand")]
 fn one(
     mesh: &mut Triangulation,
     local: &mut LocalEnergy,
@@ -146,6 +223,7 @@ fn one(
     draw: &Draw,
     state: &mut FlipState,
     flipped: &mut Flipped,
+    touched: &mut [Touched],
 ) {
     state.attempts += 1;
     if mesh.twin(draw.half) == NONE {
@@ -171,12 +249,13 @@ fn one(
     // exp(−ΔE / kT) is above the random number up to here; the logarithm of 0 sets no limit.
     let limit =
         if rules.demon != 0 { state.demon_energy } else { -rules.temperature * draw.uniform.ln() };
-    let difference = local.flipped(mesh, terms, &quad, turn, limit, flipped);
+    let gain: f64 = touched.iter_mut().map(|one| one.most(mesh, draw.half)).sum();
+    let mut difference = local.flipped(mesh, terms, &quad, turn, limit + gain, flipped);
     if !difference.is_finite() {
         state.by_shape += 1;
         return;
     }
-    if difference > limit {
+    if difference > limit + gain {
         state.by_energy += 1;
         return;
     }
@@ -184,7 +263,14 @@ fn one(
         state.by_edge += 1;
         return;
     }
-    mesh.flip(&quad, turn);
+    if touched.is_empty() {
+        mesh.flip(&quad, turn);
+    } else if let Some(all) = flip_touched(mesh, touched, draw.half, turn, (difference, limit)) {
+        difference = all;
+    } else {
+        state.by_energy += 1;
+        return;
+    }
     local.apply(mesh, &quad, flipped);
     state.accepted += 1;
     if rules.demon != 0 {

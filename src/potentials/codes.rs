@@ -32,6 +32,8 @@ bitflags! {
         const CURVATURE_VECTORS = 128;
         /// Adds energy of the borders' length and turning.
         const BORDERS = 256;
+        /// Adds energy of pairs that are near each other in space; `src/contact/` looks after them.
+        const CONTACTS = 512;
     }
 }
 
@@ -83,6 +85,11 @@ variants! {
 variants! {
     /// The forms of `DihedralForce`; `dihedral.rs` has their formulas.
     Form { Quartic, Cosine, Exp, SmoothExp, SmoothExp46 }
+}
+
+variants! {
+    /// The attractions of `ParticleSurfaceForce`; `particle_surface.rs` has their formulas.
+    Attraction { WCA, LennardJones, NineThree }
 }
 
 /// The switches of `BendingForce`; the k-th is bit k.

@@ -11,9 +11,11 @@ mod edge_tension;
 mod elements;
 mod enclosed_volume;
 mod gaussian_curvature;
+pub(crate) mod particle_surface;
 mod plaquette_area;
 mod runs;
 mod surface_area;
+pub(crate) mod surface_repulsion;
 mod triangle_area;
 mod triangle_area_repulsion;
 mod triangle_height;
@@ -22,13 +24,14 @@ use crate::error::{Error, Result};
 use crate::mesh::borders::{BorderPartials, BorderTotals};
 use crate::mesh::geometry::{TotalPartials, Totals};
 use crate::real::Real;
-pub use codes::{Contribution, MAX_PARAMETERS, Needs};
+pub use codes::{Attraction, Contribution, MAX_PARAMETERS, Needs};
 pub use elements::*;
 pub use runs::*;
+pub use surface_repulsion::ONLY_BETWEEN_PARTS;
 use std::ffi::CStr;
 
 /// All potentials, by the names of their OpenMM classes.
-pub static REGISTRY: [&dyn Potential; 10] = [
+pub static REGISTRY: [&dyn Potential; 12] = [
     &surface_area::SurfaceArea,
     &enclosed_volume::EnclosedVolume,
     &bending::Bending,
@@ -39,6 +42,8 @@ pub static REGISTRY: [&dyn Potential; 10] = [
     &triangle_area_repulsion::TriangleAreaRepulsion,
     &edge_tension::EdgeTension,
     &gaussian_curvature::GaussianCurvature,
+    &surface_repulsion::SurfaceRepulsion,
+    &particle_surface::ParticleSurface,
 ];
 
 /// What a scalar may be given for one by one.
@@ -48,6 +53,8 @@ pub enum Element {
     Vertex,
     /// A value for each triangle.
     Triangle,
+    /// A value for each of the term's particles that are no vertices.
+    Particle,
 }
 
 /// Which values a scalar may take.
@@ -198,6 +205,8 @@ pub struct Term<'a> {
     pub values: Values,
     /// For each parameter the values of the single elements that replace it; empty if there are none.
     pub fields: [&'a [f64]; MAX_PARAMETERS],
+    /// Particles beside the vertices that the term acts on, by their indices in the System.
+    pub particles: &'a [u32],
     /// Whether the derivatives with respect to the scalars will be read; those that cost extra may be
     /// wrong otherwise.
     pub wants_derivatives: bool,
@@ -222,7 +231,9 @@ impl<'a> Term<'a> {
         padded[..count].copy_from_slice(values);
         let fields = [&[] as &[f64]; MAX_PARAMETERS];
         let values = padded;
-        let term = Self { potential, form, switches: 0, values, fields, wants_derivatives: false };
+        let (switches, particles, wants_derivatives) = (0, &[] as &[u32], false);
+        let term =
+            Self { potential, form, switches, values, fields, particles, wants_derivatives };
         term.check()?;
         Ok(term)
     }

@@ -8,8 +8,10 @@
 #include "openmm-helfrich/EnclosedVolumeForce.h"
 #include "openmm-helfrich/MonteCarloBondFlip.h"
 #include "openmm-helfrich/MonteCarloMembraneTension.h"
+#include "openmm-helfrich/ParticleSurfaceForce.h"
 #include "openmm-helfrich/PlaquetteAreaForce.h"
 #include "openmm-helfrich/SurfaceAreaForce.h"
+#include "openmm-helfrich/SurfaceRepulsionForce.h"
 #include "openmm-helfrich/TriangleAreaForce.h"
 #include "openmm-helfrich/TriangleAreaRepulsionForce.h"
 #include "openmm-helfrich/TriangleHeightForce.h"
@@ -24,7 +26,9 @@
     apply(DihedralForce) \
     apply(TriangleAreaForce) \
     apply(PlaquetteAreaForce) \
-    apply(TriangleAreaRepulsionForce)
+    apply(TriangleAreaRepulsionForce) \
+    apply(SurfaceRepulsionForce) \
+    apply(ParticleSurfaceForce)
 // clang-format on
 
 #endif /*OPENMM_HELFRICH_H_*/

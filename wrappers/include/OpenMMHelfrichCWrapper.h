@@ -83,6 +83,13 @@ typedef enum {
     Helfrich_DihedralForce_SmoothExp46 = 4
 } Helfrich_DihedralForce_Form;
 
+/** The attractions of ParticleSurfaceForce. */
+typedef enum {
+    Helfrich_ParticleSurfaceForce_WCA = 0,
+    Helfrich_ParticleSurfaceForce_LennardJones = 1,
+    Helfrich_ParticleSurfaceForce_NineThree = 2
+} Helfrich_ParticleSurfaceForce_Attraction;
+
 /* `triangles` holds three particle indices a triangle, counter-clockwise seen from outside. */
 
 extern OpenMM_Force* Helfrich_SurfaceAreaForce_create(const int* triangles, int numTriangles, double modulus,
@@ -137,6 +144,27 @@ extern double Helfrich_TriangleAreaRepulsionForce_getMinArea(OpenMM_Force* force
 extern int Helfrich_TriangleAreaRepulsionForce_setMinArea(OpenMM_Force* force, double minArea);
 extern double Helfrich_TriangleAreaRepulsionForce_getEpsilon(OpenMM_Force* force);
 extern int Helfrich_TriangleAreaRepulsionForce_setEpsilon(OpenMM_Force* force, double epsilon);
+
+extern OpenMM_Force* Helfrich_SurfaceRepulsionForce_create(const int* triangles, int numTriangles, double distance,
+                                                           double epsilon);
+extern double Helfrich_SurfaceRepulsionForce_getDistance(OpenMM_Force* force);
+extern int Helfrich_SurfaceRepulsionForce_setDistance(OpenMM_Force* force, double distance);
+extern double Helfrich_SurfaceRepulsionForce_getEpsilon(OpenMM_Force* force);
+extern int Helfrich_SurfaceRepulsionForce_setEpsilon(OpenMM_Force* force, double epsilon);
+
+/** Acts on no particles until Helfrich_ParticleSurfaceForce_setParticles() has named them. */
+extern OpenMM_Force* Helfrich_ParticleSurfaceForce_create(const int* triangles, int numTriangles, double distance,
+                                                          double epsilon, double adhesion, double radius,
+                                                          int attraction);
+extern int Helfrich_ParticleSurfaceForce_setParticles(OpenMM_Force* force, const int* particles, int count);
+extern double Helfrich_ParticleSurfaceForce_getDistance(OpenMM_Force* force);
+extern int Helfrich_ParticleSurfaceForce_setDistance(OpenMM_Force* force, double distance);
+extern double Helfrich_ParticleSurfaceForce_getEpsilon(OpenMM_Force* force);
+extern int Helfrich_ParticleSurfaceForce_setEpsilon(OpenMM_Force* force, double epsilon);
+extern double Helfrich_ParticleSurfaceForce_getAdhesion(OpenMM_Force* force);
+extern int Helfrich_ParticleSurfaceForce_setAdhesion(OpenMM_Force* force, double adhesion);
+extern double Helfrich_ParticleSurfaceForce_getRadius(OpenMM_Force* force);
+extern int Helfrich_ParticleSurfaceForce_setRadius(OpenMM_Force* force, double radius);
 
 /** Who pays for the flips of a MonteCarloBondFlip. */
 typedef enum {

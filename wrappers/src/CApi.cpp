@@ -127,6 +127,15 @@ int helfrich_shim_setElementValues(void* force, const char* parameter, const dou
     return guarded([&] { asForce(force).setElementValues(parameter, vector<double>(values, values + count)); });
 }
 
+int helfrich_shim_setParticles(void* force, const int* particles, int count) {
+    return guarded([&] {
+        auto& owner = as<ParticleSurfaceForce>("ParticleSurfaceForce", force);
+        if (count < 0)
+            throw OpenMMException(owner.getTypeName() + ": the number of particles is negative");
+        owner.setParticles(vector<int>(particles, particles + count));
+    });
+}
+
 int helfrich_shim_setForm(void* force, int form) {
     return guarded([&] { asForce(force).setForm(form); });
 }

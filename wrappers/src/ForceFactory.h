@@ -7,12 +7,14 @@
 
 namespace HelfrichPlugin {
 
-/** A force of a class without triangles and with scalars that every potential allows. */
+/** A force of a class without triangles or particles and with scalars that every potential allows. */
 template <class ForceClass>
 MembraneForce* makeForce() {
     std::vector<int> none;
     if constexpr (std::is_constructible_v<ForceClass, std::vector<int>, double, double>)
         return new ForceClass(none, 1.0, 1.0);
+    else if constexpr (std::is_constructible_v<ForceClass, std::vector<int>, std::vector<int>, double, double>)
+        return new ForceClass(none, none, 1.0, 1.0);
     else
         return new ForceClass(none, 1.0);
 }

@@ -40,6 +40,7 @@ void MembraneForceImpl::initialize(ContextImpl& context) {
     membrane = SharedMembrane::acquire(owner.getTypeName(), context, owner.getTriangles());
     try {
         membrane->checkAgreement(*this);
+        membrane->checkJoining(owner.getTypeName(), term.potential);
         copyValues();
         membrane->choose(owner.getTypeName(), owner.getBackend());
     } catch (...) {
@@ -67,9 +68,14 @@ void MembraneForceImpl::copyValues() {
         updated.fields[i] = copies.back().data();
         updated.fieldLengths[i] = (int64_t) copies.back().size();
     }
+    vector<int> indices = owner.getParticles();
+    updated.particles = indices.data();
+    updated.numParticles = (int64_t) indices.size();
     membrane->checkTerm(owner.getTypeName(), updated);
+    membrane->checkParticles(owner.getTypeName(), updated);
     // Moving the vectors leaves their contents where the term points.
     fields = std::move(copies);
+    particles = std::move(indices);
     term = updated;
 }
 

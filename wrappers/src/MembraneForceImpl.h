@@ -52,6 +52,10 @@ public:
     bool isPeriodic() const {
         return periodic;
     }
+    /** Whether it acts on pairs that are near each other, and so may act on several membranes together. */
+    bool isContact() const {
+        return Helfrich_Potential_isContact(term.potential) != 0;
+    }
     /** Whether a scalar is a Context parameter. */
     bool usesContextParameters() const;
     /** What to compute, with the present values of Context parameters. */
@@ -68,6 +72,7 @@ private:
     HelfrichTerm term;
     /** What the fields of the term point to. */
     std::vector<std::vector<double>> fields;
+    std::vector<int> particles;
     /** For each scalar the Context parameter that stands in for it, or an empty text. */
     std::vector<std::string> contextParameters;
     std::vector<std::string> derivatives;

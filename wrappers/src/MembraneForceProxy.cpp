@@ -1,7 +1,9 @@
 #include "MembraneForceProxy.h"
 
+#include "OpenMMHelfrich.h"
 #include "XmlElements.h"
 
+#include <algorithm>
 #include <memory>
 #include <set>
 #include <vector>
@@ -73,6 +75,11 @@ void MembraneForceProxy::serialize(const void* object, SerializationNode& node) 
         derivatives.createChildNode("Derivative")
             .setStringProperty("contextParameter", force.getEnergyParameterDerivativeName(i));
     writeTriangles(force, node);
+    if (!force.getParticles().empty()) {
+        SerializationNode& particles = node.createChildNode("Particles");
+        for (int particle : force.getParticles())
+            particles.createChildNode("Particle").setIntProperty("index", particle);
+    }
 }
 
 void* MembraneForceProxy::deserialize(const SerializationNode& node) const {
@@ -94,7 +101,7 @@ void MembraneForceProxy::readForce(const SerializationNode& node, MembraneForce&
     attributes.insert(switches.begin(), switches.end());
     if (hasForms)
         attributes.insert(what);
-    allow(forceName, node, attributes, {"Parameters", "EnergyParameterDerivatives", "Triangles"});
+    allow(forceName, node, attributes, {"Parameters", "EnergyParameterDerivatives", "Triangles", "Particles"});
     // What has a default may be left out, as in OpenMM's own XML.
     if (node.hasProperty("forceGroup"))
         force.setForceGroup(integer(forceName, node, "forceGroup"));
@@ -126,6 +133,25 @@ void MembraneForceProxy::readForce(const SerializationNode& node, MembraneForce&
         within(forceName, element, [&] { force.addEnergyParameterDerivative(parameter); });
     }
     readTriangles(forceName, node, force);
+    readOtherParticles(node, force);
+}
+
+void MembraneForceProxy::readOtherParticles(const SerializationNode& node, MembraneForce& force) const {
+    const vector<SerializationNode>& children = node.getChildren();
+    if (std::none_of(children.begin(), children.end(),
+                     [](const SerializationNode& element) { return element.getName() == "Particles"; }))
+        return;
+    auto* owner = dynamic_cast<ParticleSurfaceForce*>(&force);
+    if (owner == nullptr)
+        throw OpenMMException(about(forceName, node) + "has an unknown child <Particles>");
+    const SerializationNode& particles = child(forceName, node, "Particles");
+    allow(forceName, particles, {}, {"Particle"});
+    vector<int> indices;
+    for (const SerializationNode& element : particles.getChildren()) {
+        allow(forceName, element, {"index"}, {});
+        indices.push_back(integer(forceName, element, "index"));
+    }
+    owner->setParticles(indices);
 }
 
 void MembraneForceProxy::readParameters(const SerializationNode& parameters, MembraneForce& force) const {

@@ -22,6 +22,7 @@ public:
 private:
     void readForce(const OpenMM::SerializationNode& node, MembraneForce& force) const;
     void readParameters(const OpenMM::SerializationNode& parameters, MembraneForce& force) const;
+    void readOtherParticles(const OpenMM::SerializationNode& node, MembraneForce& force) const;
     std::string forceName;
     Factory create;
 };

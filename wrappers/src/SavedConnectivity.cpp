@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 
 using namespace HelfrichPlugin;
 using namespace OpenMM;
@@ -111,7 +112,8 @@ int SharedMembrane::getSmallestParticle() const {
 }
 
 bool SharedMembrane::needsSaving() const {
-    return mover != nullptr || getFingerprint() != 0;
+    // What is made up of others follows them.
+    return mover != nullptr || (getFingerprint() != 0 && parts.empty());
 }
 
 string SharedMembrane::save(ContextImpl& context) {
@@ -145,6 +147,8 @@ Connectivity SharedMembrane::getConnectivity() const {
 void SharedMembrane::setConnectivity(const string& subject, const Connectivity& connectivity) {
     check(Helfrich_Membrane_restore(subject.c_str(), core, connectivity.corners.data(), connectivity.order.data(),
                                     connectivity.flips));
+    for (Link& part : parts)
+        part.followed = std::numeric_limits<double>::quiet_NaN();
 }
 
 void SharedMembrane::checkMover(const string& subject, const Connectivity& before) {
@@ -180,6 +184,9 @@ void SharedMembrane::announce(ContextImpl& context, const SavedConnectivity* sav
 }
 
 void SharedMembrane::setTriangles(const string& subject, ContextImpl& context, const vector<int>& corners) {
+    if (std::any_of(parts.begin(), parts.end(), [](const Link& link) { return !link.other.expired(); }))
+        throw OpenMMException(subject + ": these triangles follow those of other forces, which have some of them each; "
+                                        "set them there");
     Connectivity before = getConnectivity();
     check(Helfrich_Membrane_setTriangles(subject.c_str(), core, corners.data(), (int64_t) corners.size() / 3));
     checkMover(subject, before);
@@ -233,7 +240,7 @@ void SharedMembrane::restoreAll(const string& subject, ContextImpl& context, con
         found[i]->announce(context, &wanted[i]);
     // These have no mover, which could refuse the triangles of the System.
     for (const auto& membrane : left)
-        if (membrane->getFingerprint() != 0)
+        if (membrane->getFingerprint() != 0 && membrane->parts.empty())
             membrane->setTriangles(subject, context, membrane->triangles);
 }
 
@@ -292,6 +299,8 @@ void SharedMembrane::inherit() {
 
 void SharedMembrane::settle(ContextImpl& context) {
     std::lock_guard<std::mutex> lock(settling);
+    if (!parts.empty())
+        followParts(context);
     if (inherited == nullptr)
         return;
     if (isHeir(context)) {

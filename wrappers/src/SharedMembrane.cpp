@@ -23,6 +23,14 @@ namespace {
 std::mutex registryMutex;
 std::multimap<const ContextImpl*, std::weak_ptr<SharedMembrane>> registry;
 
+[[noreturn]] void refuseShared(const string& subject, int particle) {
+    throw OpenMMException(subject + ": particle " + std::to_string(particle) +
+                          " belongs to two different triangulations, and a MonteCarloBondFlip would change one of them "
+                          "only; give all membrane forces on these particles and the MonteCarloBondFlip the same "
+                          "triangles in the same order (SurfaceRepulsionForce and ParticleSurfaceForce may have those "
+                          "of several such membranes, one after another)");
+}
+
 } // namespace
 
 shared_ptr<SharedMembrane> SharedMembrane::acquire(const string& subject, ContextImpl& context,
@@ -32,9 +40,12 @@ shared_ptr<SharedMembrane> SharedMembrane::acquire(const string& subject, Contex
         if (membrane->triangles == triangles)
             return membrane;
     shared_ptr<SharedMembrane> membrane(new SharedMembrane(subject, context, triangles));
-    for (const auto& other : known)
+    for (const auto& other : known) {
+        link(membrane, other);
+        link(other, membrane);
         if (other->mover != nullptr)
             refuseOthers(subject, *membrane, *other);
+    }
     std::lock_guard<std::mutex> lock(registryMutex);
     registry.emplace(&context, membrane);
     return membrane;
@@ -56,15 +67,60 @@ vector<shared_ptr<SharedMembrane>> SharedMembrane::findAll(ContextImpl& context)
     return found;
 }
 
+void SharedMembrane::link(const shared_ptr<SharedMembrane>& whole, const shared_ptr<SharedMembrane>& part) {
+    const vector<int>&all = whole->triangles, &some = part->triangles;
+    // Each corner belongs to one part only, so a triangle can begin at one place only.
+    for (size_t first = 0; first + some.size() <= all.size(); first += 3)
+        if (std::equal(some.begin(), some.end(), all.begin() + first)) {
+            whole->parts.push_back({part, (int64_t) first / 3, 0});
+            part->wholes.push_back({whole, (int64_t) first / 3, 0});
+            return;
+        }
+}
+
+bool SharedMembrane::hasOnlyContacts() const {
+    return std::all_of(members.begin(), members.end(),
+                       [](const MembraneForceImpl* member) { return member->isContact(); });
+}
+
+void SharedMembrane::checkJoining(const string& subject, int potential) const {
+    if (Helfrich_Potential_isContact(potential))
+        return;
+    for (const Link& link : parts)
+        if (auto part = link.other.lock())
+            if (part->mover != nullptr)
+                refuseShared(subject, part->triangles[0]);
+}
+
+void SharedMembrane::followParts(ContextImpl& context) {
+    vector<int> corners;
+    for (Link& link : parts) {
+        shared_ptr<SharedMembrane> part = link.other.lock();
+        if (part == nullptr)
+            continue;
+        part->settle(context);
+        double present = part->getFingerprint();
+        if (present == link.followed)
+            continue;
+        if (corners.empty())
+            corners = getConnectivity().corners;
+        vector<int> theirs = part->getConnectivity().corners;
+        std::copy(theirs.begin(), theirs.end(), corners.begin() + 3 * link.firstTriangle);
+        link.followed = present;
+    }
+    if (!corners.empty())
+        check(Helfrich_Membrane_setTriangles("", core, corners.data(), (int64_t) corners.size() / 3));
+}
+
 void SharedMembrane::refuseOthers(const string& subject, const SharedMembrane& one, const SharedMembrane& other) {
+    for (const auto& [whole, part] : {std::make_pair(&one, &other), std::make_pair(&other, &one)})
+        for (const Link& link : whole->parts)
+            if (link.other.lock().get() == part && whole->mover == nullptr && whole->hasOnlyContacts())
+                return;
     std::set<int> particles(one.triangles.begin(), one.triangles.end());
     for (int particle : other.triangles)
         if (particles.count(particle) != 0)
-            throw OpenMMException(subject + ": particle " + std::to_string(particle) +
-                                  " belongs to two different triangulations, and a MonteCarloBondFlip would change one "
-                                  "of them only; give "
-                                  "all membrane forces on these particles and the MonteCarloBondFlip the same "
-                                  "triangles in the same order");
+            refuseShared(subject, particle);
 }
 
 SharedMembrane::SharedMembrane(const string& subject, ContextImpl& context, const vector<int>& triangles)
@@ -207,9 +263,26 @@ int64_t SharedMembrane::flip(const string& subject, ContextImpl& context, int gr
         forceChange->resize(positions.size());
         change = reinterpret_cast<double*>(forceChange->data());
     }
+    vector<shared_ptr<SharedMembrane>> following;
+    vector<HelfrichFollower> followers;
+    vector<Link*> links;
+    for (const Link& link : wholes)
+        if (auto whole = link.other.lock()) {
+            whole->settle(context);
+            whole->collect(context, groups);
+            following.push_back(whole);
+            followers.push_back(
+                {whole->core, link.firstTriangle, whole->terms.data(), (int64_t) whole->terms.size()});
+            for (Link& back : whole->parts)
+                if (back.other.lock().get() == this)
+                    links.push_back(&back);
+        }
     check(Helfrich_Membrane_flip(subject.c_str(), core, terms.data(), (int64_t) terms.size(),
                                  (int64_t) positions.size(), reinterpret_cast<const double*>(positions.data()),
-                                 findBox(context), &rules, attempts, &state, &made, change));
+                                 findBox(context), &rules, attempts, &state, &made, change, followers.data(),
+                                 (int64_t) followers.size()));
+    for (Link* link : links)
+        link->followed = getFingerprint();
     return made;
 }
 

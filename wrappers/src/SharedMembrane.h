@@ -54,6 +54,8 @@ public:
     /** Refuse a force that sees another periodic box than those that are there: one of them sees none. */
     void checkAgreement(const MembraneForceImpl& joining) const;
     void leave(MembraneForceImpl* member);
+    /** Refuse a force that joins and would not follow flips of other membranes with the same particles. */
+    void checkJoining(const std::string& subject, int potential) const;
     /** Add what flips edges, of which there can be one. */
     void join(MonteCarloBondFlipImpl* mover, OpenMM::ContextImpl& context);
     void leave(MonteCarloBondFlipImpl* mover, OpenMM::ContextImpl& context);
@@ -136,6 +138,10 @@ public:
     void checkTerm(const std::string& subject, const HelfrichTerm& term) const {
         check(Helfrich_Membrane_checkTerm(subject.c_str(), core, &term));
     }
+    /** Refuse particles of a term that do not exist, come twice or are vertices. */
+    void checkParticles(const std::string& subject, const HelfrichTerm& term) const {
+        check(Helfrich_Membrane_checkParticles(subject.c_str(), core, &term));
+    }
     const std::vector<int>& getTriangles() const {
         return triangles;
     }
@@ -174,7 +180,21 @@ private:
      * its forces behind and frees its memory, and the next Context may get the same address.
      */
     bool belongsTo(OpenMM::ContextImpl& context) const;
-    /** Refuse two triangulations of the same particles if one of them changes. */
+    /** A membrane whose triangles are some of another's, one after the other. */
+    struct Link {
+        std::weak_ptr<SharedMembrane> other;
+        /** The place of the first of them. */
+        int64_t firstTriangle;
+        /** The fingerprint of the part that the whole has followed. */
+        double followed;
+    };
+    /** Note it if the triangles of one membrane are among those of another. */
+    static void link(const std::shared_ptr<SharedMembrane>& whole, const std::shared_ptr<SharedMembrane>& part);
+    /** Whether all members act on contacts, so that they may follow flips of parts. */
+    bool hasOnlyContacts() const;
+    /** Have the present triangles of all parts. */
+    void followParts(OpenMM::ContextImpl& context);
+    /** Refuse two triangulations of the same particles if one of them changes, unless it can follow the other. */
     static void refuseOthers(const std::string& subject, const SharedMembrane& one, const SharedMembrane& other);
     /** Note the members in some force groups, and their terms. */
     void collect(OpenMM::ContextImpl& context, int groups);
@@ -204,6 +224,8 @@ private:
     MonteCarloBondFlipImpl* mover;
     /** Whether it has been found to span the box, and no barostat tears it. */
     bool spans;
+    /** Membranes that this one is made up of, and those that it is part of. */
+    std::vector<Link> parts, wholes;
     /** What waits to be taken up, or null. */
     std::unique_ptr<Left> inherited;
     /** OpenCL and CUDA evaluate on a thread of their own. */

@@ -98,13 +98,15 @@ mod tests {
     use super::*;
     use crate::potentials::{Needs, Potential, REGISTRY, Term};
 
+    /// But for those of pairs, which evaluators never see: the processor computes them beside any of them.
     #[test]
     fn every_potential_has_a_shader_and_every_shader_a_potential() {
         let is_for_device = |potential: &&dyn Potential| {
             let name = potential.name();
             let values = vec![1.0; potential.parameters().len()];
-            // Borders are computed on the processor.
-            potential.needs(&Term::new(name, 0, &values).unwrap()) != Needs::BORDERS
+            // Borders and contacts are computed on the processor.
+            let needs = potential.needs(&Term::new(name, 0, &values).unwrap());
+            !needs.intersects(Needs::BORDERS | Needs::CONTACTS)
         };
         let potentials: Vec<_> = REGISTRY.into_iter().filter(is_for_device).collect();
         assert_eq!(shaders::POTENTIALS.len(), potentials.len());

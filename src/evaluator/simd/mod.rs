@@ -26,6 +26,7 @@ mod triangles;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
+pub use choice::Choice;
 pub use instructions::Level;
 pub use layout::Layout;
 pub use records::BLOCK;
@@ -40,7 +41,6 @@ use crate::potentials::{Contribution, Needs, Term};
 use crate::team::{Parts, Team};
 use arrays::Arrays;
 use backward::Forces;
-use choice::Choice;
 use survey::Findings;
 use sweep::{Scratch, Sweep, backward};
 use triangles::TriangleSums;

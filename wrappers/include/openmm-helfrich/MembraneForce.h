@@ -144,6 +144,12 @@ public:
         return isPeriodic;
     }
     /**
+     * Get the particles beside the vertices that the force acts on; most classes have none.
+     */
+    const std::vector<int>& getParticles() const {
+        return particles;
+    }
+    /**
      * Get which variant of the potential is computed, 0 if there are none.
      */
     int getForm() const {
@@ -184,6 +190,10 @@ protected:
      */
     MembraneForce(const std::string& type, const std::vector<int>& triangles, const std::vector<double>& values,
                   int form = 0);
+    /** Set the particles beside the vertices that the force acts on. */
+    void setOtherParticles(const std::vector<int>& indices) {
+        particles = indices;
+    }
 
 private:
     struct Parameter {
@@ -201,6 +211,7 @@ private:
 
     std::vector<Parameter> parameters;
     std::vector<std::string> derivatives;
+    std::vector<int> particles;
     int form;
     unsigned int switches;
     std::string backend;

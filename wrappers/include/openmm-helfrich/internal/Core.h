@@ -24,7 +24,7 @@ struct HelfrichParameterInfo {
     int energy, length;
     /** NaN if there is none. */
     double defaultValue;
-    /** 0: only as a scalar; 1: also for each vertex; 2: also for each triangle. */
+    /** 0: only as a scalar; 1: also for each vertex; 2: also for each triangle; 3: also for each particle. */
     int per;
 };
 
@@ -37,6 +37,17 @@ struct HelfrichTerm {
     /** Values of single elements, null where there are none. */
     const double* fields[HELFRICH_MAX_PARAMETERS];
     int64_t fieldLengths[HELFRICH_MAX_PARAMETERS];
+    /** Particles beside the vertices, null where there are none. */
+    const int* particles;
+    int64_t numParticles;
+};
+
+/** A membrane that has all triangles of another among its own, and follows its flips. */
+struct HelfrichFollower {
+    HelfrichMembrane* membrane;
+    int64_t firstTriangle;
+    const HelfrichTerm* terms;
+    int64_t numTerms;
 };
 
 struct HelfrichContribution {
@@ -69,6 +80,7 @@ void helfrich_setLastError(const char* message);
 const char* Helfrich_openmmVersion();
 void Helfrich_register();
 int Helfrich_Potential_find(const char* potential, int* index);
+int Helfrich_Potential_isContact(int potential);
 int Helfrich_Potential_parameter(const char* potential, int index, HelfrichParameterInfo* info);
 int Helfrich_Potential_form(const char* potential, int index, const char** what, const char** name);
 int Helfrich_Potential_switch(const char* potential, int index, const char** name);
@@ -83,6 +95,7 @@ void Helfrich_Membrane_edges(const HelfrichMembrane* membrane, int* particles);
 /** Whether it spans the periodic box in which it was evaluated last: 1 or 0. */
 int Helfrich_Membrane_spans(const HelfrichMembrane* membrane);
 int Helfrich_Membrane_checkTerm(const char* subject, const HelfrichMembrane* membrane, const HelfrichTerm* term);
+int Helfrich_Membrane_checkParticles(const char* subject, const HelfrichMembrane* membrane, const HelfrichTerm* term);
 void Helfrich_Membrane_setThreads(HelfrichMembrane* membrane, int threads);
 /** `box` has the three box vectors, or is null where the surface is not in a periodic box. */
 int Helfrich_Membrane_evaluate(const char* subject, HelfrichMembrane* membrane, const HelfrichTerm* terms,
@@ -96,7 +109,7 @@ int Helfrich_Membrane_checkFlips(const char* subject, const HelfrichMembrane* me
 int Helfrich_Membrane_flip(const char* subject, HelfrichMembrane* membrane, const HelfrichTerm* terms, int64_t numTerms,
                            int64_t numParticles, const double* positions, const double* box,
                            const HelfrichFlipRules* rules, int64_t attempts, HelfrichFlipState* state, int64_t* made,
-                           double* forceChange);
+                           double* forceChange, const HelfrichFollower* followers, int64_t numFollowers);
 int64_t Helfrich_Membrane_numTriangles(const HelfrichMembrane* membrane);
 int64_t Helfrich_Membrane_numVertices(const HelfrichMembrane* membrane);
 void Helfrich_Membrane_triangles(const HelfrichMembrane* membrane, int* corners);

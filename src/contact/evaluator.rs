@@ -1,0 +1,184 @@
+//! All contacts of one mesh.
+
+use super::particles::ParticleContacts;
+use super::surface::SurfaceContacts;
+use crate::error::{Error, Result};
+use crate::evaluator::simd::Choice;
+use crate::mesh::triangulation::Quad;
+use crate::mesh::{Cell, Triangulation};
+use crate::potentials::{Contribution, Needs, Term, particle_surface};
+use crate::team::{Team, default_threads};
+use smallvec::SmallVec;
+
+/// Below so many pairs or particles several threads are never faster.
+const PARALLEL_FROM: usize = 2000;
+
+/// Evaluates terms of contacts, and follows flips.
+pub struct Contacts {
+    surface: SurfaceContacts,
+    /// One for each term of particles, in order.
+    particles: Vec<ParticleContacts>,
+    alone: Team,
+    /// Made when there is enough to do; the number that it may have, 0 for as many as there are.
+    team: Option<Team>,
+    threads: usize,
+    choice: Choice,
+}
+
+impl Default for Contacts {
+    fn default() -> Self {
+        Self {
+            surface: SurfaceContacts::default(),
+            particles: Vec::new(),
+            alone: Team::new(1).expect("no thread is made for a team of one"),
+            team: None,
+            threads: 0,
+            choice: Choice::new(),
+        }
+    }
+}
+
+/// Whether a term is one of contacts.
+#[inline]
+pub fn is_contact(term: &Term) -> bool {
+    term.potential.needs(term).contains(Needs::CONTACTS)
+}
+
+/// Of vertices and triangles, and of particles and triangles, with their places among all terms.
+type Sorted<'a, 't> = [SmallVec<[(usize, &'a Term<'t>); 4]>; 2];
+
+fn sorted<'a, 't>(terms: &'a [Term<'t>]) -> Sorted<'a, 't> {
+    let of = |particles: bool| {
+        let has = |term: &Term| term.potential.name() == particle_surface::NAME;
+        let contacts = terms.iter().enumerate().filter(|(_, term)| is_contact(term));
+        contacts.filter(|(_, term)| has(term) == particles).collect()
+    };
+    [of(false), of(true)]
+}
+
+impl Contacts {
+    /// Let so many threads share the work where that is faster; 0 for as many as there are.
+    pub fn set_threads(&mut self, threads: usize) {
+        (self.threads, self.team) = (threads, None);
+        self.choice = Choice::new();
+    }
+
+    /// Refuse particles of a term that do not exist, come twice or are vertices.
+    ///
+    /// # Errors
+    /// Names the particle.
+    pub fn check(mesh: &Triangulation, term: &Term, num_particles: usize) -> Result<()> {
+        ParticleContacts::check(mesh, term.particles, num_particles)
+    }
+
+    /// Evaluate the terms of contacts among all; others are left alone. Contributions, which may be none, and forces
+    /// (kJ/mol/nm) are added to.
+    ///
+    /// # Errors
+    /// A position that is not finite, a periodic box that is too small, a pair without distance.
+    pub fn evaluate(
+        &mut self,
+        mesh: &Triangulation,
+        cell: Option<&Cell>,
+        terms: &[Term],
+        positions: &[f64],
+        contributions: &mut [Contribution],
+        mut forces: Option<&mut [f64]>,
+    ) -> Result<()> {
+        let [surface, particles] = sorted(terms);
+        if surface.is_empty() && particles.is_empty() {
+            return Ok(());
+        }
+        let count: usize = particles.iter().map(|(_, term)| term.particles.len()).sum();
+        let worth_it = count + self.surface.work() >= PARALLEL_FROM;
+        let attempt = worth_it.then(|| self.choice.next());
+        if worth_it && self.team.is_none() {
+            let threads = if self.threads == 0 { default_threads() } else { self.threads };
+            self.team = Team::new(threads).ok();
+        }
+        let together = attempt.as_ref().is_some_and(|attempt| attempt.together);
+        let team = self.team.as_mut().filter(|_| together).unwrap_or(&mut self.alone);
+        let mut sums: SmallVec<[Contribution; 4]> = SmallVec::new();
+        if !surface.is_empty() {
+            let only: SmallVec<[&Term; 4]> = surface.iter().map(|(_, term)| *term).collect();
+            sums.resize(only.len(), Contribution::default());
+            self.surface.prepare(mesh, cell, &only, positions, team)?;
+            self.surface.evaluate(mesh, &only, &mut sums, forces.as_deref_mut(), team);
+        }
+        self.particles.resize_with(particles.len().max(self.particles.len()), ParticleContacts::default);
+        for ((_, term), contacts) in particles.iter().zip(&mut self.particles) {
+            let mut sum = Contribution::default();
+            let on = (mesh, cell);
+            contacts.evaluate(on, term, positions, &mut sum, forces.as_deref_mut(), team)?;
+            sums.push(sum);
+        }
+        for ((place, term), sum) in surface.iter().chain(&particles).zip(&sums) {
+            if !sum.energy.is_finite() {
+                return Err(Error::Touching { force: term.potential.name() });
+            }
+            if let Some(contribution) = contributions.get_mut(*place) {
+                *contribution += *sum;
+            }
+        }
+        if let Some(attempt) = attempt {
+            self.choice.done(&attempt);
+        }
+        Ok(())
+    }
+
+    /// Be ready for flips at some positions.
+    ///
+    /// # Errors
+    /// Those of [`Self::evaluate`].
+    pub fn prepare_flips(
+        &mut self,
+        mesh: &Triangulation,
+        cell: Option<&Cell>,
+        terms: &[Term],
+        positions: &[f64],
+    ) -> Result<()> {
+        let [surface, particles] = sorted(terms);
+        let only: SmallVec<[&Term; 4]> = surface.iter().map(|(_, term)| *term).collect();
+        self.surface.prepare(mesh, cell, &only, positions, &mut self.alone)?;
+        self.particles.resize_with(particles.len().max(self.particles.len()), ParticleContacts::default);
+        for ((_, term), contacts) in particles.iter().zip(&mut self.particles) {
+            contacts.prepare_flips((mesh, cell), term, positions)?;
+        }
+        Ok(())
+    }
+
+    /// The most that a flip can gain, kJ/mol: what the contacts around it have now, or more. `quad` is as it is now.
+    pub fn most(&mut self, mesh: &Triangulation, terms: &[Term], quad: &Quad) -> f64 {
+        let [surface, particles] = sorted(terms);
+        let quiet = particles.iter().zip(&self.particles).all(|(_, contacts)| contacts.is_quiet());
+        let attracts = |(_, term): &(usize, &Term)| particle_surface::attracts(term);
+        if (surface.is_empty() || self.surface.is_quiet(quad)) && quiet {
+            0.0
+        } else if particles.iter().any(attracts) && !quiet {
+            f64::INFINITY
+        } else {
+            self.around(mesh, terms, quad.triangles(), quad.vertices)
+        }
+    }
+
+    /// The energy, kJ/mol, of all that a flip changes, as the mesh is now, before the flip or after it. `changed` are the two triangles
+    /// that it replaces, `vertices` i, j, k and l.
+    pub fn around(
+        &mut self,
+        mesh: &Triangulation,
+        terms: &[Term],
+        changed: [usize; 2],
+        vertices: [u32; 4],
+    ) -> f64 {
+        let [surface, particles] = sorted(terms);
+        let only: SmallVec<[&Term; 4]> = surface.iter().map(|(_, term)| *term).collect();
+        let surface = self.surface.around(mesh, &only, changed, vertices);
+        let pairs = particles.iter().zip(&self.particles);
+        surface + pairs.map(|((_, term), contacts)| contacts.around(mesh, term, changed)).sum::<f64>()
+    }
+
+    /// Follow a flip, which `mesh` has made; `quad` is as it was before.
+    pub fn follow(&mut self, mesh: &Triangulation, quad: &Quad) {
+        self.surface.follow(mesh, quad);
+    }
+}

@@ -1,0 +1,228 @@
+//! A grid of cells over some points, or over a periodic box.
+
+use crate::mesh::Cell;
+use crate::mesh::geometry::Vec3;
+
+/// Boxes of equal size, with a list of numbers in each.
+#[derive(Default)]
+pub struct Grid {
+    origin: Vec3,
+    /// Take a position relative to the origin to coordinates in which a box is a unit cube.
+    rows: [Vec3; 3],
+    /// The lengths of the rows: how far in these coordinates 1 nm can lead.
+    lengths: [f64; 3],
+    /// How many boxes there are along each axis.
+    counts: [i64; 3],
+    periodic: bool,
+    starts: Vec<u32>,
+    items: Vec<u32>,
+    /// Kept for its memory.
+    homes: Vec<(u32, u32)>,
+}
+
+/// Boxes from a first to a last one along each axis.
+type Range = [[i64; 2]; 3];
+
+impl Grid {
+    /// An empty grid whose boxes are about `size` wide, over the periodic box, or else from `low` to `high`; there are not
+    /// many more boxes than `most`.
+    pub fn set_up(&mut self, cell: Option<&Cell>, [low, high]: [Vec3; 2], size: f64, most: usize) {
+        self.periodic = cell.is_some();
+        let vectors = match cell {
+            Some(cell) => *cell.vectors(),
+            None => {
+                let extent = (high - low).add_scalar(size * 1e-3);
+                [0, 1, 2].map(|k| Vec3::ith(k, extent[k]))
+            }
+        };
+        self.origin = if self.periodic { Vec3::zeros() } else { low.add_scalar(-size * 0.5e-3) };
+        let volume = vectors[0].dot(&vectors[1].cross(&vectors[2]));
+        // Reciprocal vectors: their lengths are one over the distances of opposite faces.
+        let dual = |k: usize| vectors[(k + 1) % 3].cross(&vectors[(k + 2) % 3]) / volume;
+        let rows = [dual(0), dual(1), dual(2)];
+        let mut size = size;
+        let counts = |size: f64| {
+            rows.map(|row: Vec3| (1.0 / (row.norm() * size)).floor().clamp(1.0, 1e6) as i64)
+        };
+        self.counts = counts(size);
+        while self.counts.iter().product::<i64>() > most.max(64) as i64 {
+            size *= 1.25;
+            self.counts = counts(size);
+        }
+        self.rows = [0, 1, 2].map(|k| rows[k] * self.counts[k] as f64);
+        self.lengths = self.rows.map(|row| row.norm());
+        self.homes.clear();
+    }
+
+    /// Number of boxes.
+    fn len(&self) -> usize {
+        self.counts.iter().product::<i64>() as usize
+    }
+
+    #[inline]
+    fn coordinates(&self, position: &Vec3) -> [f64; 3] {
+        let from = position - self.origin;
+        self.rows.map(|row| row.dot(&from))
+    }
+
+    /// The box that a position is in, if there is one.
+    #[inline]
+    pub fn home(&self, position: &Vec3) -> Option<usize> {
+        let place = self.coordinates(position);
+        let mut index = 0;
+        for k in [2, 1, 0] {
+            let count = self.counts[k];
+            let mut x = place[k].floor();
+            if self.periodic {
+                x -= (x / count as f64).floor() * count as f64;
+            }
+            if !(x >= 0.0 && x < count as f64) {
+                return None;
+            }
+            index = index * count + x as i64;
+        }
+        Some(index as usize)
+    }
+
+    /// Put a number into the box of a position.
+    pub fn add(&mut self, item: u32, position: &Vec3) {
+        if let Some(home) = self.home(position) {
+            self.homes.push((home as u32, item));
+        }
+    }
+
+    /// Put a number into all boxes that are nearer than `reach` to some points or between them.
+    pub fn add_around(&mut self, item: u32, points: &[Vec3], reach: f64) {
+        let mut homes = std::mem::take(&mut self.homes);
+        self.each(self.range(points, reach), |home| homes.push((home as u32, item)));
+        self.homes = homes;
+    }
+
+    /// All numbers have been put in. Those of a box are in the order in which they came.
+    pub fn seal(&mut self) {
+        self.starts.clear();
+        self.starts.resize(self.len() + 1, 0);
+        for (home, _) in &self.homes {
+            self.starts[*home as usize + 1] += 1;
+        }
+        for home in 0..self.len() {
+            self.starts[home + 1] += self.starts[home];
+        }
+        self.items.resize(self.homes.len(), 0);
+        for (home, item) in self.homes.iter().rev() {
+            let end = &mut self.starts[*home as usize + 1];
+            *end -= 1;
+            self.items[*end as usize] = *item;
+        }
+        // Each end has moved down to where its box begins, and is one place too far back.
+        self.starts.remove(0);
+        self.starts.push(self.items.len() as u32);
+    }
+
+    /// The numbers in a box.
+    #[inline]
+    pub fn items(&self, home: usize) -> &[u32] {
+        &self.items[self.starts[home] as usize..self.starts[home + 1] as usize]
+    }
+
+    /// The numbers in all boxes that are nearer than `reach` to some points or between them.
+    pub fn near(&self, points: &[Vec3], reach: f64, mut visit: impl FnMut(u32)) {
+        self.each(self.range(points, reach), |home| {
+            self.items(home).iter().for_each(|item| visit(*item));
+        });
+    }
+
+    fn range(&self, points: &[Vec3], reach: f64) -> Range {
+        let mut range = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
+        for point in points {
+            let place = self.coordinates(point);
+            for k in 0..3 {
+                range[k] = [range[k][0].min(place[k]), range[k][1].max(place[k])];
+            }
+        }
+        std::array::from_fn(|k| {
+            let margin = reach * self.lengths[k];
+            let [low, high] = [(range[k][0] - margin).floor(), (range[k][1] + margin).floor()];
+            let (low, high, last) = (low as i64, high as i64, self.counts[k] - 1);
+            if !self.periodic {
+                [low.max(0), high.min(last)]
+            } else if high - low >= last {
+                [0, last]
+            } else {
+                [low, high]
+            }
+        })
+    }
+
+    #[inline]
+    fn each(&self, [x, y, z]: Range, mut visit: impl FnMut(usize)) {
+        let wrap = |k: usize, at: i64| if self.periodic { at.rem_euclid(self.counts[k]) } else { at };
+        for k in z[0]..=z[1] {
+            for j in y[0]..=y[1] {
+                let row = (wrap(2, k) * self.counts[1] + wrap(1, j)) * self.counts[0];
+                for i in x[0]..=x[1] {
+                    visit((row + wrap(0, i)) as usize);
+                }
+            }
+        }
+    }
+}
+
+/// The corners of a brick around some points.
+pub fn bounds<'a>(points: impl IntoIterator<Item = &'a Vec3>) -> [Vec3; 2] {
+    let start = [Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY)];
+    points.into_iter().fold(start, |[low, high], point| [low.inf(point), high.sup(point)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::closest::difference;
+    use crate::test_meshes::noise;
+
+    /// All points nearer than the reach are found, each once.
+    fn check(cell: Option<Cell>) {
+        let mut random = noise(5);
+        let mut point = || Vec3::from_fn(|_, _| 12.0 * random());
+        let points: Vec<_> = (0..300).map(|_| point()).collect();
+        let mut grid = Grid::default();
+        grid.set_up(cell.as_ref(), bounds(&points), 1.1, 500);
+        for (item, at) in points.iter().enumerate() {
+            grid.add(item as u32, at);
+        }
+        grid.seal();
+        for _ in 0..100 {
+            let centre = point();
+            let mut found = Vec::new();
+            grid.near(&[centre], 1.7, |item| found.push(item));
+            found.sort_unstable();
+            assert!(found.windows(2).all(|pair| pair[0] < pair[1]));
+            for (item, at) in points.iter().enumerate() {
+                if difference(cell.as_ref(), at, &centre).norm() < 1.7 {
+                    assert!(found.contains(&(item as u32)));
+                }
+            }
+            assert!(found.len() < 200);
+        }
+    }
+
+    #[test]
+    fn near_points_are_found() {
+        check(None);
+        check(Some(Cell::new([[9.0, 0.0, 0.0], [2.5, 8.0, 0.0], [-2.0, 2.5, 7.0]]).unwrap()));
+    }
+
+    #[test]
+    fn a_box_has_what_was_put_into_it_in_order() {
+        let mut grid = Grid::default();
+        grid.set_up(None, [Vec3::zeros(), Vec3::repeat(3.0)], 1.0, 100);
+        for item in 0..50 {
+            grid.add_around(item, &[Vec3::repeat(1.5)], if item % 2 == 0 { 0.2 } else { 1.2 });
+        }
+        grid.seal();
+        let middle = grid.home(&Vec3::repeat(1.5)).unwrap();
+        assert_eq!(grid.items(middle), (0..50).collect::<Vec<_>>());
+        assert_eq!(grid.items(0), (0..25).map(|n| 2 * n + 1).collect::<Vec<_>>());
+        assert_eq!(grid.home(&Vec3::new(1.0, 1.0, 3.5)), None);
+    }
+}

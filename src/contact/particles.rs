@@ -1,0 +1,350 @@
+//! Particles near a surface; `src/potentials/particle_surface.rs` has the formula.
+//!
+//! The boxes of a grid know the triangles near them, and are renewed when a vertex has moved by the skin. Particles
+//! themselves are not remembered: each looks into its box, which for most of a million is empty.
+
+use super::closest::{Arms, difference};
+use super::grid::{Grid, bounds};
+use crate::error::{Error, Result};
+use crate::mesh::geometry::Vec3;
+use crate::mesh::{Cell, Triangulation};
+use crate::potentials::particle_surface::{self, RADIUS};
+use crate::potentials::{Contribution, Term};
+use crate::team::{Parts, Team};
+
+/// The skin as a share of the reach.
+const SKIN: f64 = 0.3;
+
+/// Particles of one term on one mesh.
+#[derive(Default)]
+pub struct ParticleContacts {
+    cell: Option<Cell>,
+    /// All vertices as they are now.
+    positions: Vec<Vec3>,
+    /// The middle of each triangle and how far its corners are from it.
+    spheres: Vec<(Vec3, f64)>,
+    /// For particles of similar reach, from that of the smallest on by factors of two.
+    maps: Vec<Map>,
+    /// One for each thread.
+    found: Vec<Found>,
+    /// Particles near the surface when flips began, with their radii.
+    near: Vec<(Vec3, f64)>,
+    near_grid: Grid,
+    /// How far from its middle a particle may act.
+    farthest: f64,
+}
+
+/// What one thread has found; all, one after the other, are in the order of particles and then triangles.
+#[derive(Default)]
+struct Found {
+    touches: Vec<Touch>,
+    /// A particle whose position is not finite.
+    lost: Option<u32>,
+}
+
+/// Triangles by boxes.
+#[derive(Default)]
+struct Map {
+    /// The reach, and the mesh that it is of.
+    made_for: Option<(f64, Option<Cell>, u64)>,
+    reference: Vec<Vec3>,
+    grid: Grid,
+}
+
+/// A particle that feels a triangle.
+struct Touch {
+    /// Among the term's particles.
+    place: u32,
+    triangle: u32,
+    pair: particle_surface::Pair,
+}
+
+impl Map {
+    /// Have all triangles that may be nearer than `reach` to any point of a box in its list.
+    fn refresh(&mut self, mesh: &Triangulation, cell: Option<&Cell>, reach: f64, positions: &[Vec3]) {
+        let wanted = (reach, cell.copied(), mesh.fingerprint());
+        let skin = SKIN * reach;
+        if self.made_for == Some(wanted) {
+            let pairs = positions.iter().zip(&self.reference);
+            if pairs.fold(0.0, |far: f64, (now, then)| far.max((now - then).norm_squared())) < skin * skin {
+                return;
+            }
+        }
+        let [low, high] = bounds(positions);
+        let range = reach + skin;
+        let around = [low.add_scalar(-range), high.add_scalar(range)];
+        self.grid.set_up(cell, around, range, 16 * mesh.triangles().len());
+        for (triangle, corners) in mesh.triangles().iter().enumerate() {
+            let [a, b, c] = corners.map(|corner| &positions[corner as usize]);
+            let frame = [*a, a + difference(cell, b, a), a + difference(cell, c, a)];
+            self.grid.add_around(triangle as u32, &frame, range);
+        }
+        self.grid.seal();
+        self.reference.clear();
+        self.reference.extend_from_slice(positions);
+        self.made_for = Some(wanted);
+    }
+}
+
+impl ParticleContacts {
+    /// Refuse particles that do not exist, come twice or are vertices.
+    ///
+    /// # Errors
+    /// Names the particle.
+    pub fn check(mesh: &Triangulation, particles: &[u32], num_particles: usize) -> Result<()> {
+        let mut met = vec![false; num_particles];
+        for &particle in particles {
+            // C hands over signed numbers.
+            let name = particle as i32;
+            let refuse = |what: String| Err(Error::Contract(format!("particle {name} {what}")));
+            let Some(met) = met.get_mut(particle as usize) else {
+                let last = num_particles as i64 - 1;
+                return refuse(format!("is among the particles, but indices run from 0 to {last}"));
+            };
+            if std::mem::replace(met, true) {
+                return refuse("is among the particles twice; leave it out once".to_owned());
+            }
+            if mesh.particles().binary_search(&particle).is_ok() {
+                return refuse(
+                    "is among the particles and a vertex of the triangles, too; SurfaceRepulsionForce acts between \
+                     vertices and triangles"
+                        .to_owned(),
+                );
+            }
+        }
+        Ok(())
+    }
+
+    /// Add the energy of a term, and forces (kJ/mol/nm) to those of all particles.
+    ///
+    /// # Errors
+    /// A position that is not finite, a box that is too small.
+    pub fn evaluate(
+        &mut self,
+        (mesh, cell): (&Triangulation, Option<&Cell>),
+        term: &Term,
+        positions: &[f64],
+        contribution: &mut Contribution,
+        forces: Option<&mut [f64]>,
+        team: &mut Team,
+    ) -> Result<()> {
+        let reach = self.prepare(mesh, cell, term, positions)?;
+        let mut found = std::mem::take(&mut self.found);
+        found.resize_with(team.size().max(found.len()), Found::default);
+        let parts = Parts::new(&mut found);
+        let this = &*self;
+        team.run(|member| {
+            // SAFETY: each member has its own place.
+            let found = &mut unsafe { parts.part(member.index()..member.index() + 1) }[0];
+            found.touches.clear();
+            found.lost = None;
+            for place in member.share(term.particles.len()) {
+                let place = place as u32;
+                let (at, radius) = of(term, positions, place);
+                let lost = this.each_near(&reach, &at, radius, |triangle| {
+                    let pair = particle_surface::pair(term, radius, &this.arms(mesh, &at, triangle));
+                    found.touches.push(Touch { place, triangle, pair });
+                });
+                if lost {
+                    found.lost = Some(place);
+                }
+            }
+        });
+        let used = &found[..team.size()];
+        let lost = used.iter().find_map(|found| found.lost);
+        let touches = || used.iter().flat_map(|found| &found.touches);
+        for touch in touches() {
+            *contribution += touch.pair.contribution;
+        }
+        if let Some(forces) = forces.filter(|_| lost.is_none()) {
+            for Touch { place, triangle, pair } in touches() {
+                let [b, c, particle] = pair.forces;
+                let corners = mesh.particles_of(*triangle as usize);
+                let slots = [term.particles[*place as usize], corners[0], corners[1], corners[2]];
+                for (slot, force) in slots.into_iter().zip([particle, -particle - b - c, b, c]) {
+                    let slot = &mut forces[3 * slot as usize..][..3];
+                    slot.iter_mut().zip(force.iter()).for_each(|(sum, force)| *sum += force);
+                }
+            }
+        }
+        self.found = found;
+        lost.map_or(Ok(()), |place| {
+            let (particle, (at, _)) = (term.particles[place as usize], of(term, positions, place));
+            Err(Error::NonFinitePosition { particle, position: at.into() })
+        })
+    }
+
+    /// Take the positions of the vertices, and have maps for particles of all radii.
+    fn prepare(
+        &mut self,
+        mesh: &Triangulation,
+        cell: Option<&Cell>,
+        term: &Term,
+        positions: &[f64],
+    ) -> Result<Reach> {
+        self.cell = cell.copied();
+        let at = |particle: u32| Vec3::from_column_slice(&positions[3 * particle as usize..][..3]);
+        self.positions.clear();
+        self.positions.extend(mesh.particles().iter().map(|particle| at(*particle)));
+        for (position, particle) in self.positions.iter().zip(mesh.particles()) {
+            if !position.iter().all(|x| x.is_finite()) {
+                let (particle, position) = (*particle, (*position).into());
+                return Err(Error::NonFinitePosition { particle, position });
+            }
+        }
+        let mut largest = 0.0;
+        self.spheres.clear();
+        self.spheres.extend(mesh.triangles().iter().map(|corners| {
+            let [a, b, c] = corners.map(|corner| &self.positions[corner as usize]);
+            let (u, v) = (difference(cell, b, a), difference(cell, c, a));
+            let middle = (u + v) / 3.0;
+            let far = middle.norm_squared().max((u - middle).norm_squared());
+            let far = far.max((v - middle).norm_squared()).sqrt();
+            largest = far.max(largest);
+            (a + middle, far)
+        }));
+        let reach = Reach::new(term);
+        let farthest = reach.of_class(reach.classes.len() - 1);
+        if let Some(cell) = cell
+            && farthest * (1.0 + SKIN) + 2.0 * largest >= cell.half_width()
+        {
+            return Err(Error::Contract(format!(
+                "particles and triangles act on each other up to {farthest} nm, which with the size of a triangle is more \
+                 than half of the periodic box; make distance or radius smaller, or the box larger"
+            )));
+        }
+        self.maps.resize_with(reach.classes.len().max(self.maps.len()), Map::default);
+        for class in (0..reach.classes.len()).filter(|class| reach.classes[*class]) {
+            self.maps[class].refresh(mesh, cell, reach.of_class(class), &self.positions);
+        }
+        Ok(reach)
+    }
+
+    #[inline]
+    fn arms(&self, mesh: &Triangulation, at: &Vec3, triangle: u32) -> Arms {
+        let corners = mesh.triangles()[triangle as usize];
+        Arms::new(self.cell.as_ref(), at, corners.map(|corner| &self.positions[corner as usize]))
+    }
+
+    /// Go through the triangles that a particle may feel, ascending; true if its position is not finite.
+    #[inline]
+    fn each_near(&self, reach: &Reach, at: &Vec3, radius: f64, mut visit: impl FnMut(u32)) -> bool {
+        let grid = &self.maps[reach.class(radius)].grid;
+        let Some(home) = grid.home(at) else { return !at.iter().all(|x| x.is_finite()) };
+        let own = reach.from_rim + radius;
+        for &triangle in grid.items(home) {
+            let (middle, size) = &self.spheres[triangle as usize];
+            let far = difference(self.cell.as_ref(), at, middle).norm_squared();
+            if far < (own + size) * (own + size) {
+                visit(triangle);
+            }
+        }
+        false
+    }
+
+    /// Be ready for flips: note which particles are near.
+    ///
+    /// # Errors
+    /// Those of [`Self::evaluate`].
+    pub fn prepare_flips(
+        &mut self,
+        (mesh, cell): (&Triangulation, Option<&Cell>),
+        term: &Term,
+        positions: &[f64],
+    ) -> Result<()> {
+        let reach = self.prepare(mesh, cell, term, positions)?;
+        self.farthest = reach.of_class(reach.classes.len() - 1);
+        let mut near = std::mem::take(&mut self.near);
+        near.clear();
+        for place in 0..term.particles.len() as u32 {
+            let (at, radius) = of(term, positions, place);
+            // New triangles may come nearer than old ones, so all whose box knows a triangle are noted.
+            let map = &self.maps[reach.class(radius)];
+            if map.grid.home(&at).is_some_and(|home| !map.grid.items(home).is_empty()) {
+                near.push((at, radius));
+            }
+        }
+        let low_high = bounds(near.iter().map(|(at, _)| at));
+        self.near_grid.set_up(cell, low_high, self.farthest, 2 * near.len());
+        for (item, (at, _)) in near.iter().enumerate() {
+            self.near_grid.add(item as u32, at);
+        }
+        self.near_grid.seal();
+        self.near = near;
+        Ok(())
+    }
+
+    /// The energy, kJ/mol, between all particles and two triangles as the mesh has them now.
+    pub fn around(&self, mesh: &Triangulation, term: &Term, changed: [usize; 2]) -> f64 {
+        if self.near.is_empty() {
+            return 0.0;
+        }
+        let mut energy = 0.0;
+        for triangle in changed {
+            let corners = mesh.triangles()[triangle].map(|corner| &self.positions[corner as usize]);
+            let [a, b, c] = corners;
+            let cell = self.cell.as_ref();
+            let frame = [*a, a + difference(cell, b, a), a + difference(cell, c, a)];
+            self.near_grid.near(&frame, self.farthest, |item| {
+                let (at, radius) = &self.near[item as usize];
+                let arms = Arms::new(cell, at, corners);
+                energy += particle_surface::pair(term, *radius, &arms).contribution.energy;
+            });
+        }
+        energy
+    }
+
+    /// Whether no particle is near the surface.
+    pub fn is_quiet(&self) -> bool {
+        self.near.is_empty()
+    }
+}
+
+/// Where a particle is, and its radius, nm.
+#[inline]
+fn of(term: &Term, positions: &[f64], place: u32) -> (Vec3, f64) {
+    let first = 3 * term.particles[place as usize] as usize;
+    let at = Vec3::new(positions[first], positions[first + 1], positions[first + 2]);
+    (at, term.value(RADIUS, place as usize))
+}
+
+/// How far particles act from their middles. Those whose reach is within a factor of two are a class.
+struct Reach {
+    /// From their rims.
+    from_rim: f64,
+    /// The least from their middles.
+    least: f64,
+    most: f64,
+    /// Which classes have particles, from the least reach on.
+    classes: Vec<bool>,
+}
+
+impl Reach {
+    fn new(term: &Term) -> Self {
+        let from_rim = particle_surface::reach(term);
+        let radii = term.fields[RADIUS];
+        let one = [term.values[RADIUS]];
+        let radii = if radii.is_empty() { &one } else { radii };
+        let fold = |choose: fn(f64, f64) -> f64| from_rim + radii.iter().copied().fold(radii[0], choose);
+        let (least, most) = (fold(f64::min), fold(f64::max));
+        let mut reach = Self { from_rim, least, most, classes: Vec::new() };
+        reach.classes = vec![false; reach.class(most - from_rim) + 1];
+        for radius in radii {
+            let class = reach.class(*radius);
+            reach.classes[class] = true;
+        }
+        reach
+    }
+
+    #[inline]
+    fn class(&self, radius: f64) -> usize {
+        // The exponent of a number that is 1 or more, or a little less by rounding.
+        let exponent = ((self.from_rim + radius) / self.least).to_bits() >> 52;
+        (exponent.max(1023) - 1023) as usize
+    }
+
+    /// The most in a class, nm.
+    fn of_class(&self, class: usize) -> f64 {
+        self.most.min(self.least * 2f64.powi(class as i32 + 1))
+    }
+}
