@@ -223,3 +223,5 @@ force_class!(PlaquetteAreaForce(stiffness, target));
 force_class!(TriangleAreaRepulsionForce(minArea, epsilon));
 force_class!(SurfaceRepulsionForce(distance, epsilon));
 force_class!(ParticleSurfaceForce(distance, epsilon, adhesion, radius) attraction);
+force_class!(EdgeTensionForce(tension));
+force_class!(GaussianCurvatureForce(modulus));

@@ -5,7 +5,9 @@
 
 #include "openmm-helfrich/BendingForce.h"
 #include "openmm-helfrich/DihedralForce.h"
+#include "openmm-helfrich/EdgeTensionForce.h"
 #include "openmm-helfrich/EnclosedVolumeForce.h"
+#include "openmm-helfrich/GaussianCurvatureForce.h"
 #include "openmm-helfrich/MonteCarloBondFlip.h"
 #include "openmm-helfrich/MonteCarloMembraneTension.h"
 #include "openmm-helfrich/ParticleSurfaceForce.h"
@@ -28,7 +30,9 @@
     apply(PlaquetteAreaForce) \
     apply(TriangleAreaRepulsionForce) \
     apply(SurfaceRepulsionForce) \
-    apply(ParticleSurfaceForce)
+    apply(ParticleSurfaceForce) \
+    apply(EdgeTensionForce) \
+    apply(GaussianCurvatureForce)
 // clang-format on
 
 #endif /*OPENMM_HELFRICH_H_*/

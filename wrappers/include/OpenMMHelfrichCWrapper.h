@@ -166,6 +166,14 @@ extern int Helfrich_ParticleSurfaceForce_setAdhesion(OpenMM_Force* force, double
 extern double Helfrich_ParticleSurfaceForce_getRadius(OpenMM_Force* force);
 extern int Helfrich_ParticleSurfaceForce_setRadius(OpenMM_Force* force, double radius);
 
+extern OpenMM_Force* Helfrich_EdgeTensionForce_create(const int* triangles, int numTriangles, double tension);
+extern double Helfrich_EdgeTensionForce_getTension(OpenMM_Force* force);
+extern int Helfrich_EdgeTensionForce_setTension(OpenMM_Force* force, double tension);
+
+extern OpenMM_Force* Helfrich_GaussianCurvatureForce_create(const int* triangles, int numTriangles, double modulus);
+extern double Helfrich_GaussianCurvatureForce_getModulus(OpenMM_Force* force);
+extern int Helfrich_GaussianCurvatureForce_setModulus(OpenMM_Force* force, double modulus);
+
 /** Who pays for the flips of a MonteCarloBondFlip. */
 typedef enum {
     Helfrich_MonteCarloBondFlip_Canonical = 0,
