@@ -16,7 +16,8 @@ class Geometry:
     """The quantities of one closed, oriented surface that the potentials are functions of."""
 
     def __init__(self, vertices, triangles) -> None:
-        self.vertices = np.asarray(vertices, dtype=float)
+        # Those in a periodic box know how to take differences.
+        self.vertices = np.asanyarray(vertices, dtype=float)
         self.triangles = np.asarray(triangles, dtype=int)
 
     def _sum(self, index, values) -> np.ndarray:
@@ -42,9 +43,9 @@ class Geometry:
 
     @cached_property
     def volume(self) -> float:
-        # Centred first, so that a mesh far from the origin loses no digits.
-        centred = self.vertices - self.vertices[np.unique(self.triangles)].mean(axis=0)
-        a, b, c = (centred[column] for column in self.triangles.T)
+        # Relative to a vertex, so that a mesh far from the origin loses no digits.
+        relative = self.vertices - self.vertices[self.triangles[0, 0]]
+        a, b, c = (relative[column] for column in self.triangles.T)
         return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
 
     @cached_property
@@ -173,7 +174,7 @@ def bending(
 ) -> float:
     """The bending energy; vertices that belong to no triangle are left out."""
     used = np.unique(triangles)
-    g = Geometry(np.asarray(vertices)[used], np.searchsorted(used, triangles))
+    g = Geometry(np.asanyarray(vertices)[used], np.searchsorted(used, triangles))
     voronoi = scheme in ("GompperKroll", "JulicherVoronoi")
     area = g.voronoi_areas if voronoi else g.barycentric_areas
     if scheme in ("Julicher", "JulicherVoronoi"):

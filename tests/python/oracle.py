@@ -56,9 +56,24 @@ def _result(context: mm.Context) -> Result:
     return Result(energy, np.array(forces))
 
 
+def _in_box(force: mm.Force) -> None:
+    """Let a Custom force take nearest images."""
+    if isinstance(force, mm.CustomCVForce):
+        for index in range(force.getNumCollectiveVariables()):
+            _in_box(force.getCollectiveVariable(index))
+    else:
+        force.setUsesPeriodicBoundaryConditions(True)
+
+
 def evaluate(forces: list[mm.Force], positions) -> Result:
-    """Any forces at any positions."""
+    """Any forces at any positions, in a periodic box if the positions have one."""
+    box = getattr(positions, "box", None)
+    if box is not None:
+        for force in forces:
+            _in_box(force)
     context = _context(forces, len(positions))
+    if box is not None:
+        context.setPeriodicBoxVectors(*box)
     context.setPositions(positions)
     return _result(context)
 

@@ -468,9 +468,11 @@ class TestNamesAndClasses:
         assert system.getForce(0).getForceGroup() == 9
 
     @every_class
-    def test_not_periodic(self, case: Case):
+    def test_not_periodic_unless_told(self, case: Case):
         force = case.make(membrane("octahedron"))
         assert force.usesPeriodicBoundaryConditions() is False
+        force.setUsesPeriodicBoundaryConditions(True)
+        assert force.usesPeriodicBoundaryConditions() is True
 
 
 # --- copies --------------------------------------------------------------------------------------
