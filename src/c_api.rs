@@ -202,3 +202,5 @@ force_class!(DihedralForce(stiffness) form);
 force_class!(TriangleAreaForce(modulus, target));
 force_class!(PlaquetteAreaForce(stiffness, target));
 force_class!(TriangleAreaRepulsionForce(minArea, epsilon));
+force_class!(EdgeTensionForce(tension));
+force_class!(GaussianCurvatureForce(modulus));

@@ -26,6 +26,8 @@ _LIMITS = {
 }
 _ORDINARY = {"geometric": 6, "cartesian": 5}
 _LONG = {"geometric": 4, "cartesian": 4}
+# The membranes with handles and borders that have string forces: of few neighbours, and of many.
+STRINGS_NAMES = ("cap", "holed", "torn torus", "mixed")
 SLOW = os.environ.get("HELFRICH_SLOW_TESTS") == "1"
 if SLOW:
     _ORDINARY = _LONG = {"geometric": 6, "cartesian": 6}
@@ -93,7 +95,10 @@ class _BendingPart:
     def __init__(self, scheme: str, part: str, style: str) -> None:
         self.members = [
             membrane
-            for membrane in [*map(meshes.membrane, meshes.NAMES), *published.golden_membranes()]
+            for membrane in [
+                *map(meshes.membrane, [*meshes.NAMES, *STRINGS_NAMES]),
+                *published.golden_membranes(),
+            ]
             if membrane.max_degree <= _limit(scheme, part, style)
         ]
         sizes = [membrane.num_particles for membrane in self.members]

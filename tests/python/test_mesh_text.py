@@ -189,7 +189,9 @@ def torn(gap):
 @pytest.mark.parametrize("extension", FORMATS)
 def test_near_vertices_are_merged_or_hinted_at(tmp_path, extension):
     data = written(extension, *torn(1e-7))
-    with pytest.raises(MeshError, match=r"is open along a border of 3 edges.*nearly coincide") as caught:
+    with pytest.raises(
+        MeshError, match=r"is open along a border of 3 edges.*nearly coincide"
+    ) as caught:
         read(tmp_path, extension, data)
     hint = str(caught.value)
     assert "pair(s) of vertices nearly coincide, such as " in hint

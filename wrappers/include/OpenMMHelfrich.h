@@ -5,7 +5,9 @@
 
 #include "openmm-helfrich/BendingForce.h"
 #include "openmm-helfrich/DihedralForce.h"
+#include "openmm-helfrich/EdgeTensionForce.h"
 #include "openmm-helfrich/EnclosedVolumeForce.h"
+#include "openmm-helfrich/GaussianCurvatureForce.h"
 #include "openmm-helfrich/MonteCarloBondFlip.h"
 #include "openmm-helfrich/PlaquetteAreaForce.h"
 #include "openmm-helfrich/SurfaceAreaForce.h"
@@ -23,7 +25,9 @@
     apply(DihedralForce) \
     apply(TriangleAreaForce) \
     apply(PlaquetteAreaForce) \
-    apply(TriangleAreaRepulsionForce)
+    apply(TriangleAreaRepulsionForce) \
+    apply(EdgeTensionForce) \
+    apply(GaussianCurvatureForce)
 // clang-format on
 
 #endif /*OPENMM_HELFRICH_H_*/

@@ -138,6 +138,14 @@ extern int Helfrich_TriangleAreaRepulsionForce_setMinArea(OpenMM_Force* force, d
 extern double Helfrich_TriangleAreaRepulsionForce_getEpsilon(OpenMM_Force* force);
 extern int Helfrich_TriangleAreaRepulsionForce_setEpsilon(OpenMM_Force* force, double epsilon);
 
+extern OpenMM_Force* Helfrich_EdgeTensionForce_create(const int* triangles, int numTriangles, double tension);
+extern double Helfrich_EdgeTensionForce_getTension(OpenMM_Force* force);
+extern int Helfrich_EdgeTensionForce_setTension(OpenMM_Force* force, double tension);
+
+extern OpenMM_Force* Helfrich_GaussianCurvatureForce_create(const int* triangles, int numTriangles, double modulus);
+extern double Helfrich_GaussianCurvatureForce_getModulus(OpenMM_Force* force);
+extern int Helfrich_GaussianCurvatureForce_setModulus(OpenMM_Force* force, double modulus);
+
 /** Who pays for the flips of a MonteCarloBondFlip. */
 typedef enum {
     Helfrich_MonteCarloBondFlip_Canonical = 0,
