@@ -26,7 +26,7 @@ _ORDER = ["temperature", "frequency", "attemptsPerEdge", "minDegree", "maxDegree
 _SETTERS = {"temperature": "setDefaultTemperature"}
 _ENSEMBLES = ("Canonical", "Microcanonical")
 #: What `getStatistics` counts refusals by.
-_REASONS = ("degree", "length", "shape", "energy", "edge")
+_REASONS = ("border", "degree", "length", "shape", "energy", "edge")
 
 
 def accept_arguments(force: type) -> None:
@@ -71,8 +71,9 @@ def _get_statistics(self, context) -> dict:
     -------
     dict
         ``attempts``, and those ``accepted``; ``refused``, a dict of those refused by the first of
-        these that they failed: ``degree``, ``length``, ``shape`` (a triangle would have no area),
-        ``energy`` and ``edge`` (the new edge was there already); ``acceptance``, accepted over
+        these that they failed: ``border`` (the edge has one triangle only), ``degree``, ``length``,
+        ``shape`` (a triangle would have no area), ``energy`` and ``edge`` (the new edge was there
+        already); ``acceptance``, accepted over
         attempts; ``time``, the time that has been simulated, ps; ``rate``, accepted for each edge
         and ps; ``demonEnergy``, kJ/mol. Ratios are NaN as long as there is nothing to divide by.
     """
