@@ -32,9 +32,9 @@ Two measurements. "modes": the curvature of the energy of a mesh of n rings alon
 constant area, is zero at a γR that is found from energies alone, without any dynamics; it tends to
 the theory as 1/n, since a border vertex has no bending energy. "runs": disks that begin as caps,
 x = 0.02, are let go at 3 K, at several γR in units of that of their own mesh; they end flat, or
-closed but for a hole that the vertices of the border fill. A potential of the dihedral angles, κ
-(1 − cos φ)², is added there: where the angles at a vertex cancel, Jülicher's curvature is zero however
-they fold, and a negative κ_G then gains from folds at the border.
+closed but for a hole that the vertices of the border fill. A potential of the dihedral angles,
+κ (1 − cos φ)², is added there: where the angles at a vertex cancel, Jülicher's curvature is zero
+however they fold, and a negative κ_G then gains from folds at the border.
 """
 
 import numpy as np

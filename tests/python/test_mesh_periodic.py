@@ -142,7 +142,10 @@ def test_a_spanning_part_keeps_the_orientation_of_its_first_triangle():
         (lambda m: Mesh(m.vertices, m.triangles, np.eye(2)), r"Mesh: box must be three vectors"),
         (lambda m: Mesh(m.vertices, m.triangles, TRICLINIC.T), r"Mesh: box must have the vectors"),
         (lambda m: Mesh(m.vertices, m.triangles, [[4, 0, 0], [3, 4, 0], [0, 0, 4]]), "at most ax"),
-        (lambda m: Mesh(m.vertices, m.triangles, np.eye(3)), r"joined by an edge .* shorter than 0.50"),
+        (
+            lambda m: Mesh(m.vertices, m.triangles, np.eye(3)),
+            r"joined by an edge .* shorter than 0.50",
+        ),
     ],
 )
 def test_refusals(call, message):
