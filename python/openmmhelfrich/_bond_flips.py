@@ -26,7 +26,7 @@ _COUNTS = {"frequency": 10, "minDegree": 3, "maxDegree": 10}
 _ORDER = ["temperature", "frequency", "attemptsPerEdge", "minDegree", "maxDegree", "maxEdgeLength"]
 _SETTERS = {"temperature": "setDefaultTemperature"}
 #: What `getStatistics` counts refusals by.
-_REASONS = ("degree", "length", "shape", "energy", "edge")
+_REASONS = ("border", "degree", "length", "shape", "energy", "edge")
 
 
 def _whole_number(name: str, value) -> int:
@@ -116,8 +116,9 @@ def _get_statistics(self, context) -> dict:
     -------
     dict
         ``attempts``, and those ``accepted``; ``refused``, a dict of those refused by the first of
-        these that they failed: ``degree``, ``length``, ``shape`` (a triangle would have no area),
-        ``energy`` and ``edge`` (the new edge was there already); ``acceptance``, accepted over
+        these that they failed: ``border`` (the edge has one triangle only), ``degree``, ``length``,
+        ``shape`` (a triangle would have no area), ``energy`` and ``edge`` (the new edge was there
+        already); ``acceptance``, accepted over
         attempts; ``time``, the time that has been simulated, ps; ``rate``, accepted for each edge
         and ps; ``demonEnergy``, kJ/mol. Ratios are NaN as long as there is nothing to divide by.
     """

@@ -46,6 +46,7 @@ class Case:
     step: for finite differences, in mean edge lengths
     variant: keyword and name of the class's constant, e.g. ("scheme", "Julicher")
     settings: setters to call after construction, with their values
+    surface: "closed" or "open" if the force needs one, or has none on the other
     invalid: listed once for each class
     """
 
@@ -58,13 +59,22 @@ class Case:
     step: float = 3e-4
     variant: tuple[str, str] | None = None
     settings: Callable[[Membrane], dict[str, Any]] = field(default=lambda membrane: {})
+    surface: str = "any"
     invalid: tuple[Invalid, ...] = ()
+
+    def acts_on(self, where: str) -> bool:
+        """Whether the force can act on a membrane of this name."""
+        return self.surface in ("any", "open" if where in meshes.OPEN_NAMES else "closed")
+
+    def place(self, usual: str) -> str:
+        """The name of a membrane that the force acts on: the usual one if it does."""
+        return usual if self.acts_on(usual) else "holed"
 
     @property
     def exists(self) -> bool:
         """Whether the package has the class, its variant and its setters."""
         cls = getattr(helfrich, self.force, None)
-        names = list(self.settings(meshes.membrane("octahedron")))
+        names = list(self.settings(meshes.membrane(self.place("octahedron"))))
         if self.variant is not None:
             names.append(self.variant[1])
         return cls is not None and all(hasattr(cls, name) for name in names)
@@ -152,6 +162,7 @@ def _enclosed_volume() -> list[Case]:
                 string_forces.global_volume(m.triangles, a["modulus"], a["target"], style),
                 m.positions,
             ),
+            surface="closed",
             invalid=invalid,
         )
         for word, ratio, invalid in (
@@ -292,6 +303,44 @@ def _dihedrals() -> list[Case]:
     ]
 
 
+# --- borders -----------------------------------------------------------------------------------
+
+
+def _borders() -> list[Case]:
+    return [
+        Case(
+            name="edge tension",
+            force="EdgeTensionForce",
+            arguments=lambda m: {"tension": 3.0},
+            energy=lambda m, a: numpy_energies.edge_tension(m.positions, m.triangles, a["tension"]),
+            strings=lambda m, a, style: oracle.evaluate(
+                string_forces.edge_tension(m.triangles, a["tension"], style), m.positions
+            ),
+            surface="open",
+            invalid=_never_infinite("tension"),
+        ),
+        *(
+            Case(
+                name=f"Gaussian curvature, {word}",
+                force="GaussianCurvatureForce",
+                arguments=lambda m, modulus=modulus: {"modulus": modulus},
+                energy=lambda m, a: numpy_energies.gaussian_curvature(
+                    m.positions, m.triangles, a["modulus"]
+                ),
+                strings=lambda m, a, style: oracle.evaluate(
+                    string_forces.gaussian_curvature(m.triangles, a["modulus"], style), m.positions
+                ),
+                surface="open",
+                invalid=invalid,
+            )
+            for word, modulus, invalid in (
+                ("below zero", -45.0, _never_infinite("modulus")),
+                ("above zero", 30.0, ()),
+            )
+        ),
+    ]
+
+
 # --- bending -----------------------------------------------------------------------------------
 
 
@@ -389,5 +438,6 @@ CASES = [
     *_triangle_area(),
     *_triangle_area_repulsion(),
     *_plaquette_area(),
+    *_borders(),
 ]
 PRESENT = [case for case in CASES if case.exists]

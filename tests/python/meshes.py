@@ -20,7 +20,7 @@ FOREIGN_PARTICLES = 9
 
 @dataclass(frozen=True, eq=False)
 class Membrane:
-    """A closed surface within a System: positions of all particles, triangles of particle indices.
+    """A surface within a System: positions of all particles, triangles of particle indices.
 
     positions: shape (num_particles, 3), nm; triangles: shape (num_triangles, 3), outward.
     """
@@ -149,6 +149,55 @@ def red_cell(surface: Surface) -> Surface:
     return np.stack([x, y, height], axis=1), triangles
 
 
+def without(surface: Surface, *gone: int) -> Surface:
+    """Without the triangles at some vertices, and without what belongs to none then."""
+    vertices, triangles = surface
+    kept = triangles[~np.isin(triangles, gone).any(axis=1)]
+    used = np.unique(kept)
+    return vertices[used], np.searchsorted(used, kept)
+
+
+def grid(rows: int, columns: int, place, closed: bool) -> Surface:
+    """Squares of two triangles round a tube; `place` has the points by turns in [0, 1)."""
+    u, v = np.meshgrid(np.arange(rows), np.arange(columns), indexing="ij")
+    vertices = np.stack(place(u.ravel() / rows, v.ravel() / columns), axis=1)
+    at = u * columns + v
+    if not closed:
+        rows -= 1
+    a, c = at[:rows], np.roll(at, -1, axis=0)[:rows]
+    b, d = np.roll(a, -1, axis=1), np.roll(c, -1, axis=1)
+    return vertices, np.concatenate(
+        [np.stack(t, axis=-1).reshape(-1, 3) for t in ((a, c, d), (a, d, b))]
+    )
+
+
+def torus(rows: int, columns: int) -> Surface:
+    def place(u, v):
+        wide = 1 + 0.45 * np.cos(2 * np.pi * v)
+        return (
+            wide * np.cos(2 * np.pi * u),
+            wide * np.sin(2 * np.pi * u),
+            0.45 * np.sin(2 * np.pi * v),
+        )
+
+    return grid(rows, columns, place, True)
+
+
+def joined(one: Surface, other: Surface) -> Surface:
+    """A tube from the first triangle of one surface to that of another: the handles add up."""
+    vertices, triangles = disjoint(one, other)
+    a, b, c = triangles[0]
+    second = len(one[1])
+    # Round it the other way; the corner of `other` that is nearest begins.
+    p, r, q = np.roll(
+        triangles[second],
+        -int(np.argmin(np.linalg.norm(vertices[triangles[second]] - vertices[a], axis=1))),
+    )
+    rest = np.delete(triangles, [0, second], axis=0)
+    tube = [(a, b, p), (b, q, p), (b, c, q), (c, r, q), (c, a, r), (a, p, r)]
+    return vertices, np.concatenate([rest, tube])
+
+
 def rough(surface: Surface, rng: np.random.Generator, fraction: float) -> Surface:
     """Jitter by a fraction of the mean edge, in all directions, so that edges turn concave."""
     vertices, triangles = surface
@@ -218,6 +267,82 @@ def _many_neighbours() -> Surface:
     return moved(rough(with_pyramid(bipyramid(11), 3, 0.25), rng, 0.08), (110, 90, 100))
 
 
+def _torus() -> Surface:
+    rng = np.random.default_rng(8)
+    return moved(rough(torus(9, 5), rng, 0.1), (90, 80, 95), (20, 0, -10))
+
+
+def _double_torus() -> Surface:
+    rng = np.random.default_rng(9)
+    left, right = torus(7, 5), moved(torus(8, 5), shift=(3.2, 0.2, 0.1))
+    # The triangles that are nearest to each other come first.
+    middles = [vertices[triangles].mean(axis=1) for vertices, triangles in (left, right)]
+    gaps = np.linalg.norm(middles[0][:, None] - middles[1][None], axis=2)
+    first = np.unravel_index(np.argmin(gaps), gaps.shape)
+    left, right = (
+        (v, np.roll(t, -int(k), axis=0)) for (v, t), k in zip((left, right), first, strict=True)
+    )
+    return moved(rough(joined(left, right), rng, 0.06), (80, 85, 75), (-60, 0, 0))
+
+
+def _disk() -> Surface:
+    """A hexagonal patch; its inner vertices have six neighbours each."""
+    rng = np.random.default_rng(10)
+    steps = np.arange(-2, 3)
+    i, j = (x.ravel() for x in np.meshgrid(steps, steps, indexing="ij"))
+    inside = np.abs(i + j) <= 2
+    number = {pair: n for n, pair in enumerate(zip(i[inside].tolist(), j[inside].tolist()))}
+    triangles = [
+        [number[corner] for corner in corners]
+        for i, j in number
+        for corners in (
+            ((i, j), (i + 1, j), (i, j + 1)),
+            ((i + 1, j), (i + 1, j + 1), (i, j + 1)),
+        )
+        if all(corner in number for corner in corners)
+    ]
+    i, j = np.array(list(number)).T
+    vertices = np.stack([i + j / 2, j * 0.75**0.5, 0.35 * i * j], axis=1)
+    return moved(rough((vertices, np.array(triangles)), rng, 0.12), (45, 40, 42), (10, 0, 30))
+
+
+def _cap() -> Surface:
+    """An icosahedron without a vertex: five neighbours each, and a border of five edges."""
+    rng = np.random.default_rng(11)
+    return moved(rough(without(icosahedron(), 4), rng, 0.12), (90, 70, 80), (0, -20, 0))
+
+
+def _holed() -> Surface:
+    """An octahedron without a face: three inner vertices of four neighbours."""
+    rng = np.random.default_rng(12)
+    vertices, triangles = bipyramid(4)
+    return moved(rough((vertices, np.delete(triangles, 3, axis=0)), rng, 0.1), (80, 90, 85))
+
+
+def _tube() -> Surface:
+    """Two borders."""
+    rng = np.random.default_rng(13)
+
+    def place(u, v):
+        return np.cos(2 * np.pi * v), np.sin(2 * np.pi * v), 4 * u
+
+    return moved(rough(grid(5, 6, place, False), rng, 0.1), (70, 60, 75), (15, 15, -90))
+
+
+def _torn_torus() -> Surface:
+    """A handle, and a border where two neighbours have been."""
+    rng = np.random.default_rng(14)
+    return moved(rough(without(torus(8, 5), 7, 8), rng, 0.08), (90, 80, 95))
+
+
+def _mixed() -> Surface:
+    """A closed part and one with two borders, in one list."""
+    rng = np.random.default_rng(15)
+    closed = moved(rough(icosphere(1), rng, 0.12), (50, 60, 55), (-90, 0, 0))
+    annulus = without(icosphere(2), 0, int(np.argmin(icosphere(2)[0] @ icosphere(2)[0][0])))
+    return disjoint(closed, moved(rough(annulus, rng, 0.1), (70, 80, 60), (70, 0, 0)))
+
+
 _MAKERS: dict[str, Callable[[], Surface]] = {
     "jittered": _jittered,
     "stretched": _stretched,
@@ -228,12 +353,25 @@ _MAKERS: dict[str, Callable[[], Surface]] = {
     "many neighbours": _many_neighbours,
 }
 NAMES = tuple(_MAKERS)
+# Closed, with handles; with borders.
+_WITH_HANDLES = {"torus": _torus, "double torus": _double_torus}
+_OPEN = {
+    "disk": _disk,
+    "cap": _cap,
+    "holed": _holed,
+    "tube": _tube,
+    "torn torus": _torn_torus,
+    "mixed": _mixed,
+}
+_MAKERS |= _WITH_HANDLES | _OPEN
+HANDLE_NAMES = tuple(_WITH_HANDLES)
+OPEN_NAMES = tuple(_OPEN)
 
 
 @cache
 def membrane(name: str) -> Membrane:
-    """One of NAMES; the same object each time, its arrays read-only."""
-    result = embedded(name, _MAKERS[name](), seed=100 + NAMES.index(name))
+    """One of these names; the same object each time, its arrays read-only."""
+    result = embedded(name, _MAKERS[name](), seed=100 + list(_MAKERS).index(name))
     result.positions.flags.writeable = False
     result.triangles.flags.writeable = False
     return result

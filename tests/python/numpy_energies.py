@@ -13,10 +13,14 @@ import numpy as np
 
 
 class Geometry:
-    """The quantities of one closed, oriented surface that the potentials are functions of."""
+    """The quantities of one oriented surface that the potentials are functions of.
+
+    Curvatures, vectors and Voronoi areas mean something at vertices that are `inner` only.
+    """
 
     def __init__(self, vertices, triangles) -> None:
-        self.vertices = np.asarray(vertices, dtype=float)
+        # Those in a periodic box know how to take differences.
+        self.vertices = np.asanyarray(vertices, dtype=float)
         self.triangles = np.asarray(triangles, dtype=int)
 
     def _sum(self, index, values) -> np.ndarray:
@@ -42,24 +46,48 @@ class Geometry:
 
     @cached_property
     def volume(self) -> float:
-        # Centred first, so that a mesh far from the origin loses no digits.
-        centred = self.vertices - self.vertices[np.unique(self.triangles)].mean(axis=0)
-        a, b, c = (centred[column] for column in self.triangles.T)
+        # Relative to a vertex, so that a mesh far from the origin loses no digits.
+        relative = self.vertices - self.vertices[self.triangles[0, 0]]
+        a, b, c = (relative[column] for column in self.triangles.T)
         return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
 
     @cached_property
     def half_edges(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Tail, head, opposite corner and twin's opposite corner of every half-edge."""
+        """Tail, head, opposite corner and twin's opposite corner of every half-edge.
+
+        At a border, where there is no twin, the last is the opposite corner again.
+        """
         t = self.triangles
         tail, head = t.ravel(), t[:, [1, 2, 0]].ravel()
         corner = t[:, [2, 0, 1]].ravel()
+        return tail, head, corner, corner[self._twins[0]]
+
+    @cached_property
+    def _twins(self) -> tuple[np.ndarray, np.ndarray]:
+        """The twin of every half-edge, itself at a border; and where that is."""
+        tail, head = self.triangles.ravel(), self.triangles[:, [1, 2, 0]].ravel()
         n = len(self.vertices)
-        order, twin_order = np.argsort(tail * n + head), np.argsort(head * n + tail)
-        twin = np.empty_like(order)
-        twin[twin_order] = order
-        if not np.array_equal(tail[twin], head) or not np.array_equal(head[twin], tail):
-            raise ValueError("the triangles are not a closed, consistently oriented surface")
-        return tail, head, corner, corner[twin]
+        order = np.argsort(tail * n + head)
+        keys = (tail * n + head)[order]
+        if (keys[1:] == keys[:-1]).any():
+            raise ValueError("the triangles are not a consistently oriented surface")
+        place = np.minimum(np.searchsorted(keys, head * n + tail), len(keys) - 1)
+        border = keys[place] != head * n + tail
+        return np.where(border, np.arange(len(keys)), order[place]), border
+
+    @cached_property
+    def border(self) -> np.ndarray:
+        """Which half-edges are along borders."""
+        return self._twins[1]
+
+    @cached_property
+    def inner(self) -> np.ndarray:
+        """Which vertices belong to triangles and are on no border."""
+        tail, head, _, _ = self.half_edges
+        inner = np.zeros(len(self.vertices), dtype=bool)
+        inner[tail] = True
+        inner[tail[self.border]] = inner[head[self.border]] = False
+        return inner
 
     @cached_property
     def lengths(self) -> np.ndarray:
@@ -72,7 +100,8 @@ class Geometry:
         a, b, c, d = (self.vertices[index] for index in self.half_edges)
         left, right = np.cross(b - a, c - a), np.cross(a - b, d - b)
         sine = -self.lengths * np.einsum("ij,ij->i", left, d - a)
-        return np.arctan2(sine, np.einsum("ij,ij->i", left, right))
+        angles = np.arctan2(sine, np.einsum("ij,ij->i", left, right))
+        return np.where(self.border, 0.0, angles)
 
     @cached_property
     def cotangents(self) -> np.ndarray:
@@ -121,6 +150,14 @@ class Geometry:
         theta = np.arctan2(size, np.einsum("ij,ij->i", u, v))
         total = self._sum(tail, (theta / size)[:, None] * cross)
         return total / np.linalg.norm(total, axis=1)[:, None]
+
+    @cached_property
+    def angle_sums(self) -> np.ndarray:
+        """The sum of the triangles' angles at each vertex."""
+        tail, head, corner, _ = self.half_edges
+        u, v = (self.vertices[end] - self.vertices[tail] for end in (head, corner))
+        size = np.linalg.norm(np.cross(u, v), axis=1)
+        return self._sum(tail, np.arctan2(size, np.einsum("ij,ij->i", u, v)))
 
     @cached_property
     def heights(self) -> np.ndarray:
@@ -173,7 +210,7 @@ def bending(
 ) -> float:
     """The bending energy; vertices that belong to no triangle are left out."""
     used = np.unique(triangles)
-    g = Geometry(np.asarray(vertices)[used], np.searchsorted(used, triangles))
+    g = Geometry(np.asanyarray(vertices)[used], np.searchsorted(used, triangles))
     voronoi = scheme in ("GompperKroll", "JulicherVoronoi")
     area = g.voronoi_areas if voronoi else g.barycentric_areas
     if scheme in ("Julicher", "JulicherVoronoi"):
@@ -184,7 +221,20 @@ def bending(
         signed = (vectors * g.vertex_normals).sum(axis=1)
         linear = np.sqrt(squared) if unsigned else signed
     c0 = spontaneous_curvature
-    return float(np.sum(0.5 * rigidity * (squared / area - 2 * c0 * linear + c0**2 * area)))
+    with np.errstate(all="ignore"):
+        each = 0.5 * rigidity * (squared / area - 2 * c0 * linear + c0**2 * area)
+    return float(np.sum(each[g.inner]))
+
+
+def edge_tension(vertices, triangles, tension: float) -> float:
+    g = Geometry(vertices, triangles)
+    return float(tension * np.sum(g.lengths[g.border]))
+
+
+def gaussian_curvature(vertices, triangles, modulus: float) -> float:
+    """By its definition, with no theorem."""
+    g = Geometry(vertices, triangles)
+    return float(modulus * np.sum((2 * np.pi - g.angle_sums)[g.inner]))
 
 
 DIHEDRAL_FORMS = {

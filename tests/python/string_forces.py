@@ -36,7 +36,10 @@ Values = float | Sequence[float] | np.ndarray
 
 
 def rings(triangles) -> dict[int, list[int]]:
-    """The neighbours of each vertex, counter-clockwise seen from outside, by ascending vertex."""
+    """The neighbours of each vertex, counter-clockwise seen from outside, by ascending vertex.
+
+    Those of a vertex on a border begin and end with the ends of border edges.
+    """
     following: dict[int, dict[int, int]] = {}
     for a, b, c in np.asarray(triangles, dtype=int).tolist():
         following.setdefault(a, {})[b] = c
@@ -45,25 +48,36 @@ def rings(triangles) -> dict[int, list[int]]:
     result = {}
     for vertex in sorted(following):
         successor = following[vertex]
-        ring = [min(successor)]
-        while successor[ring[-1]] != ring[0]:
+        ring = [min(set(successor) - set(successor.values()), default=min(successor))]
+        while ring[-1] in successor and successor[ring[-1]] != ring[0]:
             ring.append(successor[ring[-1]])
-            if len(ring) > len(successor):
-                raise ValueError(f"the triangles around vertex {vertex} make no closed ring")
-        if len(ring) != len(successor):
+            if len(ring) > len(successor) + 1:
+                raise ValueError(f"the triangles around vertex {vertex} make no ring")
+        if len(ring) != len(successor) + (ring[-1] not in successor):
             raise ValueError(f"vertex {vertex} joins two fans of triangles")
         result[vertex] = ring
     return result
 
 
+def on_borders(triangles) -> set[int]:
+    """The vertices on borders."""
+    rows = np.asarray(triangles, dtype=int).tolist()
+    sides = {side for a, b, c in rows for side in ((a, b), (b, c), (c, a))}
+    return {vertex for a, b in sides if (b, a) not in sides for vertex in (a, b)}
+
+
 def edges_with_wings(triangles) -> list[tuple[int, int, int, int]]:
-    """(c, a, b, d) for each edge ab: triangle abc on its left, triangle bad on its right."""
+    """(c, a, b, d) for each edge ab with triangle abc on its left and triangle bad on its right."""
     opposite = {}
     for a, b, c in np.asarray(triangles, dtype=int).tolist():
         opposite[a, b] = c
         opposite[b, c] = a
         opposite[c, a] = b
-    return [(c, a, b, opposite[b, a]) for (a, b), c in sorted(opposite.items()) if a < b]
+    return [
+        (c, a, b, opposite[b, a])
+        for (a, b), c in sorted(opposite.items())
+        if a < b and (b, a) in opposite
+    ]
 
 
 # --- writing expressions -----------------------------------------------------------------------
@@ -369,9 +383,12 @@ def dihedral(triangles, stiffness: float, form: str, style: str) -> list[mm.Forc
 
 
 class _VertexTerms:
-    """The sums over the ring of vertex 1; its neighbours are points 2 … degree + 1."""
+    """The sums over the ring of vertex 1; its neighbours are points 2 … degree + 1.
 
-    def __init__(self, degree: int, style: str) -> None:
+    If `open`, no triangle has the last and the first of them; that is for areas only.
+    """
+
+    def __init__(self, degree: int, style: str, open: bool = False) -> None:
         self.stencil = _stencil(style)
         self.ring = list(range(2, degree + 2))
         # (left wing, neighbour, right wing) and (neighbour, next neighbour)
@@ -384,6 +401,8 @@ class _VertexTerms:
             )
         )
         self.fan = list(zip(self.ring, self.ring[1:] + self.ring[:1], strict=True))
+        if open:
+            self.fan.pop()
 
     def barycentric_area(self) -> str:
         areas = [self.stencil.double_area(1, b, c) for b, c in self.fan]
@@ -560,9 +579,9 @@ def bending(
 
     Rigidity and spontaneous curvature may be given for each vertex, in ascending order of particle
     index; they are then the parameters K and C of each bond. `unsigned` is VCM's |S| in place of
-    n·S.
+    n·S. Vertices on borders have no bending energy.
     """
-    ring_of = rings(triangles)
+    ring_of, left_out = rings(triangles), on_borders(triangles)
     vertices = list(ring_of)
     if parts is None:
         curved = bool(np.any(np.asarray(spontaneous_curvature) != 0))
@@ -578,8 +597,12 @@ def bending(
             raise ValueError(f"{len(given)} values for {len(vertices)} vertices")
 
     forces: list[mm.Force] = []
-    for degree in sorted({len(ring) for ring in ring_of.values()}):
-        rows = [row for row, vertex in enumerate(vertices) if len(ring_of[vertex]) == degree]
+    for degree in sorted({len(ring) for vertex, ring in ring_of.items() if vertex not in left_out}):
+        rows = [
+            row
+            for row, vertex in enumerate(vertices)
+            if len(ring_of[vertex]) == degree and vertex not in left_out
+        ]
         bonds = [[vertices[row], *ring_of[vertices[row]]] for row in rows]
         values = np.stack([v[rows] for v in columns.values()], axis=1) if columns else None
         for part in parts:
@@ -593,15 +616,43 @@ def bending(
 
 def plaquette_area(triangles, stiffness: float, target: float, style: str) -> list[mm.Force]:
     """½ k Σ_i (N a_i / A0 − 1)² with the barycentric areas of all N vertices (paper, eq. 20)."""
-    ring_of = rings(triangles)
+    ring_of, borders = rings(triangles), on_borders(triangles)
+    kinds = {vertex: (len(ring), vertex in borders) for vertex, ring in ring_of.items()}
     forces: list[mm.Force] = []
-    for degree in sorted({len(ring) for ring in ring_of.values()}):
-        terms = _VertexTerms(degree, style)
+    for kind in sorted(set(kinds.values())):
+        terms = _VertexTerms(kind[0], style, kind[1])
         share = f"{_number(len(ring_of) / target)}*{terms.barycentric_area()}"
         energy = terms.stencil.expression(f"{_number(0.5 * stiffness)}*({share}-1)^2")
-        bonds = [[vertex, *ring] for vertex, ring in ring_of.items() if len(ring) == degree]
+        bonds = [[vertex, *ring] for vertex, ring in ring_of.items() if kinds[vertex] == kind]
         forces.append(_compound(energy, bonds))
     return forces
+
+
+# --- borders -----------------------------------------------------------------------------------
+
+
+def edge_tension(triangles, tension: float, style: str) -> list[mm.Force]:
+    """γ times the length of all borders."""
+    rows = _tuples(triangles)
+    sides = {side for a, b, c in rows for side in ((a, b), (b, c), (c, a))}
+    bonds = sorted((a, b) for a, b in sides if (b, a) not in sides)
+    stencil = _stencil(style)
+    energy = f"{_number(tension)}*{stencil.length(1, 2)}"
+    return [_compound(stencil.expression(energy), bonds)] if bonds else []
+
+
+def gaussian_curvature(triangles, modulus: float, style: str) -> list[mm.Force]:
+    """κ_G Σ (2π − Σ θ) over the vertices on no border, where it is defined: a bond each corner."""
+    left_out, ring_of = on_borders(triangles), rings(triangles)
+    bonds, shares = [], []
+    for a, b, c in _tuples(triangles):
+        for corner in ((a, b, c), (b, c, a), (c, a, b)):
+            if corner[0] not in left_out:
+                bonds.append(corner)
+                shares.append([2 * np.pi / len(ring_of[corner[0]])])
+    stencil = _stencil(style)
+    energy = f"{_number(modulus)}*(share-{stencil.corner(2, 1, 3)})"
+    return [_compound(stencil.expression(energy), bonds, ["share"], shares)] if bonds else []
 
 
 # --- the whole vesicle, for races --------------------------------------------------------------

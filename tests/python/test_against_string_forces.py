@@ -13,7 +13,8 @@ import numpy as np
 import pytest
 from cases import PRESENT, Case
 from meshes import membrane
-from platforms import ON_PROCESSOR, Target
+from oracle import STRINGS_NAMES
+from platforms import ON_PROCESSOR, REFERENCE, Target
 from running import BY_NAME, running
 from string_forces import STYLES
 
@@ -26,15 +27,19 @@ def expected(name: str, where: str, style: str):
 def _with_strings() -> list:
     rows = []
     for case in PRESENT:
-        for where in meshes.NAMES:
+        for where in filter(case.acts_on, [*meshes.NAMES, *STRINGS_NAMES]):
+            # `test_borders.py` compares the other platforms with the first one.
+            targets = [REFERENCE] if where in STRINGS_NAMES else ON_PROCESSOR
             for style in STYLES:
                 if case.compiles(membrane(where), style):
-                    rows.append(pytest.param(case, where, style, id=f"{case}-{where}-{style}"))
+                    rows += [
+                        pytest.param(case, where, style, t, id=f"{case}-{where}-{style}-{t}")
+                        for t in targets
+                    ]
     return rows
 
 
-@pytest.mark.parametrize(("case", "where", "style"), _with_strings())
-@pytest.mark.parametrize("target", ON_PROCESSOR, ids=str)
+@pytest.mark.parametrize(("case", "where", "style", "target"), _with_strings())
 def test_agrees_with_string_forces(case: Case, where: str, style: str, target: Target):
     m = membrane(where)
     energy, forces = running(case.name, where, target).evaluate(m.positions)

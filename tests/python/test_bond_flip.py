@@ -172,7 +172,14 @@ class TestRules:
         found = mover.getStatistics(context)
         assert found["attempts"] == 27000
         assert found["accepted"] + sum(found["refused"].values()) == found["attempts"]
-        assert set(found["refused"]) == {"degree", "length", "shape", "energy", "edge"}
+        assert set(found["refused"]) == {
+            "border",
+            "degree",
+            "length",
+            "shape",
+            "energy",
+            "edge",
+        }
         for reason in ("degree", "length", "energy"):
             assert found["refused"][reason] > 100
         assert found["acceptance"] == found["accepted"] / 27000

@@ -14,7 +14,7 @@ from test_openmm_citizen import COPIES, FIRST, assert_close, assert_same_bits, c
 
 
 def _scalars(case: Case) -> list[str]:
-    arguments = case.arguments(membrane("octahedron"))
+    arguments = case.arguments(membrane(case.place("octahedron")))
     return [name for name, value in arguments.items() if isinstance(value, float)]
 
 
@@ -22,7 +22,7 @@ EVERY_SCALAR = [
     pytest.param(case, scalar, id=f"{case}-{scalar}")
     for case in PRESENT
     # A row that has values by vertex does not use the scalar.
-    if not case.settings(membrane("octahedron"))
+    if not case.settings(membrane(case.place("octahedron")))
     for scalar in _scalars(case)
 ]
 every_scalar = pytest.mark.parametrize(("case", "scalar"), EVERY_SCALAR)
@@ -42,7 +42,7 @@ def _derivatives(context: mm.Context, **also: bool) -> dict[str, float]:
 @every_scalar
 @pytest.mark.parametrize("target", ON_PROCESSOR, ids=str)
 def test_stands_in_for_the_scalar(case: Case, scalar: str, target: Target):
-    m = membrane("icosahedron")
+    m = membrane(case.place("icosahedron"))
     value = case.arguments(m)[scalar]
     force = case.make(m)
     force.setContextParameter(scalar, "ramp")
@@ -80,7 +80,7 @@ def test_stand_in_on_opencl():
 @pytest.mark.parametrize("where", ["octahedron", "stretched", "concave"])
 @pytest.mark.parametrize("target", ON_PROCESSOR, ids=str)
 def test_derivative(case: Case, scalar: str, where: str, target: Target):
-    m = membrane(where)
+    m = membrane(case.place(where))
     value = case.arguments(m)[scalar]
     force = case.make(m)
     force.setContextParameter(scalar, "x")
@@ -104,7 +104,7 @@ def test_derivative(case: Case, scalar: str, where: str, target: Target):
 @every_scalar
 @pytest.mark.parametrize("target", ON_PROCESSOR, ids=str)
 def test_derivative_whatever_else_is_asked_for(case: Case, scalar: str, target: Target):
-    m = membrane("octahedron")
+    m = membrane(case.place("octahedron"))
     force = case.make(m)
     force.setContextParameter(scalar, "x")
     force.addEnergyParameterDerivative("x")
@@ -178,7 +178,7 @@ def test_conflicting_defaults_are_refused():
 @pytest.mark.parametrize("how", COPIES)
 @every_scalar
 def test_survives_copying(case: Case, scalar: str, how: str):
-    m = membrane("octahedron")
+    m = membrane(case.place("octahedron"))
     force = case.make(m)
     force.setContextParameter(scalar, "ramp")
     force.addEnergyParameterDerivative("ramp")
@@ -191,7 +191,7 @@ def test_survives_copying(case: Case, scalar: str, how: str):
 
 @pytest.mark.parametrize("case", PRESENT, ids=str)
 def test_unknown_names_are_refused(case: Case):
-    force = case.make(membrane("octahedron"))
+    force = case.make(membrane(case.place("octahedron")))
     with pytest.raises((ValueError, mm.OpenMMException), match=f"^{case.force}: .*stickiness"):
         force.setContextParameter("stickiness", "ramp")
     with pytest.raises((ValueError, mm.OpenMMException), match=f"^{case.force}: .*ramp"):
@@ -208,7 +208,7 @@ def test_unknown_names_are_refused(case: Case):
 )
 def test_bad_values_during_a_run_are_refused(case: Case, bad):
     """No Force sees Context.setParameter; the next evaluation does, and names the scalar."""
-    m = membrane("octahedron")
+    m = membrane(case.place("octahedron"))
     force = case.make(m)
     force.setContextParameter(bad.argument, "ramp")
     context = context_of([force], m)

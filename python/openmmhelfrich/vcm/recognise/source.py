@@ -215,7 +215,7 @@ def list_bonds(force: mm.Force) -> BondList:
     else:
         raise Unreadable("it is not a force that we replace")
     if force.usesPeriodicBoundaryConditions():
-        raise Unreadable("it uses periodic boundary conditions, which our forces do not have")
+        raise Unreadable("it uses periodic boundary conditions, which are not looked for")
     if count == 0:
         raise Unreadable("it has no bonds")
     if getattr(force, "getNumTabulatedFunctions", lambda: 0)():
