@@ -32,7 +32,9 @@ Two measurements. "modes": the curvature of the energy of a mesh of n rings alon
 constant area, is zero at a γR that is found from energies alone, without any dynamics; it tends to
 the theory as 1/n, since a border vertex has no bending energy. "runs": disks that begin as caps,
 x = 0.02, are let go at 3 K, at several γR in units of that of their own mesh; they end flat, or
-closed but for a hole that the vertices of the border fill.
+closed but for a hole that the vertices of the border fill. A potential of the dihedral angles,
+κ (1 − cos φ)², is added there: where the angles at a vertex cancel, Jülicher's curvature is zero
+however they fold, and a negative κ_G then gains from folds at the border.
 """
 
 import numpy as np
@@ -40,6 +42,7 @@ import openmm
 from membranes import KBT, context_of, positions_of
 from openmmhelfrich import (
     BendingForce,
+    DihedralForce,
     EdgeTensionForce,
     GaussianCurvatureForce,
     Mesh,
@@ -179,6 +182,7 @@ def let_go(n, gaussian, tension, seed, duration):
         TriangleHeightForce(mesh, height, 0.4 * KBT),
         GaussianCurvatureForce(mesh, gaussian * RIGIDITY),
         EdgeTensionForce(mesh, tension * RIGIDITY / radius),
+        DihedralForce(mesh, RIGIDITY),
     ]
     flips = MonteCarloBondFlip(mesh, COLD, 10, 0.1)
     flips.setRandomNumberSeed(seed)
@@ -206,12 +210,12 @@ def main():
             wanted, caps = threshold(gaussian), 4 * (2 + gaussian)
             rows.append((*point.values(), run["mode"], wanted, run["cap"], caps))
     report.table(["n", "κ_G/κ", "γR/κ", "theory", "caps", "theory_of_caps"], rows, "_modes")
-    n, duration = (6, 4000.0) if report.quick else (8, 60000.0)
-    seeds = (1,) if report.quick else (1, 2, 3)
+    n, duration = (6, 4000.0) if report.quick else (8, 20000.0)
+    seeds = (1,) if report.quick else (1, 2)
     rows = []
     for gaussian in (0.0, -1.0, -1.5):
         exact = unstable_from(n, gaussian)["mode"]
-        for factor in (0.7, 1.5) if report.quick else (0.7, 0.8, 0.9, 1.1, 1.2, 1.5):
+        for factor in (0.7, 1.5) if report.quick else (0.8, 0.9, 1.1, 1.2):
             points = [
                 {"n": n, "gaussian": gaussian, "tension": factor * exact}
                 | {"seed": seed, "duration": duration}

@@ -181,20 +181,24 @@ def fitted(run, size):
     kept = (q * SPACING < 0.5) & ((m > 0) | (n > MODES))
     squares = run["square"][:, kept]
     parts = np.array_split(np.arange(len(squares)), min(8, len(squares)))
-    log = 3 / (4 * np.pi) * np.log(np.sqrt(4 * np.pi * run["vertices"] / run["frame"].mean()) / q)
+    log = softening(run, q)
 
     def kappa(frames, correction):
-        stiffness = response[kept] ** 2 / squares[frames].mean(axis=0)
-        wanted = stiffness - run["sigma"] * laplacian[kept] + correction * laplacian[kept] ** 2
-        # Errors of all modes are the same share of κ Λ² + σ Λ.
-        weight = (RIGIDITY * laplacian[kept] ** 2 + run["sigma"] * laplacian[kept]) ** -2.0
-        square = laplacian[kept] ** 2
-        return (weight * wanted) @ square / ((weight * square) @ square)
+        # With the right κ the mean of ⟨|h_q|²⟩ over theory is 1; its inverse would be biased.
+        ratio = squares[frames].mean(axis=0) / response[kept] ** 2
+        rest = run["sigma"] * laplacian[kept] - correction * laplacian[kept] ** 2
+        return (1 - ratio * rest).sum() / (ratio * laplacian[kept] ** 2).sum()
 
     everything = np.arange(len(squares))
     blocks = [kappa(part, log[kept]) for part in parts]
     found = kappa(everything, log[kept]), kappa(everything, 0.0)
     return *found, np.std(blocks, ddof=1) / len(blocks) ** 0.5
+
+
+def softening(run, q):
+    """(3/4π) ln(q_m/q), kBT, but at q = 0."""
+    most = np.sqrt(4 * np.pi * run["vertices"] / run["frame"].mean())
+    return 3 / (4 * np.pi) * np.log(most / np.where(q > 0, q, most))
 
 
 def main():
@@ -240,9 +244,7 @@ def spectrum_rows(run, size, tension, flips):
     q, laplacian, response = dispersion(size)
     m, n = np.indices(q.shape)
     half = (m > 0) | (n > MODES)
-    softened = RIGIDITY - 3 / (4 * np.pi) * np.log(
-        np.sqrt(4 * np.pi * run["vertices"] / run["frame"].mean()) / np.where(q > 0, q, 1)
-    )
+    softened = RIGIDITY - softening(run, q)
     theory = response**2 / np.where(q > 0, softened * laplacian**2 + run["sigma"] * laplacian, 1)
     ratio = run["square"] / theory
     shells = np.round(q * size * SPACING / (2 * np.pi)).astype(int)

@@ -158,6 +158,21 @@ def test_bench():
     assert "asked" in text and "measured" in text
 
 
+@pytest.mark.parametrize(
+    ("script", "quick", "said"),
+    [
+        ("sheet.py", ["--steps", "800"], "triangles that cross: 0"),
+        ("tube.py", [], "pulling force    20.9"),
+    ],
+)
+def test_surfaces_for_newcomers(tmp_path, script, quick, said):
+    text = run(EXAMPLES / script, *quick, "--out", tmp_path).stdout
+    assert said in text
+    name = Path(script).stem
+    assert Image.open(tmp_path / f"{name}.png").width > 400
+    assert Mesh.read(tmp_path / f"{name}.ply").box is not None
+
+
 def test_bench_of_empty_steps():
     text = run(ROOT / "benches" / "empty_steps.py", "--repeats", "1", "--sizes", "252").stdout
     assert "Helfrich x2" in text and text.count(" 252 ") == 3
