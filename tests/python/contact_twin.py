@@ -49,11 +49,12 @@ def _edges(triangles: np.ndarray) -> np.ndarray:
 def _between_segments(a, b, c, d) -> np.ndarray:
     """The distances of segments ab and cd: shape (num_pairs, 3) each."""
     normal = np.cross(b - a, d - c)
-    long = np.einsum("px,px->p", normal, normal)
+    # Where the edges are parallel, their ends are nearest.
+    long = np.maximum(np.einsum("px,px->p", normal, normal), 1e-30)
     s = np.einsum("px,px->p", np.cross(c - a, d - c), normal) / long
     t = np.einsum("px,px->p", np.cross(c - a, b - a), normal) / long
     plane = np.abs(np.einsum("px,px->p", c - a, normal)) / np.sqrt(long)
-    plane[(s < 0) | (s > 1) | (t < 0) | (t > 1)] = np.inf
+    plane[(s <= 0) | (s >= 1) | (t <= 0) | (t >= 1)] = np.inf
 
     def to(point, start, end):
         side = end - start

@@ -20,12 +20,12 @@ ON_ALL = platforms.ON_PROCESSOR + platforms.ON_OPENCL
 def crumpled(seed: int = 4) -> meshes.Membrane:
     """A disk so thin that its sides touch, and a small sphere beside it that touches, too."""
     rng = np.random.default_rng(seed)
-    vertices, triangles = meshes.icosphere(5)
-    thickness = 1.6 + 60 * (vertices[:, :2] ** 2).sum(axis=1)
-    vertices = vertices * np.stack([np.full(252, 50), np.full(252, 60), thickness], axis=1)
+    vertices, triangles = meshes.icosphere(4)
+    thickness = 2.0 + 60 * (vertices[:, :2] ** 2).sum(axis=1)
+    vertices = vertices * np.stack([np.full(162, 50), np.full(162, 60), thickness], axis=1)
     disk = meshes.rough((vertices, triangles), rng, 0.08)
-    small = meshes.rough(meshes.icosphere(2), rng, 0.08)
-    small = meshes.moved(small, scale=(12, 12, 12), shift=(10, 5, 25))
+    small = meshes.rough(meshes.icosphere(1), rng, 0.08)
+    small = meshes.moved(small, scale=(12, 12, 12), shift=(10, 5, 23))
     return meshes.embedded("crumpled", meshes.disjoint(disk, small), seed)
 
 
@@ -87,8 +87,7 @@ def test_the_repulsion_is_that_of_all_pairs(target, membrane, between):
     assert np.abs(forces.sum(axis=0)).max() < 100 * target.tolerance * scale
     torque = np.cross(membrane.positions, forces).sum(axis=0)
     assert np.abs(torque).max() < 1e5 * target.tolerance * scale
-    moved = np.argsort(-np.abs(forces).max(axis=1))[:4]
-    for particle in moved:
+    for particle in np.argsort(-np.abs(forces).max(axis=1))[:3]:
         for axis in range(3):
             step = np.zeros_like(membrane.positions)
             step[particle, axis] = h = 1e-4

@@ -9,7 +9,7 @@ import pytest
 from flowing import forces_of, langevin, mover_of, start
 from platforms import HELFRICH, ON_OPENCL, REFERENCE
 
-DISTANCE, EPSILON = 12.0, 4.0
+DISTANCE, EPSILON = 5.0, 4.0
 
 
 def pressed(count: int = 2) -> tuple[list[helfrich.Mesh], np.ndarray, list[np.ndarray]]:
@@ -19,7 +19,7 @@ def pressed(count: int = 2) -> tuple[list[helfrich.Mesh], np.ndarray, list[np.nd
     positions = [one.vertices + [k * step, 3 * k, 5 * k] for k in range(count)]
     offsets = one.num_vertices * np.arange(count)
     triangles = [one.triangles + offset for offset in offsets]
-    bead = [[-step / 2 - 6, 0, 0]]
+    bead = [[one.vertices[:, 0].min() - 18, 0, 0]]
     return [one] * count, np.vstack([*positions, bead]), triangles
 
 
@@ -54,7 +54,7 @@ def energy(context):
 
 @pytest.mark.parametrize("target", [REFERENCE, HELFRICH, ON_OPENCL[2]], ids=str)
 def test_forces_of_several_vesicles_follow_all_flips(target):
-    context, wall, bead, movers = several(target, frequency=1, attemptsPerEdge=1.0)
+    context, wall, bead, movers = several(target, frequency=2, attemptsPerEdge=0.5)
     context.setVelocitiesToTemperature(300, 1)
     context.getIntegrator().step(40)
     assert all(mover.getStatistics(context)["accepted"] > 20 for mover in movers)
@@ -72,14 +72,6 @@ def test_forces_of_several_vesicles_follow_all_flips(target):
     other = REFERENCE.context(fresh)
     state = context.getState(positions=True)
     other.setPositions(state.getPositions())
-    energies = []
-    for one in (context, other):
-        total = energy(one)
-        strengths = []
-        for force in one.getSystem().getForces():
-            if isinstance(force, helfrich.SurfaceRepulsionForce | helfrich.ParticleSurfaceForce):
-                strengths.append(force)
-        energies.append(total)
     for force in (wall, bead):
         force.setEpsilon(0)
     bead.setAdhesion(0)
@@ -90,7 +82,7 @@ def test_forces_of_several_vesicles_follow_all_flips(target):
     assert abs(energy(other)) > 1e-3
 
 
-def test_a_demon_pays_for_contacts(tmp_path):
+def test_a_demon_pays_for_contacts():
     """With a demon the energy of all terms and the demon's is kept by flips at rest, to the last digits."""
     vesicles, positions, triangles = pressed()
     system = mm.System()
@@ -144,7 +136,7 @@ def test_what_does_not_follow_is_refused():
 
 
 def test_triangles_are_set_where_they_belong_and_come_with_checkpoints():
-    context, wall, _, movers = several(HELFRICH, frequency=1, attemptsPerEdge=1.0)
+    context, wall, _, movers = several(HELFRICH, frequency=2, attemptsPerEdge=0.5)
     with pytest.raises(mm.OpenMMException, match="SurfaceRepulsionForce: these triangles follow"):
         wall.setTrianglesInContext(context, wall.getTrianglesInContext(context))
     context.getIntegrator().step(10)
@@ -168,12 +160,12 @@ def test_triangles_are_set_where_they_belong_and_come_with_checkpoints():
 def test_one_surface_flips_with_its_contacts():
     """All forces on the same triangles, crumpled: a demon's balance, and the same bits from a checkpoint."""
     mesh = start()
-    vertices = mesh.vertices * [1, 1, 0.12] + 0.5 * DISTANCE * np.sign(mesh.vertices) * [0, 0, 0.6]
+    vertices = mesh.vertices * [1, 1, 0.12]
     system = mm.System()
     for _ in vertices:
         system.addParticle(0.0)
     system.addForce(helfrich.BendingForce(mesh, 20.0))
-    system.addForce(helfrich.SurfaceRepulsionForce(mesh, 0.9 * DISTANCE, EPSILON))
+    system.addForce(helfrich.SurfaceRepulsionForce(mesh, 2 * DISTANCE, EPSILON))
     mover = mover_of(mesh, frequency=1, attemptsPerEdge=2.0, maxEdgeLength=60.0)
     mover.setEnsemble(mover.Microcanonical)
     system.addForce(mover)
