@@ -94,6 +94,56 @@ pub fn nearest(r: [f64; 3], u: [f64; 3], v: [f64; 3]) -> Nearest {
     if inside { foot } else { side }
 }
 
+/// Where two edges are nearest: at p + s u and q + t v.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Crossing {
+    /// The square of the distance, nm².
+    pub squared: f64,
+    /// s.
+    pub s: f64,
+    /// t.
+    pub t: f64,
+}
+
+/// From the beginning of the second edge to that of the first, and along both.
+#[inline]
+pub fn edge_arms(cell: Option<&Cell>, [p, p_end]: [&Vec3; 2], [q, q_end]: [&Vec3; 2]) -> [Vec3; 3] {
+    let [u, v] = [difference(cell, p_end, p), difference(cell, q_end, q)];
+    // Beginnings of long edges may be far apart; the middles tell which image is near.
+    let away = difference(cell, &(p + u * 0.5), &(q + v * 0.5));
+    [away - u * 0.5 + v * 0.5, u, v]
+}
+
+/// The nearest points of two edges.
+#[inline]
+pub fn crossing(cell: Option<&Cell>, first: [&Vec3; 2], second: [&Vec3; 2]) -> Crossing {
+    let [r, u, v] = edge_arms(cell, first, second).map(|arm| [arm.x, arm.y, arm.z]);
+    nearest_of_edges(r, u, v)
+}
+
+/// The nearest points of p + s u and q + t v with r = p − q: where the lines are nearest if that is on both edges, or else
+/// the nearest of the four ends and the other edge.
+#[inline(always)]
+pub fn nearest_of_edges(r: [f64; 3], u: [f64; 3], v: [f64; 3]) -> Crossing {
+    let (uu, uv, vv) = (dot(u, u), dot(u, v), dot(v, v));
+    let (ru, rv) = (dot(r, u), dot(r, v));
+    let at = |s: f64, t: f64| {
+        let x = r[0] + s * u[0] - t * v[0];
+        let y = r[1] + s * u[1] - t * v[1];
+        let z = r[2] + s * u[2] - t * v[2];
+        Crossing { squared: x * x + y * y + z * z, s, t }
+    };
+    let least = |one: Crossing, other: Crossing| if other.squared < one.squared { other } else { one };
+    let ends = least(at(0.0, within_one(rv / vv)), at(1.0, within_one((rv + uv) / vv)));
+    let others = least(at(within_one(-ru / uu), 0.0), at(within_one((uv - ru) / uu), 1.0));
+    let side = least(ends, others);
+    let all = uu * vv - uv * uv;
+    let (s, t) = ((uv * rv - ru * vv) / all, (uu * rv - uv * ru) / all);
+    let inside = (s > 0.0) & (s < 1.0) & (t > 0.0) & (t < 1.0);
+    let middle = at(s, t);
+    if inside & (middle.squared < side.squared) { middle } else { side }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -116,6 +166,22 @@ mod tests {
                 let (s, t) = if s + t > 1.0 { (1.0 - s, 1.0 - t) } else { (s, t) };
                 let other = arms.separation(&Nearest { squared: 0.0, s, t }).norm_squared();
                 prop_assert!(found <= other + 1e-12);
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn no_points_of_two_edges_are_nearer(
+            ends in prop::array::uniform4(prop::array::uniform3(-1.0..1.0f64)),
+            others in prop::collection::vec(prop::array::uniform2(0.0..1.0f64), 60),
+        ) {
+            let [p, p_end, q, q_end] = ends.map(Vec3::from);
+            let found = crossing(None, [&p, &p_end], [&q, &q_end]);
+            let at = |s: f64, t: f64| (p + (p_end - p) * s - q - (q_end - q) * t).norm_squared();
+            prop_assert!((at(found.s, found.t) - found.squared).abs() < 1e-12);
+            for [s, t] in others {
+                prop_assert!(found.squared <= at(s, t) + 1e-12);
             }
         }
     }

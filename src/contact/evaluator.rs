@@ -157,28 +157,29 @@ impl Contacts {
         } else if particles.iter().any(attracts) && !quiet {
             f64::INFINITY
         } else {
-            self.around(mesh, terms, quad.triangles(), quad.vertices)
+            self.around(mesh, terms, quad)
         }
     }
 
-    /// The energy, kJ/mol, of all that a flip changes, as the mesh is now, before the flip or after it. `changed` are the two triangles
-    /// that it replaces, `vertices` i, j, k and l.
-    pub fn around(
-        &mut self,
-        mesh: &Triangulation,
-        terms: &[Term],
-        changed: [usize; 2],
-        vertices: [u32; 4],
-    ) -> f64 {
+    /// The energy, kJ/mol, of all that a flip changes: of the two triangles and their edge, before the flip or after it.
+    pub fn around(&mut self, mesh: &Triangulation, terms: &[Term], quad: &Quad) -> f64 {
         let [surface, particles] = sorted(terms);
         let only: SmallVec<[&Term; 4]> = surface.iter().map(|(_, term)| *term).collect();
-        let surface = self.surface.around(mesh, &only, changed, vertices);
+        let surface = self.surface.around(mesh, &only, quad);
         let pairs = particles.iter().zip(&self.particles);
-        surface + pairs.map(|((_, term), contacts)| contacts.around(mesh, term, changed)).sum::<f64>()
+        let of = |((_, term), contacts): (&(usize, &Term), &ParticleContacts)| {
+            contacts.around(mesh, term, quad.triangles())
+        };
+        surface + pairs.map(of).sum::<f64>()
     }
 
-    /// Follow a flip, which `mesh` has made; `quad` is as it was before.
-    pub fn follow(&mut self, mesh: &Triangulation, quad: &Quad) {
-        self.surface.follow(mesh, quad);
+    /// Have the edge kl of a quadrilateral in place of ij; the mesh is not looked at.
+    pub fn follow(&mut self, quad: &Quad) {
+        self.surface.follow(quad);
+    }
+
+    /// Flips have made something that touches.
+    pub fn note_new_pairs(&mut self) {
+        self.surface.note_new_pairs();
     }
 }

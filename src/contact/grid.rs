@@ -127,9 +127,31 @@ impl Grid {
 
     /// The numbers in all boxes that are nearer than `reach` to some points or between them.
     pub fn near(&self, points: &[Vec3], reach: f64, mut visit: impl FnMut(u32)) {
-        self.each(self.range(points, reach), |home| {
-            self.items(home).iter().for_each(|item| visit(*item));
-        });
+        let [x, y, z] = self.range(points, reach);
+        let count = self.counts[0];
+        // What lies in boxes side by side lies side by side.
+        let runs = if !self.periodic {
+            [[x[0], x[1]], [0, -1]]
+        } else {
+            let first = x[0].rem_euclid(count);
+            let last = first + x[1] - x[0];
+            [[first, last.min(count - 1)], [0, last - count]]
+        };
+        for k in z[0]..=z[1] {
+            for j in y[0]..=y[1] {
+                let row = (self.wrap(2, k) * self.counts[1] + self.wrap(1, j)) * count;
+                for [first, last] in runs.into_iter().filter(|[first, last]| first <= last) {
+                    let start = self.starts[(row + first) as usize] as usize;
+                    let end = self.starts[(row + last + 1) as usize] as usize;
+                    self.items[start..end].iter().for_each(|item| visit(*item));
+                }
+            }
+        }
+    }
+
+    #[inline]
+    fn wrap(&self, axis: usize, at: i64) -> i64 {
+        if self.periodic { at.rem_euclid(self.counts[axis]) } else { at }
     }
 
     fn range(&self, points: &[Vec3], reach: f64) -> Range {
@@ -156,12 +178,11 @@ impl Grid {
 
     #[inline]
     fn each(&self, [x, y, z]: Range, mut visit: impl FnMut(usize)) {
-        let wrap = |k: usize, at: i64| if self.periodic { at.rem_euclid(self.counts[k]) } else { at };
         for k in z[0]..=z[1] {
             for j in y[0]..=y[1] {
-                let row = (wrap(2, k) * self.counts[1] + wrap(1, j)) * self.counts[0];
+                let row = (self.wrap(2, k) * self.counts[1] + self.wrap(1, j)) * self.counts[0];
                 for i in x[0]..=x[1] {
-                    visit((row + wrap(0, i)) as usize);
+                    visit((row + self.wrap(0, i)) as usize);
                 }
             }
         }

@@ -1,20 +1,24 @@
-//! Which vertices may touch which triangles of a surface.
+//! Which vertices may touch which triangles of a surface, and which edges which edges.
 //!
-//! The list of a triangle has the vertices that are nearer than reach + skin at the positions of the **reference**, in
-//! ascending order, but for those that are excluded: its corners and their neighbours. It is good until a
-//! vertex has moved by half of the skin. Flips keep it current: those of the two triangles are made anew, and the four
-//! vertices come into those lists or leave them whose exclusion changes.
+//! The lists have the pairs that are nearer than reach + skin at the positions of the **reference**, in ascending order,
+//! but for those that share a vertex. They are good until a vertex has moved by half of the skin, or
+//! the connectivity has changed. While flips go on, grids of the reference find what is near a triangle or an edge.
 
-use super::closest::{Arms, difference};
+use super::block::Block;
+use super::closest::{Arms, crossing, difference, edge_arms};
 use super::grid::{Grid, bounds};
 use crate::error::{Error, Result};
 use crate::mesh::geometry::Vec3;
-use crate::mesh::triangulation::{Quad, next, previous};
+use crate::mesh::triangulation::{Quad, next};
 use crate::mesh::{Cell, Triangulation};
 use crate::team::{Parts, Team};
+use std::ops::Range;
 
 /// The skin as a share of the reach: thicker ones are renewed less often, but have more pairs in them.
-const SKIN: f64 = 0.4;
+const SKIN: f64 = 1.0;
+
+/// After so many flips the edges are sorted into boxes anew.
+const MOST_NEW: usize = 200;
 
 /// Lists for one mesh.
 #[derive(Default)]
@@ -23,23 +27,23 @@ pub struct Lists {
     /// All vertices as they are now.
     positions: Vec<Vec3>,
     reference: Vec<Vec3>,
-    /// The reference's vertices.
-    grid: Grid,
+    /// The reference's vertices and edges.
+    vertex_grid: Grid,
+    edge_grid: Grid,
+    /// The ends of each edge. One that a flip has taken away has the same end twice; those that flips have made are behind
+    /// `known`, and not in the grid.
+    edges: Vec<[u32; 2]>,
+    known: usize,
     /// For each vertex the connected part that it is on; empty unless that matters.
     parts: Vec<u32>,
-    /// Where the list of each triangle begins, and how long it is.
-    places: Vec<[u32; 2]>,
-    vertices: Vec<u32>,
-    /// Triangles with a list that is not empty, ascending.
-    busy: Vec<u32>,
-    /// Whether these are to be noted anew.
-    busy_changed: bool,
-    /// With more vertices in the lists and in the gaps between them all are made anew.
-    most: usize,
-    /// Whether a vertex has come into any list since they were made.
+    /// Triangles with vertices, and edges with edges, ascending.
+    pairs: [Vec<[u32; 2]>; 2],
+    /// Whether each vertex takes part in any pair.
     listed: Vec<bool>,
+    /// Whether flips have made pairs that are in no list.
+    has_new_pairs: bool,
     /// One for each thread; kept for their memory.
-    scratch: Vec<Vec<u32>>,
+    scratch: Vec<[Vec<[u32; 2]>; 2]>,
 }
 
 /// What lists depend on, beside the reference.
@@ -77,7 +81,6 @@ impl Lists {
             reach >= wanted.reach
                 && between_parts <= wanted.between_parts
                 && (cell, fingerprint) == (wanted.cell, wanted.fingerprint)
-                && self.vertices.len() <= self.most
         });
         if let Some(made) = good {
             let pairs = self.positions.iter().zip(&self.reference);
@@ -87,7 +90,6 @@ impl Lists {
                 if moved <= farthest { farthest } else { moved }
             });
             if farthest < 0.25 * (SKIN * made.reach).powi(2) {
-                self.note_busy();
                 return Ok(());
             }
         }
@@ -111,27 +113,35 @@ impl Lists {
         Ok(())
     }
 
-    /// What has been found at the last refresh.
+    /// Know nothing.
+    pub fn forget(&mut self) {
+        self.made_for = None;
+    }
+
+    /// All vertices at the last refresh.
     pub fn positions(&self) -> &[Vec3] {
         &self.positions
     }
 
-    /// Triangles that have a list, ascending.
-    pub fn busy(&self) -> &[u32] {
-        &self.busy
+    /// Pairs of a triangle and a vertex.
+    pub fn vertex_pairs(&self) -> &[[u32; 2]] {
+        &self.pairs[0]
     }
 
-    /// The list of a triangle.
-    #[inline]
-    pub fn of(&self, triangle: u32) -> &[u32] {
-        let [start, length] = self.places[triangle as usize];
-        &self.vertices[start as usize..(start + length) as usize]
+    /// Pairs of edges.
+    pub fn edge_pairs(&self) -> &[[u32; 2]] {
+        &self.pairs[1]
     }
 
-    /// Whether a vertex may be in some list.
+    /// The ends of an edge.
     #[inline]
-    pub fn has(&self, vertex: u32) -> bool {
-        self.listed[vertex as usize]
+    pub fn ends(&self, edge: u32) -> [u32; 2] {
+        self.edges[edge as usize]
+    }
+
+    /// Whether any of some vertices may be near something.
+    pub fn has_any(&self, vertices: &[u32]) -> bool {
+        self.has_new_pairs || vertices.iter().any(|vertex| self.listed[*vertex as usize])
     }
 
     /// Whether two vertices are on the same part; false unless lists are between parts.
@@ -142,211 +152,224 @@ impl Lists {
 
     fn make(&mut self, mesh: &Triangulation, wanted: Made, team: &mut Team) {
         let range = wanted.reach * (1.0 + SKIN);
-        std::mem::swap(&mut self.reference, &mut self.positions);
-        self.positions.clone_from(&self.reference);
+        self.reference.clone_from(&self.positions);
         self.parts = if wanted.between_parts { mesh.parts() } else { Vec::new() };
-        let (count, box_) = (mesh.num_vertices(), bounds(&self.reference));
-        self.grid.set_up(wanted.cell.as_ref(), box_, range, 2 * count);
+        self.edges.clear();
+        self.edges.extend(mesh.edges().map(|half| [mesh.origin(half), mesh.origin(next(half))]));
+        let (cell, around) = (wanted.cell.as_ref(), bounds(&self.reference));
+        self.vertex_grid.set_up(cell, around, range, 8 * mesh.num_vertices());
         for (vertex, position) in self.reference.iter().enumerate() {
-            self.grid.add(vertex as u32, position);
+            self.vertex_grid.add(vertex as u32, position);
         }
-        self.grid.seal();
-        let mut places = std::mem::take(&mut self.places);
+        self.vertex_grid.seal();
+        self.sort_edges(&wanted);
         let mut scratch = std::mem::take(&mut self.scratch);
-        places.resize(mesh.triangles().len(), [0; 2]);
-        scratch.resize_with(team.size(), Vec::new);
-        let (all_places, all_scratch) = (Parts::new(&mut places), Parts::new(&mut scratch));
+        scratch.resize_with(team.size(), Default::default);
+        let all_scratch = Parts::new(&mut scratch);
+        let this = &*self;
         team.run(|member| {
-            let share = member.share(mesh.triangles().len());
-            // SAFETY: each member has its own place, and its own share of the triangles.
-            let (found, places) = unsafe {
-                let scratch = all_scratch.part(member.index()..member.index() + 1);
-                (&mut scratch[0], all_places.part(share.clone()))
-            };
-            found.clear();
-            let mut excluded = Vec::new();
-            for (place, triangle) in places.iter_mut().zip(share) {
-                let start = found.len();
-                self.find(mesh, &wanted, triangle as u32, &mut excluded, found);
-                found[start..].sort_unstable();
-                *place = [start as u32, (found.len() - start) as u32];
+            // SAFETY: each member has its own place.
+            let scratch = unsafe { all_scratch.part(member.index()..member.index() + 1) };
+            let [vertices, edges] = &mut scratch[0];
+            vertices.clear();
+            edges.clear();
+            for triangle in member.share(mesh.triangles().len()) {
+                let (start, corners) = (vertices.len(), mesh.triangles()[triangle]);
+                let near = |vertex| vertices.push([triangle as u32, vertex]);
+                this.vertices_near(&wanted, &this.reference, corners, range, near);
+                vertices[start..].sort_unstable();
+            }
+            this.pair_edges(&wanted, member.share(this.edges.len()), range, edges);
+        });
+        for (kind, pairs) in self.pairs.iter_mut().enumerate() {
+            pairs.clear();
+            scratch.iter().for_each(|found| pairs.extend_from_slice(&found[kind]));
+        }
+        self.scratch = scratch;
+        self.has_new_pairs = false;
+        self.listed.clear();
+        self.listed.resize(mesh.num_vertices(), false);
+        let mut note = |vertex: u32| self.listed[vertex as usize] = true;
+        for [triangle, vertex] in &self.pairs[0] {
+            note(*vertex);
+            mesh.triangles()[*triangle as usize].into_iter().for_each(&mut note);
+        }
+        for edge in self.pairs[1].as_flattened() {
+            self.edges[*edge as usize].into_iter().for_each(&mut note);
+        }
+    }
+
+    /// Sort all edges into boxes.
+    fn sort_edges(&mut self, made: &Made) {
+        let (cell, around) = (made.cell.as_ref(), bounds(&self.reference));
+        let range = made.reach * (1.0 + SKIN);
+        self.edges.retain(|[start, end]| start != end);
+        self.known = self.edges.len();
+        self.edge_grid.set_up(cell, around, range, 4 * self.edges.len());
+        for (edge, ends) in self.edges.iter().enumerate() {
+            let [start, end] = ends.map(|end| &self.reference[end as usize]);
+            let points = [*start, start + difference(cell, end, start)];
+            self.edge_grid.add_around(edge as u32, &points, 0.0);
+        }
+        self.edge_grid.seal();
+    }
+
+    /// Add pairs of some edges and later ones that are nearer than `range` at the reference's positions.
+    fn pair_edges(&self, made: &Made, share: Range<usize>, range: f64, pairs: &mut Vec<[u32; 2]>) {
+        let cell = made.cell.as_ref();
+        let at = |vertex: u32| &self.reference[vertex as usize];
+        let spheres: Vec<(Vec3, f64)> = self
+            .edges
+            .iter()
+            .map(|[start, end]| {
+                let half = difference(cell, at(*end), at(*start)) * 0.5;
+                (at(*start) + half, half.norm())
+            })
+            .collect();
+        let mut block = Block::<[u32; 2], true>::new([0; 2]);
+        // For each edge the last one that has met it: an edge may be in several boxes.
+        let mut met = vec![u32::MAX; self.edges.len()];
+        let most = range * range;
+        for edge in share {
+            let (start, number, ends) = (pairs.len(), edge as u32, self.edges[edge]);
+            let (middle, half) = &spheres[edge];
+            let [p, p_end] = ends.map(at);
+            let points = [*p, p + difference(cell, p_end, p)];
+            self.edge_grid.near(&points, range, |other| {
+                if other <= number || met[other as usize] == number {
+                    return;
+                }
+                met[other as usize] = number;
+                let (its_middle, its_half) = &spheres[other as usize];
+                let far = range + half + its_half;
+                let [c, d] = self.edges[other as usize];
+                if difference(cell, its_middle, middle).norm_squared() < far * far
+                    && !ends.contains(&c)
+                    && !ends.contains(&d)
+                    && !self.are_one_part(c, ends[0])
+                {
+                    block.push([number, other], &edge_arms(cell, [p, p_end], [at(c), at(d)]));
+                    if block.is_full() {
+                        block.find(most, |pair, _, _| pairs.push(pair));
+                    }
+                }
+            });
+            block.find(most, |pair, _, _| pairs.push(pair));
+            pairs[start..].sort_unstable();
+        }
+    }
+
+    /// The vertices nearer than `range` to a triangle, in any order, but for its corners.
+    fn vertices_near(
+        &self,
+        made: &Made,
+        positions: &[Vec3],
+        corners: [u32; 3],
+        range: f64,
+        mut visit: impl FnMut(u32),
+    ) {
+        let cell = made.cell.as_ref();
+        let [a, b, c] = corners.map(|corner| &positions[corner as usize]);
+        let points = [*a, a + difference(cell, b, a), a + difference(cell, c, a)];
+        let middle = (points[0] + points[1] + points[2]) / 3.0;
+        let size = points.iter().fold(0.0, |size: f64, p| size.max((p - middle).norm_squared()));
+        let most = (range + size.sqrt()).powi(2);
+        // Vertices that have moved since the grid was made are not farther than half of the skin from there.
+        let margin = 0.5 * SKIN * made.reach;
+        self.vertex_grid.near(&points, range.min(made.reach + margin) + margin, |vertex| {
+            let position = &positions[vertex as usize];
+            if difference(cell, position, &middle).norm_squared() < most
+                && !corners.contains(&vertex)
+                && !self.are_one_part(vertex, corners[0])
+                && Arms::new(cell, position, points.each_ref()).nearest().squared < range * range
+            {
+                visit(vertex);
             }
         });
-        self.vertices.clear();
-        for (index, found) in scratch.iter().enumerate() {
-            let offset = self.vertices.len() as u32;
-            // As Member::share has it.
-            let (all, members) = (places.len(), scratch.len());
-            let share = all * index / members..all * (index + 1) / members;
-            places[share].iter_mut().for_each(|place| place[0] += offset);
-            self.vertices.extend_from_slice(found);
-        }
-        (self.places, self.scratch) = (places, scratch);
-        self.listed.clear();
-        self.listed.resize(count, false);
-        self.vertices.iter().for_each(|vertex| self.listed[*vertex as usize] = true);
-        self.most = 2 * self.vertices.len() + 8 * mesh.triangles().len();
-        self.busy_changed = true;
-        self.note_busy();
     }
 
-    fn note_busy(&mut self) {
-        if !std::mem::take(&mut self.busy_changed) {
-            return;
-        }
-        self.busy.clear();
-        let places = self.places.iter().enumerate();
-        self.busy.extend(places.filter(|(_, place)| place[1] > 0).map(|(t, _)| t as u32));
-    }
-
-    /// Add the vertices near a triangle at the reference's positions, in any order.
-    fn find(
+    /// The edges nearer than `range` to an edge, each once, in any order, but for those that share an end.
+    fn edges_near(
         &self,
-        mesh: &Triangulation,
-        wanted: &Made,
-        triangle: u32,
-        excluded: &mut Vec<u32>,
-        found: &mut Vec<u32>,
+        made: &Made,
+        positions: &[Vec3],
+        ends: [u32; 2],
+        range: f64,
+        mut visit: impl FnMut(u32),
     ) {
-        let range = wanted.reach * (1.0 + SKIN);
-        let corners = mesh.triangles()[triangle as usize];
-        excluded.clear();
-        for corner in corners {
-            excluded.push(corner);
-            each_neighbour(mesh, corner, |neighbour| excluded.push(neighbour));
-        }
-        let (cell, points) = (wanted.cell.as_ref(), frame(wanted.cell.as_ref(), &self.reference, corners));
-        self.grid.near(&points, range, |vertex| {
-            if self.are_one_part(vertex, corners[0]) || excluded.contains(&vertex) {
+        let cell = made.cell.as_ref();
+        let [start, end] = ends.map(|end| &positions[end as usize]);
+        let points = [*start, start + difference(cell, end, start)];
+        let (middle, half) = ((points[0] + points[1]) * 0.5, 0.5 * (points[1] - points[0]).norm());
+        let mut found: smallvec::SmallVec<[u32; 64]> = smallvec::SmallVec::new();
+        let mut look = |edge: u32| {
+            let [from, to] = self.edges[edge as usize];
+            if ends.contains(&from) || ends.contains(&to) || from == to || self.are_one_part(from, ends[0]) {
                 return;
             }
-            let arms = Arms::new(cell, &self.reference[vertex as usize], points.each_ref());
-            if arms.nearest().squared < range * range {
-                found.push(vertex);
+            let [p, q] = [from, to].map(|end| &positions[end as usize]);
+            let along = difference(cell, q, p);
+            let away = difference(cell, &(p + along * 0.5), &middle).norm_squared();
+            let most = range + half + 0.5 * along.norm();
+            if away < most * most
+                && crossing(cell, [p, q], [start, end]).squared < range * range
+                && !found.contains(&edge)
+            {
+                found.push(edge);
+                visit(edge);
             }
-        });
+        };
+        let margin = 0.5 * SKIN * made.reach;
+        let reach = range.min(made.reach + margin) + margin;
+        self.edge_grid.near(&points, reach, &mut look);
+        (self.known..self.edges.len()).for_each(|edge| look(edge as u32));
     }
 
-    /// The vertices that may be nearer than the reach to a triangle of present positions, whatever its corners are now,
-    /// ascending and without those that are excluded.
-    pub fn near_now(&self, mesh: &Triangulation, triangle: u32, found: &mut Vec<u32>) {
+    /// The vertices within reach of a triangle at present, ascending.
+    pub fn vertices_near_now(&self, corners: [u32; 3], found: &mut Vec<u32>) {
         found.clear();
         let Some(made) = self.made_for else { return };
-        let corners = mesh.triangles()[triangle as usize];
-        let points = frame(made.cell.as_ref(), &self.positions, corners);
-        // Vertices are within half of the skin from where the grid has them.
-        self.grid.near(&points, made.reach * (1.0 + 0.5 * SKIN), |vertex| {
-            if !self.are_one_part(vertex, corners[0]) && !is_excluded(mesh, vertex, corners) {
-                found.push(vertex);
-            }
-        });
+        self.vertices_near(&made, &self.positions, corners, made.reach, |vertex| found.push(vertex));
         found.sort_unstable();
     }
 
-    /// Follow a flip, which `mesh` has made; `quad` is as it was before.
-    pub fn follow(&mut self, mesh: &Triangulation, quad: &Quad) {
-        let Some(mut made) = self.made_for else { return };
-        made.fingerprint = mesh.fingerprint();
-        let (mut excluded, mut found) = (Vec::new(), Vec::new());
-        let changed = quad.triangles().map(|triangle| triangle as u32);
-        for triangle in changed {
-            found.clear();
-            self.find(mesh, &made, triangle, &mut excluded, &mut found);
-            found.sort_unstable();
-            self.replace(triangle, &found);
-        }
+    /// The ends of all edges within reach of an edge at present, ascending.
+    pub fn edges_near_now(&self, ends: [u32; 2], found: &mut Vec<[u32; 2]>) {
+        found.clear();
+        let Some(made) = self.made_for else { return };
+        let visit = |edge: u32| found.push(self.edges[edge as usize]);
+        self.edges_near(&made, &self.positions, ends, made.reach, visit);
+        found.sort_unstable();
+    }
+
+    /// What flips have made is near something.
+    pub fn note_new_pairs(&mut self) {
+        self.has_new_pairs = true;
+    }
+
+    /// Have kl in place of ij.
+    pub fn follow(&mut self, quad: &Quad) {
+        let Some(made) = self.made_for else { return };
         let [i, j, k, l] = quad.vertices;
-        for (vertex, corner) in [(k, l), (l, k), (i, j), (j, i)] {
-            each_leaving(mesh, corner, |half| {
-                let triangle = half / 3;
-                if changed.contains(&triangle) {
-                    return;
-                }
-                let list = self.of(triangle);
-                let place = list.binary_search(&vertex);
-                let wanted = self.is_wanted(mesh, &made, vertex, triangle);
-                found.clear();
-                found.extend_from_slice(list);
-                match place {
-                    Ok(at) if !wanted => drop(found.remove(at)),
-                    Err(at) if wanted => found.insert(at, vertex),
-                    _ => return,
-                }
-                self.replace(triangle, &found);
-            });
-        }
-        self.made_for = Some(made);
-        self.busy_changed = true;
-    }
-
-    /// Whether a vertex belongs into the list of a triangle.
-    fn is_wanted(&self, mesh: &Triangulation, made: &Made, vertex: u32, triangle: u32) -> bool {
-        let corners = mesh.triangles()[triangle as usize];
-        if self.are_one_part(vertex, corners[0]) || is_excluded(mesh, vertex, corners) {
-            return false;
-        }
-        let cell = made.cell.as_ref();
-        let points = frame(cell, &self.reference, corners);
-        let arms = Arms::new(cell, &self.reference[vertex as usize], points.each_ref());
-        arms.nearest().squared < (made.reach * (1.0 + SKIN)).powi(2)
-    }
-
-    /// What has been the list of a triangle stays behind as a gap until all are made anew.
-    fn replace(&mut self, triangle: u32, list: &[u32]) {
-        let place = &mut self.places[triangle as usize];
-        if list.len() > place[1] as usize {
-            place[0] = self.vertices.len() as u32;
-            self.vertices.extend_from_slice(list);
-        } else {
-            self.vertices[place[0] as usize..][..list.len()].copy_from_slice(list);
-        }
-        place[1] = list.len() as u32;
-        list.iter().for_each(|vertex| self.listed[*vertex as usize] = true);
-    }
-}
-
-/// The corners of a triangle, the second and third at their images near the first.
-#[inline]
-fn frame(cell: Option<&Cell>, positions: &[Vec3], corners: [u32; 3]) -> [Vec3; 3] {
-    let [a, b, c] = corners.map(|corner| &positions[corner as usize]);
-    [*a, a + difference(cell, b, a), a + difference(cell, c, a)]
-}
-
-/// What a side without a neighbour has for its twin.
-const NONE: u32 = u32::MAX;
-
-/// Go round the half-edges that leave a vertex.
-#[inline]
-pub fn each_leaving(mesh: &Triangulation, vertex: u32, mut visit: impl FnMut(u32)) {
-    let start = mesh.leaving(vertex);
-    let mut half = start;
-    loop {
-        visit(half);
-        half = mesh.after(half);
-        if half == start || half == NONE {
+        let mut gone = None;
+        let is_gone = |ends: &[u32; 2]| *ends == [i, j] || *ends == [j, i];
+        let points = [self.reference[i as usize]];
+        self.edge_grid.near(&points, 0.0, |edge| {
+            if is_gone(&self.edges[edge as usize]) {
+                gone = Some(edge as usize);
+            }
+        });
+        let new = self.edges[self.known..].iter().position(is_gone);
+        if let Some(place) = new {
+            self.edges[self.known + place] = [k, l];
             return;
         }
-    }
-}
-
-/// Go round the neighbours of a vertex.
-#[inline]
-fn each_neighbour(mesh: &Triangulation, vertex: u32, mut visit: impl FnMut(u32)) {
-    each_leaving(mesh, vertex, |half| {
-        visit(mesh.origin(next(half)));
-        // At a border the last triangle has a side that no other begins with.
-        if mesh.after(half) == NONE {
-            visit(mesh.origin(previous(half)));
+        if let Some(edge) = gone {
+            self.edges[edge] = [i, i];
         }
-    });
-}
-
-/// Whether a vertex is a corner of a triangle, or joined to one.
-#[inline]
-pub fn is_excluded(mesh: &Triangulation, vertex: u32, corners: [u32; 3]) -> bool {
-    corners.contains(&vertex) || {
-        let mut excluded = false;
-        each_neighbour(mesh, vertex, |neighbour| excluded |= corners.contains(&neighbour));
-        excluded
+        self.edges.push([k, l]);
+        if self.edges.len() > self.known + MOST_NEW {
+            self.sort_edges(&made);
+        }
     }
 }

@@ -5,6 +5,7 @@
 //! What is farther than a term reaches adds exactly nothing, and sums are formed in the order of triangles and then vertices,
 //! or of particles and then triangles: so neither the age of lists nor the number of threads shows in the bits.
 
+mod block;
 pub mod closest;
 mod evaluator;
 mod grid;

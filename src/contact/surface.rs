@@ -1,23 +1,27 @@
-//! The repulsion of a surface's vertices and triangles; `src/potentials/surface_repulsion.rs` has the formula.
+//! The repulsion of a surface; `src/potentials/surface_repulsion.rs` has the formula.
 
-use super::closest::{Arms, BLOCK, Nearest, nearest};
-use super::lists::{Lists, each_leaving, is_excluded};
-use crate::dynamics::instructions::{Arithmetic, Kernel, run};
+use super::block::Block;
+use super::closest::{Arms, Nearest, crossing, edge_arms};
+use super::lists::Lists;
 use crate::error::Result;
 use crate::mesh::geometry::Vec3;
 use crate::mesh::triangulation::Quad;
 use crate::mesh::{Cell, Triangulation};
 use crate::potentials::{Contribution, ONLY_BETWEEN_PARTS, Term, surface_repulsion};
-use crate::team::{Parts, Team};
+use crate::team::{Member, Parts, Team};
 
-/// A vertex and a triangle within reach of each other.
+/// A vertex and a triangle, or two edges, within reach of each other.
 #[derive(Clone, Copy)]
 struct Hit {
-    triangle: u32,
-    vertex: u32,
-    nearest: Nearest,
-    /// From the triangle to the vertex, nm.
+    /// Their vertices: the vertex and the corners, or the ends of both.
+    vertices: [u32; 4],
+    /// How much each of them moves the way between the nearest points.
+    weights: [f64; 4],
+    squared: f64,
+    /// The way, nm.
     separation: Vec3,
+    /// The way along the edges, zero for a vertex and a triangle.
+    edges: [Vec3; 2],
 }
 
 /// Evaluates repulsions on one mesh.
@@ -27,71 +31,11 @@ pub struct SurfaceContacts {
     cell: Option<Cell>,
     /// The connected part of each vertex, if a term asks for it.
     parts: Vec<u32>,
-    /// One for each thread; the hits of all, one after the other, are in the order of triangles and then vertices.
-    hits: Vec<Vec<Hit>>,
-    /// Kept for its memory.
+    /// Of vertices and triangles, and of edges, for each thread; the hits of all, one after the other, are in the order of the lists.
+    hits: [Vec<Vec<Hit>>; 2],
+    /// Kept for their memory.
     near: Vec<u32>,
-}
-
-/// Pairs whose nearest points are found together.
-struct Block {
-    pairs: [(u32, u32); BLOCK],
-    arms: [[f64; BLOCK]; 9],
-    nearest: [[f64; BLOCK]; 3],
-    count: usize,
-}
-
-impl Block {
-    const EMPTY: Self = Self {
-        pairs: [(0, 0); BLOCK],
-        arms: [[0.0; BLOCK]; 9],
-        nearest: [[0.0; BLOCK]; 3],
-        count: 0,
-    };
-
-    #[inline]
-    fn push(&mut self, pair: (u32, u32), arms: &Arms) {
-        let Arms { point, sides: [u, v] } = arms;
-        self.pairs[self.count] = pair;
-        for (k, x) in point.iter().chain(u).chain(v).enumerate() {
-            self.arms[k][self.count] = *x;
-        }
-        self.count += 1;
-    }
-
-    /// Note the hits among the pairs, and forget them.
-    fn find(&mut self, reach_squared: f64, hits: &mut Vec<Hit>) {
-        run(Together(self));
-        let arm = |k: usize, n: usize| Vec3::new(self.arms[k][n], self.arms[k + 1][n], self.arms[k + 2][n]);
-        for n in 0..self.count {
-            let [squared, s, t] = self.nearest.map(|values| values[n]);
-            // What is no number is a hit, which will be refused.
-            if squared >= reach_squared {
-                continue;
-            }
-            let (triangle, vertex) = self.pairs[n];
-            let nearest = Nearest { squared, s, t };
-            let separation = Arms { point: arm(0, n), sides: [arm(3, n), arm(6, n)] }.separation(&nearest);
-            hits.push(Hit { triangle, vertex, nearest, separation });
-        }
-        self.count = 0;
-    }
-}
-
-/// The nearest points of a block.
-struct Together<'a>(&'a mut Block);
-
-impl Kernel for Together<'_> {
-    #[inline(always)]
-    fn execute<A: Arithmetic>(self) {
-        let Block { arms: [rx, ry, rz, ux, uy, uz, vx, vy, vz], nearest: out, .. } = self.0;
-        for n in 0..BLOCK {
-            let found = nearest([rx[n], ry[n], rz[n]], [ux[n], uy[n], uz[n]], [vx[n], vy[n], vz[n]]);
-            out[0][n] = found.squared;
-            out[1][n] = found.s;
-            out[2][n] = found.t;
-        }
-    }
+    near_edges: Vec<[u32; 2]>,
 }
 
 /// How far the terms reach, nm, and whether all of them act between parts only; none if there are no terms.
@@ -113,25 +57,28 @@ impl SurfaceContacts {
         positions: &[f64],
         team: &mut Team,
     ) -> Result<()> {
-        let Some(range) = range(terms) else { return Ok(()) };
+        let Some(range) = range(terms) else {
+            self.lists.forget();
+            return Ok(());
+        };
         self.cell = cell.copied();
         let asks = |term: &&Term| term.switches & ONLY_BETWEEN_PARTS != 0;
-        if !terms.iter().any(asks) || range.1 {
-            // Lists between parts have no other pairs.
+        if !terms.iter().any(asks) {
             self.parts.clear();
         } else if self.parts.is_empty() {
+            // Flips keep parts as they are.
             self.parts = mesh.parts();
         }
         self.lists.refresh(mesh, cell, positions, range, team)
     }
 
-    /// About how many pairs an evaluation looks at.
+    /// How many pairs an evaluation looks at.
     pub fn work(&self) -> usize {
-        self.lists.busy().len() * 4
+        self.lists.vertex_pairs().len() + self.lists.edge_pairs().len()
     }
 
     /// Add the energies of terms at the positions of [`Self::prepare`], and forces (kJ/mol/nm) to those of all particles.
-    /// A term's contributions are what `contributions` finds at the same place.
+    /// A term's contributions are what `contributions` has at the same place.
     pub fn evaluate(
         &mut self,
         mesh: &Triangulation,
@@ -141,110 +88,160 @@ impl SurfaceContacts {
         team: &mut Team,
     ) {
         let Some((reach, _)) = range(terms) else { return };
-        self.hits.resize_with(team.size().max(self.hits.len()), Vec::new);
-        self.hits.iter_mut().for_each(Vec::clear);
-        let hits = Parts::new(&mut self.hits);
-        let (lists, cell) = (&self.lists, self.cell.as_ref());
+        for hits in &mut self.hits {
+            hits.resize_with(team.size().max(hits.len()), Vec::new);
+            hits.iter_mut().for_each(Vec::clear);
+        }
+        let mut hits = std::mem::take(&mut self.hits);
+        let [of_vertices, of_edges] = &mut hits;
+        let (of_vertices, of_edges) = (Parts::new(of_vertices), Parts::new(of_edges));
+        let this = &*self;
         team.run(|member| {
-            // SAFETY: each member has its own place.
-            let hits = &mut unsafe { hits.part(member.index()..member.index() + 1) }[0];
-            let positions = lists.positions();
-            let mut block = Block::EMPTY;
-            for &triangle in &lists.busy()[member.share(lists.busy().len())] {
-                let corners = mesh.triangles()[triangle as usize].map(|v| &positions[v as usize]);
-                for &vertex in lists.of(triangle) {
-                    let arms = Arms::new(cell, &positions[vertex as usize], corners);
-                    block.push((triangle, vertex), &arms);
-                    if block.count == BLOCK {
-                        block.find(reach * reach, hits);
-                    }
-                }
-            }
-            block.find(reach * reach, hits);
+            let place = member.index()..member.index() + 1;
+            // SAFETY: each member has its own places.
+            let (of_vertices, of_edges) =
+                unsafe { (of_vertices.part(place.clone()), of_edges.part(place)) };
+            this.find_vertices(mesh, reach * reach, &member, &mut of_vertices[0]);
+            this.find_edges(reach * reach, &member, &mut of_edges[0]);
         });
         let particles = mesh.particles();
-        for hit in self.hits.iter().flatten() {
-            let corners = mesh.triangles()[hit.triangle as usize];
-            let mut strength = 0.0;
-            for (term, sum) in terms.iter().zip(&mut *contributions) {
-                if self.acts(term, hit.vertex, corners) {
-                    let (contribution, slope) = surface_repulsion::pair(term, hit.nearest.squared);
-                    *sum += contribution;
-                    strength -= 2.0 * slope;
-                }
+        for hit in hits.iter().flatten().flatten() {
+            self.add(hit, terms, contributions, forces.as_deref_mut(), particles);
+        }
+        self.hits = hits;
+    }
+
+    fn find_vertices(&self, mesh: &Triangulation, most: f64, member: &Member, hits: &mut Vec<Hit>) {
+        let (positions, pairs) = (self.lists.positions(), self.lists.vertex_pairs());
+        let mut block = Block::<[u32; 4], false>::new([0; 4]);
+        let mut note = |vertices: [u32; 4], [squared, s, t]: [f64; 3], [r, u, v]: [Vec3; 3]| {
+            let (weights, separation) = ([1.0, s + t - 1.0, -s, -t], r - u * s - v * t);
+            let edges = [Vec3::zeros(); 2];
+            hits.push(Hit { vertices, weights, squared, separation, edges });
+        };
+        for &[triangle, vertex] in &pairs[member.share(pairs.len())] {
+            let [a, b, c] = mesh.triangles()[triangle as usize];
+            let corners = [a, b, c].map(|corner| &positions[corner as usize]);
+            let Arms { point, sides: [u, v] } =
+                Arms::new(self.cell.as_ref(), &positions[vertex as usize], corners);
+            block.push([vertex, a, b, c], &[point, u, v]);
+            if block.is_full() {
+                block.find(most, &mut note);
             }
-            let Some(forces) = &mut forces else { continue };
-            let force = hit.separation * strength;
-            let Nearest { s, t, .. } = hit.nearest;
-            let [a, b, c] = corners;
-            for (vertex, weight) in [(hit.vertex, 1.0), (a, s + t - 1.0), (b, -s), (c, -t)] {
-                let slot = &mut forces[3 * particles[vertex as usize] as usize..][..3];
-                for (sum, force) in slot.iter_mut().zip(force.iter()) {
-                    *sum += weight * force;
-                }
+        }
+        block.find(most, &mut note);
+    }
+
+    fn find_edges(&self, most: f64, member: &Member, hits: &mut Vec<Hit>) {
+        let (positions, pairs) = (self.lists.positions(), self.lists.edge_pairs());
+        let mut block = Block::<[u32; 4], true>::new([0; 4]);
+        let mut note = |vertices: [u32; 4], [squared, s, t]: [f64; 3], [r, u, v]: [Vec3; 3]| {
+            let (weights, separation) = ([1.0 - s, s, t - 1.0, -t], r + u * s - v * t);
+            hits.push(Hit { vertices, weights, squared, separation, edges: [u, v] });
+        };
+        for pair in &pairs[member.share(pairs.len())] {
+            let [[a, b], [c, d]] = pair.map(|edge| self.lists.ends(edge));
+            let at = |vertex: u32| &positions[vertex as usize];
+            let arms = edge_arms(self.cell.as_ref(), [at(a), at(b)], [at(c), at(d)]);
+            block.push([a, b, c, d], &arms);
+            if block.is_full() {
+                block.find(most, &mut note);
             }
+        }
+        block.find(most, &mut note);
+    }
+
+    #[inline]
+    fn add(
+        &self,
+        hit: &Hit,
+        terms: &[&Term],
+        contributions: &mut [Contribution],
+        forces: Option<&mut [f64]>,
+        particles: &[u32],
+    ) {
+        let [u, v] = &hit.edges;
+        let of_edges = *u != Vec3::zeros();
+        let (weight, turns) = if of_edges {
+            surface_repulsion::edge_weight(u, v)
+        } else {
+            (1.0, [Vec3::zeros(); 2])
+        };
+        let (mut strength, mut energy) = (0.0, 0.0);
+        for (term, sum) in terms.iter().zip(contributions) {
+            if self.acts(term, hit.vertices) {
+                let (mut pair, slope) = surface_repulsion::pair(term, hit.squared);
+                energy += pair.energy;
+                strength -= 2.0 * weight * slope;
+                pair.energy *= weight;
+                pair.by_parameter.iter_mut().for_each(|derivative| *derivative *= weight);
+                *sum += pair;
+            }
+        }
+        let Some(forces) = forces else { return };
+        let [turn_u, turn_v] = turns.map(|turn| turn * energy);
+        // An end moves its edge forward, a beginning backward.
+        let turns = [turn_u, -turn_u, turn_v, -turn_v];
+        for (k, vertex) in hit.vertices.into_iter().enumerate() {
+            let force = hit.separation * (strength * hit.weights[k]) + turns[k];
+            let slot = &mut forces[3 * particles[vertex as usize] as usize..][..3];
+            slot.iter_mut().zip(force.iter()).for_each(|(sum, force)| *sum += force);
         }
     }
 
-    /// Whether a term acts between a vertex and a triangle that are not excluded.
+    /// Whether a term acts between things that share no vertex; the first and the last vertex are of different ones.
     #[inline]
-    fn acts(&self, term: &Term, vertex: u32, corners: [u32; 3]) -> bool {
+    fn acts(&self, term: &Term, [first, .., last]: [u32; 4]) -> bool {
         term.switches & ONLY_BETWEEN_PARTS == 0
-            || self.parts.is_empty()
-            || self.parts[vertex as usize] != self.parts[corners[0] as usize]
+            || self.parts[first as usize] != self.parts[last as usize]
     }
 
     /// Whether no flip of a quadrilateral can free energy, as nothing is near it.
     pub fn is_quiet(&self, quad: &Quad) -> bool {
-        let [_, _, k, l] = quad.vertices;
-        let empty = |triangle: usize| self.lists.of(triangle as u32).is_empty();
-        quad.triangles().into_iter().all(empty) && !self.lists.has(k) && !self.lists.has(l)
+        !self.lists.has_any(&quad.vertices)
     }
 
-    /// The energy, kJ/mol, of all pairs that a flip makes or ends, as the mesh is now: before it or after it. `changed`
-    /// are the two triangles that it replaces, `vertices` i, j, k and l.
-    pub fn around(
-        &mut self,
-        mesh: &Triangulation,
-        terms: &[&Term],
-        changed: [usize; 2],
-        [i, j, k, l]: [u32; 4],
-    ) -> f64 {
+    /// The energy, kJ/mol, of two triangles and the edge between them, as a half-edge of one of them has them now.
+    pub fn around(&mut self, mesh: &Triangulation, terms: &[&Term], quad: &Quad) -> f64 {
         if terms.is_empty() {
             return 0.0;
         }
-        let mut near = std::mem::take(&mut self.near);
+        let (mut near, mut edges) =
+            (std::mem::take(&mut self.near), std::mem::take(&mut self.near_edges));
+        let (positions, cell) = (self.lists.positions(), self.cell.as_ref());
+        let at = |vertex: u32| &positions[vertex as usize];
         let mut energy = 0.0;
-        for triangle in changed {
-            self.lists.near_now(mesh, triangle as u32, &mut near);
+        let mut add = |vertices: [u32; 4], squared: f64, weight: f64| {
+            let acting = terms.iter().filter(|term| self.acts(term, vertices));
+            let pairs = acting.map(|term| surface_repulsion::pair(term, squared).0.energy);
+            energy += weight * pairs.sum::<f64>();
+        };
+        for triangle in quad.triangles() {
+            let corners = mesh.triangles()[triangle];
+            self.lists.vertices_near_now(corners, &mut near);
             for &vertex in &near {
-                energy += self.pair(mesh, terms, vertex, triangle as u32);
+                let Nearest { squared, .. } = Arms::new(cell, at(vertex), corners.map(at)).nearest();
+                add([vertex, corners[0], corners[1], corners[2]], squared, 1.0);
             }
         }
-        for (vertex, corner) in [(k, l), (l, k), (i, j), (j, i)] {
-            each_leaving(mesh, corner, |half| {
-                let triangle = half / 3;
-                let corners = mesh.triangles()[triangle as usize];
-                if !changed.contains(&(triangle as usize)) && !is_excluded(mesh, vertex, corners) {
-                    energy += self.pair(mesh, terms, vertex, triangle);
-                }
-            });
+        let [i, j, ..] = quad.vertices;
+        self.lists.edges_near_now([i, j], &mut edges);
+        for &[p, q] in &edges {
+            let [_, u, v] = edge_arms(cell, [at(i), at(j)], [at(p), at(q)]);
+            let squared = crossing(cell, [at(i), at(j)], [at(p), at(q)]).squared;
+            add([i, j, p, q], squared, surface_repulsion::edge_weight(&u, &v).0);
         }
-        self.near = near;
+        (self.near, self.near_edges) = (near, edges);
         energy
     }
 
-    fn pair(&self, mesh: &Triangulation, terms: &[&Term], vertex: u32, triangle: u32) -> f64 {
-        let positions = self.lists.positions();
-        let corners = mesh.triangles()[triangle as usize];
-        let at = corners.map(|corner| &positions[corner as usize]);
-        let nearest = Arms::new(self.cell.as_ref(), &positions[vertex as usize], at).nearest();
-        let acting = terms.iter().filter(|term| self.acts(term, vertex, corners));
-        acting.map(|term| surface_repulsion::pair(term, nearest.squared).0.energy).sum()
+    /// Have the edge kl of a quadrilateral in place of ij.
+    pub fn follow(&mut self, quad: &Quad) {
+        self.lists.follow(quad);
     }
 
-    /// Follow a flip, which `mesh` has made; `quad` is as it was before.
-    pub fn follow(&mut self, mesh: &Triangulation, quad: &Quad) {
-        self.lists.follow(mesh, quad);
+    /// Flips have made something that touches.
+    pub fn note_new_pairs(&mut self) {
+        self.lists.note_new_pairs();
     }
 }

@@ -130,7 +130,7 @@ impl Touched<'_, '_> {
     /// The energy of all that a flip changes, before it or after it, kJ/mol.
     fn around(&mut self, mesh: &Triangulation, quad: &Quad) -> f64 {
         let mesh = self.mesh.as_deref().unwrap_or(mesh);
-        self.contacts.around(mesh, self.terms, quad.triangles(), quad.vertices)
+        self.contacts.around(mesh, self.terms, quad)
     }
 
     fn flip(&mut self, quad: &Quad, turn: Turn) {
@@ -154,21 +154,27 @@ fn flip_touched(
     let quads: SmallVec<[Quad; 2]> = touched.iter().map(|one| one.quad(mesh, half)).collect();
     for (one, quad) in touched.iter_mut().zip(&quads) {
         difference -= one.around(mesh, quad);
+        one.contacts.follow(quad);
     }
     mesh.flip(&quad, turn);
+    let half = Triangulation::flipped(half, turn);
+    let mut after: SmallVec<[f64; 2]> = SmallVec::new();
     for (one, quad) in touched.iter_mut().zip(&quads) {
         one.flip(quad, turn);
-        difference += one.around(mesh, quad);
+        let quad = one.quad(mesh, half);
+        after.push(one.around(mesh, &quad));
     }
+    difference += after.iter().sum::<f64>();
     if difference <= limit {
-        for (one, quad) in touched.iter_mut().zip(&quads) {
-            one.contacts.follow(one.mesh.as_deref().unwrap_or(mesh), quad);
+        for (one, _) in touched.iter_mut().zip(after).filter(|(_, energy)| *energy != 0.0) {
+            one.contacts.note_new_pairs();
         }
         return Some(difference);
     }
-    let (back, half) = (turn.other(), Triangulation::flipped(half, turn));
+    let back = turn.other();
     for one in touched {
         let quad = one.quad(mesh, half);
+        one.contacts.follow(&quad);
         one.flip(&quad, back);
     }
     mesh.flip(&mesh.quad(half), back);

@@ -5,6 +5,7 @@ import itertools
 import re
 from pathlib import Path
 
+import contact_twin
 import numpy as np
 import openmm
 import pytest
@@ -140,12 +141,19 @@ class TestWhatIsBuilt:
         cfg = config.read(write(TWO))
         positions = cfg.positions * 0.9
         energy, _ = state(cfg.system(), positions, {cfg.terms["repulsion"]})
-        expected = 0.0
-        for i, j in itertools.product(range(40), range(40, 82)):
-            r = np.linalg.norm(positions[i] - positions[j])
-            expected += 5 * cfg.kT * max(1 - r / 12, 0) ** 2
+        triangles = np.vstack([m.vesicle.mesh.triangles + m.particles[0] for m in cfg.membranes])
+        part = (np.arange(82) >= 40).astype(int)
+        expected = contact_twin.surface_repulsion(positions, triangles, 12, 5 * cfg.kT, part)
         assert expected > 0
-        assert energy == pytest.approx(expected, rel=1e-12)
+        assert energy == pytest.approx(expected, rel=1e-9)
+
+    def test_a_vesicle_may_keep_off_itself(self, write):
+        cfg = config.read(write(SMALL + "[repulsion]\nstrength = 1\ndistance = 60\nwithin = true\n"))
+        energy, _ = state(cfg.system(), cfg.positions, {cfg.terms["repulsion"]})
+        triangles = cfg.membranes[0].vesicle.mesh.triangles
+        expected = contact_twin.surface_repulsion(cfg.positions, triangles, 60, 1)
+        assert expected > 0
+        assert energy == pytest.approx(expected, rel=1e-9)
 
     def test_terms_are_named_and_apart(self, write):
         cfg = config.read(write(TWO))

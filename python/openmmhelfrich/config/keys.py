@@ -156,8 +156,10 @@ KEYS: tuple[Key, ...] = (
         "Rotation vector about the origin, degrees: `[0, 0, 90]` is a quarter turn about z."),
     Key("vesicle.mesh", "translate", vector, None, "Displacement, nm."),
     Key("repulsion", "strength", energy, REQUIRED,
-        "s, kJ/mol, of s (1 − r/d)² between vertices of different vesicles."),
-    Key("repulsion", "distance", number(above=0), REQUIRED, "d, nm, beyond which there is none."),
+        "ε, kJ/mol, of ε ((D/d)⁶ − 1)² at a distance d; see `SurfaceRepulsionForce`."),
+    Key("repulsion", "distance", number(above=0), REQUIRED, "D, nm, beyond which there is none."),
+    Key("repulsion", "within", boolean, False,
+        "Let it act within each vesicle, too; D must be less than its triangles are high."),
 )  # fmt: skip
 
 

@@ -11,6 +11,7 @@ import numpy as np
 import openmm
 
 from .. import platforms, vcm
+from ..forces import SurfaceRepulsionForce
 from ..vcm.grammar import GENERAL, MEMBRANE, ConfigError, nearest
 from ..vcm.parsers import Interval
 from ..vcm.settings import Settings
@@ -71,8 +72,12 @@ class Configuration(vcm.Config):
         self._repulsion = None
         if "repulsion" in document.data:
             self._repulsion = Table(document, ("repulsion",), "repulsion", self.kT)
-            if len(self.membranes) == 1:
-                raise self._repulsion.error(None, "it acts between vesicles, and there is one only")
+            if len(self.membranes) == 1 and not self._repulsion["within"]:
+                raise self._repulsion.error(
+                    None,
+                    "it acts between vesicles, and there is one only; within = true lets it act "
+                    "within a vesicle, too",
+                )
         # The potentials of each vesicle, by Vesicle's names.
         self._kinds = [list(membrane.vesicle._forces(0)) for membrane in self.membranes]
         self._terms: dict[str, int] = {}
@@ -131,20 +136,18 @@ class Configuration(vcm.Config):
         return result
 
     def _repulsive_force(self) -> openmm.Force:
-        """E = s (1 − r/d)² for r < d, between vertices of different vesicles."""
-        # With interaction groups OpenMM would go through all pairs, without neighbour lists.
-        force = openmm.CustomNonbondedForce(
-            "(1-delta(vesicle1-vesicle2))*strength*(1-r/contact)^2*step(contact-r)"
+        """A SurfaceRepulsionForce on the triangles of all vesicles."""
+        offsets = (membrane.particles[0] for membrane in self.membranes)
+        triangles = [
+            membrane.vesicle.mesh.triangles + offset
+            for membrane, offset in zip(self.membranes, offsets, strict=True)
+        ]
+        repulsion = self._repulsion
+        force = SurfaceRepulsionForce(
+            np.vstack(triangles), repulsion["distance"], repulsion["strength"]
         )
-        force.addPerParticleParameter("vesicle")
+        force.setOnlyBetweenParts(not repulsion["within"])
         force.setName("repulsion")
-        force.addGlobalParameter("strength", self._repulsion["strength"])
-        force.addGlobalParameter("contact", self._repulsion["distance"])
-        force.setNonbondedMethod(openmm.CustomNonbondedForce.CutoffNonPeriodic)
-        force.setCutoffDistance(self._repulsion["distance"])
-        for number, membrane in enumerate(self.membranes):
-            for _ in membrane.particles:
-                force.addParticle([number])
         return force
 
 

@@ -1,0 +1,179 @@
+"""Bond flips on surfaces that touch: energies of single flips, and forces that follow the flips of several vesicles."""
+
+from __future__ import annotations
+
+import numpy as np
+import openmm as mm
+import openmmhelfrich as helfrich
+import pytest
+from flowing import forces_of, langevin, mover_of, start
+from platforms import HELFRICH, ON_OPENCL, REFERENCE
+
+DISTANCE, EPSILON = 5.0, 4.0
+
+
+def pressed(count: int = 2) -> tuple[list[helfrich.Mesh], np.ndarray, list[np.ndarray]]:
+    """Vesicles side by side that touch, the first with a bead beside it."""
+    one = start()
+    step = np.ptp(one.vertices[:, 0]) + 0.9 * DISTANCE
+    positions = [one.vertices + [k * step, 3 * k, 5 * k] for k in range(count)]
+    offsets = one.num_vertices * np.arange(count)
+    triangles = [one.triangles + offset for offset in offsets]
+    bead = [[one.vertices[:, 0].min() - 18, 0, 0]]
+    return [one] * count, np.vstack([*positions, bead]), triangles
+
+
+def several(target=REFERENCE, count: int = 2, **arguments):
+    """A Context of vesicles that flow and keep apart."""
+    vesicles, positions, triangles = pressed(count)
+    system = mm.System()
+    for _ in positions:
+        system.addParticle(50.0)
+    movers = []
+    wall = helfrich.SurfaceRepulsionForce(np.vstack(triangles), DISTANCE, EPSILON)
+    bead = helfrich.ParticleSurfaceForce(
+        np.vstack(triangles), [len(positions) - 1], 8.0, 2.0, 0.01, 12.0, "LennardJones"
+    )
+    # One before the membranes' own forces and one after them.
+    system.addForce(wall)
+    for vesicle, corners in zip(vesicles, triangles, strict=True):
+        for force in forces_of(vesicle, corners):
+            system.addForce(force)
+        movers.append(helfrich.MonteCarloBondFlip(corners, 300.0, **arguments))
+        movers[-1].setRandomNumberSeed(len(movers))
+        system.addForce(movers[-1])
+    system.addForce(bead)
+    context = target.context(system, langevin())
+    context.setPositions(positions)
+    return context, wall, bead, movers
+
+
+def energy(context):
+    return context.getState(energy=True).getPotentialEnergy()._value
+
+
+@pytest.mark.parametrize("target", [REFERENCE, HELFRICH, ON_OPENCL[2]], ids=str)
+def test_forces_of_several_vesicles_follow_all_flips(target):
+    context, wall, bead, movers = several(target, frequency=2, attemptsPerEdge=0.5)
+    context.setVelocitiesToTemperature(300, 1)
+    context.getIntegrator().step(40)
+    assert all(mover.getStatistics(context)["accepted"] > 20 for mover in movers)
+    present = np.vstack([mover.getTrianglesInContext(context) for mover in movers])
+    for force in (wall, bead):
+        assert (force.getTrianglesInContext(context) == present).all()
+    # A Context that begins with these triangles has the same energy.
+    fresh = mm.System()
+    for _ in range(context.getSystem().getNumParticles()):
+        fresh.addParticle(1.0)
+    fresh.addForce(helfrich.SurfaceRepulsionForce(present, DISTANCE, EPSILON))
+    particles = bead.getParticles()
+    arguments = (8.0, 2.0, 0.01, 12.0, "LennardJones")
+    fresh.addForce(helfrich.ParticleSurfaceForce(present, particles, *arguments))
+    other = REFERENCE.context(fresh)
+    state = context.getState(positions=True)
+    other.setPositions(state.getPositions())
+    for force in (wall, bead):
+        force.setEpsilon(0)
+    bead.setAdhesion(0)
+    before = energy(context)
+    for force in (wall, bead):
+        force.updateParametersInContext(context)
+    assert before - energy(context) == pytest.approx(energy(other), rel=1e-6)
+    assert abs(energy(other)) > 1e-3
+
+
+def test_a_demon_pays_for_contacts():
+    """With a demon the energy of all terms and the demon's is kept by flips at rest, to the last digits."""
+    vesicles, positions, triangles = pressed()
+    system = mm.System()
+    for _ in positions:
+        system.addParticle(0.0)
+    movers = []
+    system.addForce(helfrich.SurfaceRepulsionForce(np.vstack(triangles), DISTANCE, EPSILON))
+    bead = [len(positions) - 1]
+    system.addForce(
+        helfrich.ParticleSurfaceForce(
+            np.vstack(triangles), bead, 8.0, 2.0, 0.05, 12.0, "NineThree"
+        )
+    )
+    for vesicle, corners in zip(vesicles, triangles, strict=True):
+        for force in forces_of(vesicle, corners):
+            system.addForce(force)
+        mover = helfrich.MonteCarloBondFlip(corners, 300.0, frequency=1, attemptsPerEdge=2.0)
+        mover.setEnsemble(mover.Microcanonical)
+        mover.setRandomNumberSeed(5)
+        movers.append(mover)
+        system.addForce(mover)
+    context = REFERENCE.context(system, mm.VerletIntegrator(0.001))
+    context.setPositions(positions)
+
+    def total():
+        demons = sum(mover.getStatistics(context)["demonEnergy"] for mover in movers)
+        return energy(context) + demons
+
+    expected = total()
+    for _ in range(30):
+        context.getIntegrator().step(1)
+        assert total() == pytest.approx(expected, rel=1e-9)
+    assert all(mover.getStatistics(context)["accepted"] > 50 for mover in movers)
+
+
+def test_what_does_not_follow_is_refused():
+    vesicles, positions, triangles = pressed()
+    system = mm.System()
+    for _ in positions:
+        system.addParticle(50.0)
+    system.addForce(mover_of(vesicles[0]))
+    system.addForce(helfrich.SurfaceAreaForce(np.vstack(triangles), 1.0, 1.0))
+    with pytest.raises(mm.OpenMMException, match="belongs to two different triangulations"):
+        REFERENCE.context(system)
+    system.removeForce(1)
+    # Not one after another: the second's triangles are among the first's.
+    mixed = np.vstack([triangles[0][1:], triangles[1], triangles[0][:1]])
+    system.addForce(helfrich.SurfaceRepulsionForce(mixed, DISTANCE, EPSILON))
+    with pytest.raises(mm.OpenMMException, match="one after another"):
+        REFERENCE.context(system)
+
+
+def test_triangles_are_set_where_they_belong_and_come_with_checkpoints():
+    context, wall, _, movers = several(HELFRICH, frequency=2, attemptsPerEdge=0.5)
+    with pytest.raises(mm.OpenMMException, match="SurfaceRepulsionForce: these triangles follow"):
+        wall.setTrianglesInContext(context, wall.getTrianglesInContext(context))
+    context.getIntegrator().step(10)
+    checkpoint = context.createCheckpoint()
+    seen = []
+    for again in range(2):
+        if again:
+            context.loadCheckpoint(checkpoint)
+        context.getIntegrator().step(10)
+        state = context.getState(positions=True, energy=True)
+        triangles = wall.getTrianglesInContext(context)
+        seen.append((state.getPotentialEnergy()._value, triangles.tobytes()))
+        positions = state.getPositions(asNumpy=True)._value.tobytes()
+        seen[-1] += (positions,)
+    assert seen[0] == seen[1]
+    context.reinitialize(preserveState=True)
+    assert (wall.getTrianglesInContext(context).tobytes()) == seen[0][1]
+    assert energy(context) == pytest.approx(seen[0][0], rel=1e-9)
+
+
+def test_one_surface_flips_with_its_contacts():
+    """All forces on the same triangles, crumpled: a demon's balance, and the same bits from a checkpoint."""
+    mesh = start()
+    vertices = mesh.vertices * [1, 1, 0.12]
+    system = mm.System()
+    for _ in vertices:
+        system.addParticle(0.0)
+    system.addForce(helfrich.BendingForce(mesh, 20.0))
+    system.addForce(helfrich.SurfaceRepulsionForce(mesh, 2 * DISTANCE, EPSILON))
+    mover = mover_of(mesh, frequency=1, attemptsPerEdge=2.0, maxEdgeLength=60.0)
+    mover.setEnsemble(mover.Microcanonical)
+    system.addForce(mover)
+    context = REFERENCE.context(system, mm.VerletIntegrator(0.001))
+    context.setPositions(vertices)
+    expected = energy(context)
+    for _ in range(50):
+        context.getIntegrator().step(1)
+        now = energy(context) + mover.getStatistics(context)["demonEnergy"]
+        assert now == pytest.approx(expected, rel=1e-9)
+    assert mover.getStatistics(context)["accepted"] > 50
