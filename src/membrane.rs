@@ -263,7 +263,13 @@ impl Membrane {
     ) -> Result<()> {
         let present = Present { mesh: &self.mesh, order: &self.order };
         let after = self.remembered.fill(terms, positions, |forces| {
-            self.evaluator.evaluate(present, &others(terms), positions, &mut [], Some(&mut *forces))?;
+            self.evaluator.evaluate(
+                present,
+                &others(terms),
+                positions,
+                &mut [],
+                Some(&mut *forces),
+            )?;
             self.contacts.evaluate(&self.mesh, None, terms, positions, &mut [], Some(forces))
         })?;
         for ((change, after), before) in change.iter_mut().zip(after).zip(&self.before) {

@@ -66,8 +66,15 @@ pub unsafe extern "C" fn Helfrich_Membrane_flip(
             })
             .collect();
         let attempts = attempts as u64;
-        let count =
-            membrane.flip_together(&terms, positions, rules, attempts, state, change, &mut followers)?;
+        let count = membrane.flip_together(
+            &terms,
+            positions,
+            rules,
+            attempts,
+            state,
+            change,
+            &mut followers,
+        )?;
         unsafe { made.write(count as i64) };
         Ok(())
     })

@@ -128,9 +128,7 @@ def test_particles_feel_all_triangles(target, membrane, attraction):
         for axis in range(3):
             step = np.zeros_like(positions)
             step[particle, axis] = h = 1e-4
-            there, back = (
-                twin.particle_surface(positions + s * step, *arguments) for s in (1, -1)
-            )
+            there, back = (twin.particle_surface(positions + s * step, *arguments) for s in (1, -1))
             error = forces[particle, axis] - (back - there) / (2 * h)
             assert abs(error) < max(1e-6, target.tolerance) * scale
 

@@ -92,9 +92,7 @@ def test_a_demon_pays_for_contacts():
     system.addForce(helfrich.SurfaceRepulsionForce(np.vstack(triangles), DISTANCE, EPSILON))
     bead = [len(positions) - 1]
     system.addForce(
-        helfrich.ParticleSurfaceForce(
-            np.vstack(triangles), bead, 8.0, 2.0, 0.05, 12.0, "NineThree"
-        )
+        helfrich.ParticleSurfaceForce(np.vstack(triangles), bead, 8.0, 2.0, 0.05, 12.0, "NineThree")
     )
     for vesicle, corners in zip(vesicles, triangles, strict=True):
         for force in forces_of(vesicle, corners):
