@@ -26,7 +26,7 @@ mesh = { icosphere = 2, radius = 30 }
 """
 TWO = f"""{ONE}
 [[vesicle]]
-mesh = {{ icosphere = 2, radius = 30, translate = [70, 0, 0] }}
+mesh = {{ icosphere = 2, radius = 30, translate = [78, 0, 0] }}
 
 [repulsion]
 strength = 5
