@@ -75,8 +75,9 @@ fn main() {
         let begin = shortest(runs, || timed(|| fill(&mesh, &mut local, &mut evaluator)));
         let before = state;
         let attempt = shortest(runs, || {
-            timed(|| flips::attempt(&mut mesh, &mut local, &terms, &rules, edges, &mut state, &mut []))
-                / edges as f64
+            timed(|| {
+                flips::attempt(&mut mesh, &mut local, &terms, &rules, edges, &mut state, &mut [])
+            }) / edges as f64
         });
         let accepted =
             (state.accepted - before.accepted) as f64 / (state.attempts - before.attempts) as f64;

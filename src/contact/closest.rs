@@ -53,7 +53,8 @@ impl Arms {
     /// The nearest point.
     #[inline]
     pub fn nearest(&self) -> Nearest {
-        let [r, u, v] = [&self.point, &self.sides[0], &self.sides[1]].map(|arm| [arm.x, arm.y, arm.z]);
+        let [r, u, v] =
+            [&self.point, &self.sides[0], &self.sides[1]].map(|arm| [arm.x, arm.y, arm.z]);
         nearest(r, u, v)
     }
 }
@@ -133,7 +134,8 @@ pub fn nearest_of_edges(r: [f64; 3], u: [f64; 3], v: [f64; 3]) -> Crossing {
         let z = r[2] + s * u[2] - t * v[2];
         Crossing { squared: x * x + y * y + z * z, s, t }
     };
-    let least = |one: Crossing, other: Crossing| if other.squared < one.squared { other } else { one };
+    let least =
+        |one: Crossing, other: Crossing| if other.squared < one.squared { other } else { one };
     let ends = least(at(0.0, within_one(rv / vv)), at(1.0, within_one((rv + uv) / vv)));
     let others = least(at(within_one(-ru / uu), 0.0), at(within_one((uv - ru) / uu), 1.0));
     let side = least(ends, others);
@@ -192,7 +194,8 @@ mod tests {
         let corners = [[0.1, 0.2, 0.3], [0.9, 0.1, 0.2], [0.3, 1.0, 0.1]].map(Vec3::from);
         let point = Vec3::new(0.5, 0.4, 1.0);
         let there = Arms::new(None, &point, corners.each_ref()).nearest();
-        let moved = [corners[0], corners[1] + cell.shift([1, 0, -1]), corners[2] + cell.shift([0, 2, 0])];
+        let moved =
+            [corners[0], corners[1] + cell.shift([1, 0, -1]), corners[2] + cell.shift([0, 2, 0])];
         let far = point + cell.shift([-1, 1, 3]);
         let found = Arms::new(Some(&cell), &far, moved.each_ref()).nearest();
         assert!((found.squared - there.squared).abs() < 1e-12);

@@ -105,7 +105,8 @@ impl Contacts {
             self.surface.prepare(mesh, cell, &only, positions, team)?;
             self.surface.evaluate(mesh, &only, &mut sums, forces.as_deref_mut(), team);
         }
-        self.particles.resize_with(particles.len().max(self.particles.len()), ParticleContacts::default);
+        self.particles
+            .resize_with(particles.len().max(self.particles.len()), ParticleContacts::default);
         for ((_, term), contacts) in particles.iter().zip(&mut self.particles) {
             let mut sum = Contribution::default();
             let on = (mesh, cell);
@@ -140,7 +141,8 @@ impl Contacts {
         let [surface, particles] = sorted(terms);
         let only: SmallVec<[&Term; 4]> = surface.iter().map(|(_, term)| *term).collect();
         self.surface.prepare(mesh, cell, &only, positions, &mut self.alone)?;
-        self.particles.resize_with(particles.len().max(self.particles.len()), ParticleContacts::default);
+        self.particles
+            .resize_with(particles.len().max(self.particles.len()), ParticleContacts::default);
         for ((_, term), contacts) in particles.iter().zip(&mut self.particles) {
             contacts.prepare_flips((mesh, cell), term, positions)?;
         }

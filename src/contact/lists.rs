@@ -14,8 +14,12 @@ use crate::mesh::{Cell, Triangulation};
 use crate::team::{Parts, Team};
 use std::ops::Range;
 
-/// The skin as a share of the reach: thicker ones are renewed less often, but have more pairs in them.
-const SKIN: f64 = 1.0;
+/// The skin as a share of the reach, at first, at least and at most. Thicker ones are renewed less often, but have more
+/// pairs in them.
+const SKIN: [f64; 3] = [1.0, 0.05, 4.0];
+
+/// What it costs to make lists, by triangle or edge, in looks at a pair: the skin grows until both cost the same.
+const MAKING: f64 = 60.0;
 
 /// After so many flips the edges are sorted into boxes anew.
 const MOST_NEW: usize = 200;
@@ -24,6 +28,10 @@ const MOST_NEW: usize = 200;
 #[derive(Default)]
 pub struct Lists {
     made_for: Option<Made>,
+    /// As a share of the reach, once it is known.
+    skin: Option<f64>,
+    /// How many evaluations the lists have served.
+    served: u32,
     /// All vertices as they are now.
     positions: Vec<Vec3>,
     reference: Vec<Vec3>,
@@ -53,6 +61,8 @@ struct Made {
     between_parts: bool,
     cell: Option<Cell>,
     fingerprint: u64,
+    /// nm.
+    skin: f64,
 }
 
 impl Lists {
@@ -70,14 +80,16 @@ impl Lists {
         team: &mut Team,
     ) -> Result<()> {
         let fingerprint = mesh.fingerprint();
-        let wanted = Made { reach, between_parts, cell: cell.copied(), fingerprint };
+        let share = self.skin.unwrap_or(SKIN[0]);
+        let (cell_now, skin) = (cell.copied(), share * reach);
+        let mut wanted = Made { reach, between_parts, cell: cell_now, fingerprint, skin };
         let particles = mesh.particles();
         let at = |particle: u32| Vec3::from_column_slice(&positions[3 * particle as usize..][..3]);
         self.positions.clear();
         self.positions.extend(particles.iter().map(|particle| at(*particle)));
         // Lists of a longer reach are good, too: force groups may take turns.
         let good = self.made_for.filter(|made| {
-            let Made { reach, between_parts, cell, fingerprint } = *made;
+            let Made { reach, between_parts, cell, fingerprint, .. } = *made;
             reach >= wanted.reach
                 && between_parts <= wanted.between_parts
                 && (cell, fingerprint) == (wanted.cell, wanted.fingerprint)
@@ -89,9 +101,17 @@ impl Lists {
                 // What is no number counts as far.
                 if moved <= farthest { farthest } else { moved }
             });
-            if farthest < 0.25 * (SKIN * made.reach).powi(2) {
+            if farthest < 0.25 * made.skin * made.skin {
+                self.served += 1;
                 return Ok(());
             }
+            let elements = mesh.triangles().len() + self.edges.len();
+            let making = MAKING * elements as f64 / f64::from(self.served + 1);
+            let looking = (self.pairs[0].len() + self.pairs[1].len()) as f64;
+            let share = share * if making > looking { 1.25 } else { 0.8 };
+            let share = share.clamp(SKIN[1], SKIN[2]);
+            self.skin = Some(share);
+            wanted.skin = share * reach;
         }
         self.made_for = None;
         for (position, particle) in self.positions.iter().zip(particles) {
@@ -101,7 +121,7 @@ impl Lists {
             }
         }
         if let Some(cell) = cell
-            && reach * (1.0 + SKIN) >= cell.half_width()
+            && reach + wanted.skin >= cell.half_width()
         {
             return Err(Error::Contract(format!(
                 "the repulsion reaches {reach} nm, which with some margin is more than half of the periodic box; make \
@@ -109,6 +129,7 @@ impl Lists {
             )));
         }
         self.make(mesh, wanted, team);
+        self.served = 0;
         self.made_for = Some(wanted);
         Ok(())
     }
@@ -151,7 +172,7 @@ impl Lists {
     }
 
     fn make(&mut self, mesh: &Triangulation, wanted: Made, team: &mut Team) {
-        let range = wanted.reach * (1.0 + SKIN);
+        let range = wanted.reach + wanted.skin;
         self.reference.clone_from(&self.positions);
         self.parts = if wanted.between_parts { mesh.parts() } else { Vec::new() };
         self.edges.clear();
@@ -202,7 +223,7 @@ impl Lists {
     /// Sort all edges into boxes.
     fn sort_edges(&mut self, made: &Made) {
         let (cell, around) = (made.cell.as_ref(), bounds(&self.reference));
-        let range = made.reach * (1.0 + SKIN);
+        let range = made.reach + made.skin;
         self.edges.retain(|[start, end]| start != end);
         self.known = self.edges.len();
         self.edge_grid.set_up(cell, around, range, 4 * self.edges.len());
@@ -275,7 +296,7 @@ impl Lists {
         let size = points.iter().fold(0.0, |size: f64, p| size.max((p - middle).norm_squared()));
         let most = (range + size.sqrt()).powi(2);
         // Vertices that have moved since the grid was made are not farther than half of the skin from there.
-        let margin = 0.5 * SKIN * made.reach;
+        let margin = 0.5 * made.skin;
         self.vertex_grid.near(&points, range.min(made.reach + margin) + margin, |vertex| {
             let position = &positions[vertex as usize];
             if difference(cell, position, &middle).norm_squared() < most
@@ -304,7 +325,11 @@ impl Lists {
         let mut found: smallvec::SmallVec<[u32; 64]> = smallvec::SmallVec::new();
         let mut look = |edge: u32| {
             let [from, to] = self.edges[edge as usize];
-            if ends.contains(&from) || ends.contains(&to) || from == to || self.are_one_part(from, ends[0]) {
+            if ends.contains(&from)
+                || ends.contains(&to)
+                || from == to
+                || self.are_one_part(from, ends[0])
+            {
                 return;
             }
             let [p, q] = [from, to].map(|end| &positions[end as usize]);
@@ -319,7 +344,7 @@ impl Lists {
                 visit(edge);
             }
         };
-        let margin = 0.5 * SKIN * made.reach;
+        let margin = 0.5 * made.skin;
         let reach = range.min(made.reach + margin) + margin;
         self.edge_grid.near(&points, reach, &mut look);
         (self.known..self.edges.len()).for_each(|edge| look(edge as u32));
@@ -329,7 +354,9 @@ impl Lists {
     pub fn vertices_near_now(&self, corners: [u32; 3], found: &mut Vec<u32>) {
         found.clear();
         let Some(made) = self.made_for else { return };
-        self.vertices_near(&made, &self.positions, corners, made.reach, |vertex| found.push(vertex));
+        self.vertices_near(&made, &self.positions, corners, made.reach, |vertex| {
+            found.push(vertex)
+        });
         found.sort_unstable();
     }
 

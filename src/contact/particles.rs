@@ -61,12 +61,20 @@ struct Touch {
 
 impl Map {
     /// Have all triangles that may be nearer than `reach` to any point of a box in its list.
-    fn refresh(&mut self, mesh: &Triangulation, cell: Option<&Cell>, reach: f64, positions: &[Vec3]) {
+    fn refresh(
+        &mut self,
+        mesh: &Triangulation,
+        cell: Option<&Cell>,
+        reach: f64,
+        positions: &[Vec3],
+    ) {
         let wanted = (reach, cell.copied(), mesh.fingerprint());
         let skin = SKIN * reach;
         if self.made_for == Some(wanted) {
             let pairs = positions.iter().zip(&self.reference);
-            if pairs.fold(0.0, |far: f64, (now, then)| far.max((now - then).norm_squared())) < skin * skin {
+            if pairs.fold(0.0, |far: f64, (now, then)| far.max((now - then).norm_squared()))
+                < skin * skin
+            {
                 return;
             }
         }
@@ -142,7 +150,8 @@ impl ParticleContacts {
                 let place = place as u32;
                 let (at, radius) = of(term, positions, place);
                 let lost = this.each_near(&reach, &at, radius, |triangle| {
-                    let pair = particle_surface::pair(term, radius, &this.arms(mesh, &at, triangle));
+                    let pair =
+                        particle_surface::pair(term, radius, &this.arms(mesh, &at, triangle));
                     found.touches.push(Touch { place, triangle, pair });
                 });
                 if lost {
@@ -325,7 +334,8 @@ impl Reach {
         let radii = term.fields[RADIUS];
         let one = [term.values[RADIUS]];
         let radii = if radii.is_empty() { &one } else { radii };
-        let fold = |choose: fn(f64, f64) -> f64| from_rim + radii.iter().copied().fold(radii[0], choose);
+        let fold =
+            |choose: fn(f64, f64) -> f64| from_rim + radii.iter().copied().fold(radii[0], choose);
         let (least, most) = (fold(f64::min), fold(f64::max));
         let mut reach = Self { from_rim, least, most, classes: Vec::new() };
         reach.classes = vec![false; reach.class(most - from_rim) + 1];

@@ -162,11 +162,8 @@ impl SurfaceContacts {
     ) {
         let [u, v] = &hit.edges;
         let of_edges = *u != Vec3::zeros();
-        let (weight, turns) = if of_edges {
-            surface_repulsion::edge_weight(u, v)
-        } else {
-            (1.0, [Vec3::zeros(); 2])
-        };
+        let (weight, turns) =
+            if of_edges { surface_repulsion::edge_weight(u, v) } else { (1.0, [Vec3::zeros(); 2]) };
         let (mut strength, mut energy) = (0.0, 0.0);
         for (term, sum) in terms.iter().zip(contributions) {
             if self.acts(term, hit.vertices) {
@@ -220,7 +217,8 @@ impl SurfaceContacts {
             let corners = mesh.triangles()[triangle];
             self.lists.vertices_near_now(corners, &mut near);
             for &vertex in &near {
-                let Nearest { squared, .. } = Arms::new(cell, at(vertex), corners.map(at)).nearest();
+                let Nearest { squared, .. } =
+                    Arms::new(cell, at(vertex), corners.map(at)).nearest();
                 add([vertex, corners[0], corners[1], corners[2]], squared, 1.0);
             }
         }

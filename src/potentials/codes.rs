@@ -57,6 +57,7 @@ macro_rules! variants {
     ($(#[$doc:meta])* $name:ident { $($variant:ident),* $(,)? }) => {
         $(#[$doc])*
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        #[allow(clippy::upper_case_acronyms, reason = "names are as the user writes them")]
         pub enum $name {
             $(#[doc = concat!("`", stringify!($variant), "`")] $variant),*
         }

@@ -27,8 +27,8 @@ use crate::real::Real;
 pub use codes::{Attraction, Contribution, MAX_PARAMETERS, Needs};
 pub use elements::*;
 pub use runs::*;
-pub use surface_repulsion::ONLY_BETWEEN_PARTS;
 use std::ffi::CStr;
+pub use surface_repulsion::ONLY_BETWEEN_PARTS;
 
 /// All potentials, by the names of their OpenMM classes.
 pub static REGISTRY: [&dyn Potential; 12] = [
@@ -232,8 +232,7 @@ impl<'a> Term<'a> {
         let fields = [&[] as &[f64]; MAX_PARAMETERS];
         let values = padded;
         let (switches, particles, wants_derivatives) = (0, &[] as &[u32], false);
-        let term =
-            Self { potential, form, switches, values, fields, particles, wants_derivatives };
+        let term = Self { potential, form, switches, values, fields, particles, wants_derivatives };
         term.check()?;
         Ok(term)
     }

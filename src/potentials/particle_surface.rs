@@ -63,7 +63,8 @@ pub fn reach(term: &Term) -> f64 {
 
 /// Whether there is adhesion, whose energies are below zero.
 pub fn attracts(term: &Term) -> bool {
-    Attraction::ALL[term.form] != Attraction::WCA && (term.values[2] > 0.0 || term.wants_derivatives)
+    Attraction::ALL[term.form] != Attraction::WCA
+        && (term.values[2] > 0.0 || term.wants_derivatives)
 }
 
 /// What a particle and a triangle do to each other.
@@ -174,7 +175,7 @@ mod tests {
         let mut random = noise(9);
         for attraction in Attraction::ALL.iter().copied() {
             let mut acting = 0;
-            for _ in 0..300 {
+            for _ in 0..2000 {
                 let mut point = |size: f64| Vec3::from_fn(|_, _| size * random());
                 let [a, b, c] = [point(1.0), point(1.0), point(1.0)];
                 let particle = a + point(2.5);
@@ -227,7 +228,11 @@ mod tests {
                 assert!((below[1] - above[1]).abs() < 1e-4);
             }
             let middle = tail(attraction, 2.0)[0];
-            let expected = if attraction == Attraction::NineThree { -0.186_523_437_5 } else { -0.031_005_859_375 };
+            let expected = if attraction == Attraction::NineThree {
+                -0.186_523_437_5
+            } else {
+                -0.031_005_859_375
+            };
             assert!((middle - expected).abs() < 1e-12, "{middle}");
         }
     }

@@ -95,7 +95,9 @@ def surface_repulsion(positions, triangles, distance, epsilon, part=None) -> flo
         )
     )
     q = np.minimum(np.sin(angle) ** 2 / 0.01, 1)
-    return float(energy + (q * (2 - q) * core(_between_segments(a, b, c, d), distance, epsilon)).sum())
+    return float(
+        energy + (q * (2 - q) * core(_between_segments(a, b, c, d), distance, epsilon)).sum()
+    )
 
 
 def _phi(x: np.ndarray, attraction: str) -> np.ndarray:

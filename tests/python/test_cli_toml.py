@@ -1,7 +1,6 @@
 """Configurations in TOML: what they build, the place of every mistake, and runs of them."""
 
 import csv
-import itertools
 import re
 from pathlib import Path
 
@@ -148,7 +147,9 @@ class TestWhatIsBuilt:
         assert energy == pytest.approx(expected, rel=1e-9)
 
     def test_a_vesicle_may_keep_off_itself(self, write):
-        cfg = config.read(write(SMALL + "[repulsion]\nstrength = 1\ndistance = 60\nwithin = true\n"))
+        cfg = config.read(
+            write(SMALL + "[repulsion]\nstrength = 1\ndistance = 60\nwithin = true\n")
+        )
         energy, _ = state(cfg.system(), cfg.positions, {cfg.terms["repulsion"]})
         triangles = cfg.membranes[0].vesicle.mesh.triangles
         expected = contact_twin.surface_repulsion(cfg.positions, triangles, 60, 1)

@@ -128,9 +128,7 @@ def test_particles_feel_all_triangles(target, membrane, attraction):
         for axis in range(3):
             step = np.zeros_like(positions)
             step[particle, axis] = h = 1e-4
-            there, back = (
-                twin.particle_surface(positions + s * step, *arguments) for s in (1, -1)
-            )
+            there, back = (twin.particle_surface(positions + s * step, *arguments) for s in (1, -1))
             error = forces[particle, axis] - (back - there) / (2 * h)
             assert abs(error) < max(1e-6, target.tolerance) * scale
 
@@ -235,7 +233,7 @@ def test_forces_survive_xml_copies_and_pickles(membrane):
             assert energy == expected[0] and (forces == expected[1]).all()
     assert bead.getParticles().tolist() == particles.tolist()
     broken = mm.XmlSerializer.serialize(bead).replace('index="', 'index="x')
-    with pytest.raises(mm.OpenMMException, match="ParticleSurfaceForce.*not an integer"):
+    with pytest.raises(mm.OpenMMException, match=r"ParticleSurfaceForce.*not an integer"):
         mm.XmlSerializer.deserialize(broken)
 
 
@@ -279,7 +277,7 @@ def test_what_touches_is_an_error(membrane):
     positions[bead] = positions[membrane.triangles[5]].mean(axis=0)
     force = helfrich.ParticleSurfaceForce(membrane.triangles, [bead], 1.0, 1.0, radius=0.1)
     again = copy.copy(force)
-    with pytest.raises(mm.OpenMMException, match="ParticleSurfaceForce: .*lies on a triangle"):
+    with pytest.raises(mm.OpenMMException, match=r"ParticleSurfaceForce: .*lies on a triangle"):
         evaluate(platforms.REFERENCE, force, positions)
     positions[bead, 1] = np.nan
     with pytest.raises(Exception, match=f"particle {bead} .*not finite|NaN"):

@@ -1,4 +1,4 @@
-"""Bond flips on surfaces that touch: energies of single flips, and forces that follow the flips of several vesicles."""
+"""Bond flips on surfaces that touch, and forces that follow the flips of several vesicles."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def pressed(count: int = 2) -> tuple[list[helfrich.Mesh], np.ndarray, list[np.nd
     """Vesicles side by side that touch, the first with a bead beside it."""
     one = start()
     step = np.ptp(one.vertices[:, 0]) + 0.9 * DISTANCE
-    positions = [one.vertices + [k * step, 3 * k, 5 * k] for k in range(count)]
+    positions = [one.vertices + np.array([k * step, 3 * k, 5 * k]) for k in range(count)]
     offsets = one.num_vertices * np.arange(count)
     triangles = [one.triangles + offset for offset in offsets]
     bead = [[one.vertices[:, 0].min() - 18, 0, 0]]
@@ -83,7 +83,7 @@ def test_forces_of_several_vesicles_follow_all_flips(target):
 
 
 def test_a_demon_pays_for_contacts():
-    """With a demon the energy of all terms and the demon's is kept by flips at rest, to the last digits."""
+    """The energy of all terms and of the demons is kept by flips at rest."""
     vesicles, positions, triangles = pressed()
     system = mm.System()
     for _ in positions:
@@ -92,9 +92,7 @@ def test_a_demon_pays_for_contacts():
     system.addForce(helfrich.SurfaceRepulsionForce(np.vstack(triangles), DISTANCE, EPSILON))
     bead = [len(positions) - 1]
     system.addForce(
-        helfrich.ParticleSurfaceForce(
-            np.vstack(triangles), bead, 8.0, 2.0, 0.05, 12.0, "NineThree"
-        )
+        helfrich.ParticleSurfaceForce(np.vstack(triangles), bead, 8.0, 2.0, 0.05, 12.0, "NineThree")
     )
     for vesicle, corners in zip(vesicles, triangles, strict=True):
         for force in forces_of(vesicle, corners):
@@ -136,7 +134,7 @@ def test_what_does_not_follow_is_refused():
 
 
 def test_triangles_are_set_where_they_belong_and_come_with_checkpoints():
-    context, wall, _, movers = several(HELFRICH, frequency=2, attemptsPerEdge=0.5)
+    context, wall, _, _ = several(HELFRICH, frequency=2, attemptsPerEdge=0.5)
     with pytest.raises(mm.OpenMMException, match="SurfaceRepulsionForce: these triangles follow"):
         wall.setTrianglesInContext(context, wall.getTrianglesInContext(context))
     context.getIntegrator().step(10)
@@ -158,7 +156,7 @@ def test_triangles_are_set_where_they_belong_and_come_with_checkpoints():
 
 
 def test_one_surface_flips_with_its_contacts():
-    """All forces on the same triangles, crumpled: a demon's balance, and the same bits from a checkpoint."""
+    """All forces on the same triangles, pressed flat: the energy and the demon's are kept."""
     mesh = start()
     vertices = mesh.vertices * [1, 1, 0.12]
     system = mm.System()

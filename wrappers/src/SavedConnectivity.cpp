@@ -185,8 +185,9 @@ void SharedMembrane::announce(ContextImpl& context, const SavedConnectivity* sav
 
 void SharedMembrane::setTriangles(const string& subject, ContextImpl& context, const vector<int>& corners) {
     if (std::any_of(parts.begin(), parts.end(), [](const Link& link) { return !link.other.expired(); }))
-        throw OpenMMException(subject + ": these triangles follow those of other forces, which have some of them each; "
-                                        "set them there");
+        throw OpenMMException(subject +
+                              ": these triangles follow those of other forces, which have some of them each; "
+                              "set them there");
     Connectivity before = getConnectivity();
     check(Helfrich_Membrane_setTriangles(subject.c_str(), core, corners.data(), (int64_t) corners.size() / 3));
     checkMover(subject, before);

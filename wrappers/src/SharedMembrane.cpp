@@ -271,8 +271,7 @@ int64_t SharedMembrane::flip(const string& subject, ContextImpl& context, int gr
             whole->settle(context);
             whole->collect(context, groups);
             following.push_back(whole);
-            followers.push_back(
-                {whole->core, link.firstTriangle, whole->terms.data(), (int64_t) whole->terms.size()});
+            followers.push_back({whole->core, link.firstTriangle, whole->terms.data(), (int64_t) whole->terms.size()});
             for (Link& back : whole->parts)
                 if (back.other.lock().get() == this)
                     links.push_back(&back);

@@ -12,17 +12,18 @@ namespace HelfrichPlugin {
  *     E = sum over pairs with g < D of epsilon [ (D/g)^6 - 1 ]^2
  *         - adhesion * sum over pairs of the integral of phi((|x - r| - R)/D) over the triangle
  *
- * phi(x) = 1 for x <= 1; beyond that it is 2/x^6 - 1/x^12 (LennardJones) or (3/x^3 - 1/x^9)/2 (NineThree, for a particle of
- * many Lennard-Jones particles), which the factor 1 - 10 y^3 + 15 y^4 - 6 y^5, y = x - 2, takes to zero from x = 2 to 3.
- * So `adhesion` is the energy by area, w, of what touches, on any mesh that is fine enough: edges up to about D. A bead
- * of radius R is wrapped at w (R + D)^2 > 2 kappa (M. Deserno, doi:10.1103/PhysRevE.69.031903). The attraction
- * WCA, the default, is none.
+ * phi(x) = 1 for x <= 1; beyond that it is 2/x^6 - 1/x^12 (LennardJones) or (3/x^3 - 1/x^9)/2 (NineThree, for a
+ * particle of many Lennard-Jones particles), which the factor 1 - 10 y^3 + 15 y^4 - 6 y^5, y = x - 2, takes to zero
+ * from x = 2 to 3. So `adhesion` is the energy by area, w, of what touches, on any mesh that is fine enough: edges up
+ * to about D. A bead of radius R is wrapped at w (R + D)^2 > 2 kappa (M. Deserno, doi:10.1103/PhysRevE.69.031903). The
+ * attraction WCA, the default, is none.
  *
  * The core acts on whole triangles, so nothing slips between vertices while steps are short against D: a particle
  * that moves farther than D in one step is not seen.
  *
- * Particles that are vertices of the same triangles are refused: SurfaceRepulsionForce is for those. The triangles may be of
- * several membranes, also where bonds flip; see there. The processor computes the force, whatever computes others.
+ * Particles that are vertices of the same triangles are refused: SurfaceRepulsionForce is for those. The triangles may
+ * be of several membranes, also where bonds flip; see there. The processor computes the force, whatever computes
+ * others.
  */
 class ParticleSurfaceForce : public MembraneForce {
 public:

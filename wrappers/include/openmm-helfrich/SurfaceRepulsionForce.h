@@ -6,24 +6,22 @@
 namespace HelfrichPlugin {
 
 /**
- * Keeps surfaces from passing through themselves and each other by a repulsion of vertices and triangles:
+ * Keeps surfaces from passing through themselves and each other, by a repulsion of vertices and triangles and of edges:
  *
- *     E = sum over pairs of a vertex and a triangle at a distance d < D of epsilon [ (D/d)^6 - 1 ]^2
+ *     E = sum over pairs at a distance d < D of m epsilon [ (D/d)^6 - 1 ]^2
  *
- * with d from the vertex to the nearest point of the triangle. A pair does not count if the vertex is a corner of the
- * triangle, or joined to a corner. Energy and force go to zero at D (Weeks, Chandler and Andersen,
- * doi:10.1063/1.1674820).
+ * A pair is a vertex and a triangle, or two edges, that share no vertex; d is the distance of their nearest points. m
+ * is 1, but for edges at an angle theta with q = sin^2 theta / 0.01 < 1 it is q (2 - q): where edges become parallel
+ * their ends take over. Energy and force go to zero at D (Weeks, Chandler and Andersen, doi:10.1063/1.1674820).
  *
- * No edge passes through a triangle while each is shorter than 2 d_min, where d_min is the smallest distance in any
- * pair: of the point where it did, one of its ends would be nearer than d_min. Left out are triangles with a
- * corner that is joined to that end, or is it: there the bending energy must do. An energy E of a pair means
- * d = D / (1 + sqrt(E/epsilon))^(1/6), so with epsilon = 1 kT no pair comes nearer than about 0.75 D (E = 20 kT). So take
- * D of 0.7 to 0.9 of the longest edges, below the distance of second neighbours (1.7 edges on an even mesh), and time
- * steps in which nothing moves by more than a tenth of it.
+ * Two triangles without a common vertex can begin to cross only where a vertex meets a triangle or an edge meets an
+ * edge, at d = 0, where the energy is infinite. So nothing crosses that is not crossed at the beginning, whatever the
+ * lengths of edges, as long as no vertex moves by a good part of D in a step. Within a flat surface, pairs are as far
+ * apart as triangles are high: take a D below the least height, about a fifth of the mean edge, and epsilon of kT.
  *
  * The triangles may be of several surfaces. If bonds flip on some of them, give those of whole membranes one after
  * another, each as its MonteCarloBondFlip and its other forces have them: the force follows their flips, and
- * its energy counts in each.
+ * its energy counts in each. A flip does not look whether the quadrilateral that it turns sweeps over something.
  *
  * The processor computes it, whatever computes other forces.
  */
