@@ -1,4 +1,4 @@
-"""Membranes in a periodic box: what spans it and what crosses its faces, every force, every platform.
+"""Membranes in a periodic box, which they span or cross: every force, every platform.
 
 Forces are held against Custom forces with periodic boundary conditions and finite differences,
 energies against numpy with nearest images, the virial against strains of positions and box.

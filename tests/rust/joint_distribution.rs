@@ -6,6 +6,7 @@
 //! passes through π: displacements go there as the weights say, and dynamics do not, whatever their time step.
 
 #[path = "support.rs"]
+#[allow(dead_code, reason = "other tests use the rest")]
 mod support;
 
 use openmm_helfrich::dynamics::integrate::{Dynamics, Particles};

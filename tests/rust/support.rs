@@ -1,7 +1,5 @@
 //! Meshes and terms for the tests of the evaluators.
 
-#![allow(dead_code, reason = "each of the tests uses its part of it")]
-
 use openmm_helfrich::potentials::Term;
 
 /// Positions of all particles, x y z of one after the other, and triangles.
