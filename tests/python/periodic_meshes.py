@@ -127,9 +127,16 @@ def _spanning() -> Surface:
     return spread(sheet(7, 8, rng), schwarz_p(4, rng), tube(8, 7, rng))
 
 
+def _torn() -> Surface:
+    """With holes, one of them across a face."""
+    rng = np.random.default_rng(24)
+    return spread(meshes.without(sheet(7, 8, rng), 0, 26, 27), meshes.without(tube(8, 7, rng), 30))
+
+
 _MAKERS = {
     "simple": _simple,
     "spanning": _spanning,
+    "torn": _torn,
     "vesicle": lambda: vesicle(np.random.default_rng(23)),
 }
 NAMES = tuple(_MAKERS)

@@ -1,4 +1,4 @@
-"""Membranes in a periodic box: what spans it and what crosses its faces, every force, every platform.
+"""Membranes in a periodic box, which they span or cross: every force, every platform.
 
 Forces are held against Custom forces with periodic boundary conditions and finite differences,
 energies against numpy with nearest images, the virial against strains of positions and box.
@@ -59,8 +59,8 @@ class Running:
 
 
 def where(case: Case) -> str:
-    """A surface that encloses something, for those that need it."""
-    return "vesicle" if case.force == "EnclosedVolumeForce" else "spanning"
+    """A surface that encloses something, or has borders, for those that need it."""
+    return {"closed": "vesicle", "open": "torn"}.get(case.surface, "spanning")
 
 
 @cache
@@ -147,9 +147,7 @@ def strings(case: Case, m) -> oracle.Result:
     """By OpenMM's Custom forces with periodic boundary conditions."""
     if case.force != "BendingForce":
         return case.expected(m, "geometric")
-    forces = string_forces.bending(
-        m.triangles, 50.0, 0.02, case.variant[1], "geometric"
-    )
+    forces = string_forces.bending(m.triangles, 50.0, 0.02, case.variant[1], "geometric")
     return oracle.evaluate(forces, m.positions)
 
 
@@ -164,7 +162,7 @@ WITH_STRINGS = [
 @pytest.mark.parametrize("case", WITH_STRINGS, ids=str)
 @every_shape
 def test_agrees_with_string_forces(case: Case, shape: str):
-    m = periodic("vesicle" if where(case) == "vesicle" else "simple", shape)
+    m = periodic("simple" if where(case) == "spanning" else where(case), shape)
     energy, forces = running(case, m.name, shape).evaluate(m.positions)
     other = strings(case, m)
     assert energy == pytest.approx(other.energy, rel=1e-9)
@@ -200,14 +198,16 @@ def test_a_tiling_has_the_same_forces(shape: str):
 
 
 # What OpenCL adds is how positions come to the processor; surfaces differ on the GPU.
-PLACES = [(name, target) for target in [CPU, HELFRICH, *ON_GPU] for name in ("spanning", "vesicle")]
+PLACES = [(name, target) for target in [CPU, HELFRICH, *ON_GPU] for name in ("torn", "vesicle")]
 
 
 @pytest.mark.parametrize(("name", "target"), [*PLACES, ("spanning", ON_OPENCL[1])], ids=str)
 def test_platforms_and_backends_agree(name: str, target: Target):
     m = periodic(name, "triclinic")
-    cases = [case for case in PRESENT if where(case) == "spanning" or name == "vesicle"][::3]
-    expected = Running([make(case, name, "triclinic") for case in cases], m.num_particles, REFERENCE)
+    cases = [case for case in PRESENT if where(case) in ("spanning", name)][::3]
+    expected = Running(
+        [make(case, name, "triclinic") for case in cases], m.num_particles, REFERENCE
+    )
     found = Running([make(case, name, "triclinic") for case in cases], m.num_particles, target)
     energy, forces = expected.evaluate(m.positions)
     other, pushes = found.evaluate(m.positions)
@@ -336,9 +336,10 @@ def test_a_run_goes_on_with_the_same_bits(flips: bool):
 
     def bits(context: mm.Context) -> bytes:
         state = context.getState(getPositions=True, getForces=True)
-        return plain(state.getPositions(asNumpy=True)).tobytes() + plain(
-            state.getForces(asNumpy=True)
-        ).tobytes()
+        return (
+            plain(state.getPositions(asNumpy=True)).tobytes()
+            + plain(state.getForces(asNumpy=True)).tobytes()
+        )
 
     context = start()
     context.setPositions(np.asarray(m.positions))
@@ -359,8 +360,9 @@ def test_a_run_goes_on_with_the_same_bits(flips: bool):
 
 def test_the_virial_counts_groups_and_surfaces():
     m = periodic("spanning", "triclinic")
-    bending, area = helfrich.BendingForce(m.triangles, 50.0), helfrich.SurfaceAreaForce(
-        m.triangles, 1e-3, 5e5
+    bending, area = (
+        helfrich.BendingForce(m.triangles, 50.0),
+        helfrich.SurfaceAreaForce(m.triangles, 1e-3, 5e5),
     )
     for group, force in enumerate((bending, area)):
         force.setForceGroup(31 * group)

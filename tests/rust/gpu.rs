@@ -4,6 +4,7 @@
 //! mesa-vulkan-drivers have one that computes on the processor.
 
 #[path = "support.rs"]
+#[allow(dead_code, reason = "other tests use the rest")]
 mod support;
 
 use openmm_helfrich::evaluator::CpuEvaluator;

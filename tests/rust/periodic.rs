@@ -1,5 +1,6 @@
 //! Surfaces in a periodic box: unfolded, wrapped at random, spanning it.
 
+#[allow(dead_code, reason = "other tests use the rest")]
 mod support;
 
 use openmm_helfrich::error::Error;

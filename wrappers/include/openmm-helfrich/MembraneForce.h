@@ -113,7 +113,8 @@ public:
      *
      * @param backend  "cpu"; "gpu", or with a precision "gpu:single" or "gpu:double"; "auto", which takes the
      *                 GPU for large meshes if it is faster and the processor if the GPU fails; or empty, the
-     *                 default, for what has been chosen for the whole process. "gpu@1" names an adapter.
+     *                 default, for what has been chosen for the whole process. "gpu@1" names an adapter. A surface
+     *                 that spans a periodic box is computed on the processor in any case.
      */
     void setBackend(const std::string& backend);
     /**
