@@ -288,7 +288,7 @@ class Mesh:
 
     @property
     def euler_characteristic(self) -> int:
-        """num_vertices − num_edges + num_triangles: 2 for a sphere, 1 for a disk; of all components."""
+        """num_vertices − num_edges + num_triangles: 2 for a sphere, 1 for a disk."""
         return self.num_vertices - len(self.edges) + self.num_triangles
 
     @functools.cached_property

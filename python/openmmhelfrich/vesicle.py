@@ -11,6 +11,7 @@ import openmm
 from openmm import app, unit
 
 from . import platforms
+from ._mesh.geometry import check_closed
 from ._placement import Placement
 from ._quantities import checked_field, checked_number
 from ._vesicle_flips import bath_of, checked_flips, mover_of
@@ -26,7 +27,6 @@ from .forces import (
     TriangleAreaRepulsionForce,
     TriangleHeightForce,
 )
-from ._mesh.geometry import check_closed
 from .mesh import Mesh
 
 # kBT at the paper's 300 K, in kJ/mol: its energies are given in multiples of this.

@@ -184,7 +184,9 @@ def test_an_open_mesh_has_borders():
     sides = {tuple(t[[k, (k + 1) % 3]].tolist()) for t in mesh.triangles for k in range(3)}
     alone = {side for side in sides if side[::-1] not in sides}
     assert alone == {
-        (int(a), int(b)) for loop in mesh.borders for a, b in zip(loop, np.roll(loop, -1))
+        (int(a), int(b))
+        for loop in mesh.borders
+        for a, b in zip(loop, np.roll(loop, -1), strict=True)
     }
     turned = Mesh(ball.vertices, triangles[:, ::-1])
     assert _same_rotation(turned.triangles, triangles[:, ::-1])
