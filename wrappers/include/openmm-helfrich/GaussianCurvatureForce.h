@@ -12,10 +12,10 @@ namespace HelfrichPlugin {
  *       = kappa_G [ 2 pi chi - sum over vertices on borders of (pi - sum of theta) ]
  *
  * with theta the angles of the triangles at a vertex (Meyer et al., in Visualization and Mathematics III, 35 (2003),
- * doi:10.1007/978-3-662-05105-4_2) and chi the number of vertices less that of edges plus that of triangles. The two are
- * equal by the theorem of Gauss and Bonnet, in which the second sum is the integrated geodesic curvature of the borders;
- * forces act on the triangles at borders only. On a closed surface E is the constant 2 pi chi kappa_G, 4 pi kappa_G on a
- * sphere, and there are no forces.
+ * doi:10.1007/978-3-662-05105-4_2) and chi the number of vertices less that of edges plus that of triangles. The two
+ * are equal by the theorem of Gauss and Bonnet, in which the second sum is the integrated geodesic curvature of the
+ * borders; forces act on the triangles at borders only. On a closed surface E is the constant 2 pi chi kappa_G, 4 pi
+ * kappa_G on a sphere, and there are no forces.
  */
 class GaussianCurvatureForce : public MembraneForce {
 public:

@@ -19,8 +19,8 @@ namespace HelfrichPlugin {
  *
  * The edge ij of two triangles (i, j, k) and (j, i, l) becomes kl, at fixed positions and momenta. An edge is chosen
  * uniformly among all; the flip is refused if the edge is a border, if a vertex would have fewer neighbours than
- * minDegree (one fewer on a border) or more than maxDegree, if kl would be longer than maxEdgeLength or exists already, or if a new triangle would have no area.
- * Otherwise it is accepted with probability
+ * minDegree (one fewer on a border) or more than maxDegree, if kl would be longer than maxEdgeLength or exists already,
+ * or if a new triangle would have no area. Otherwise it is accepted with probability
  *
  *     min(1, exp(-dE / kB T))
  *
@@ -228,8 +228,9 @@ public:
      * Get what has come of the flips that were tried in a Context since it was made: "attempts", those "accepted", and
      * those refused, by the first of these that they failed: "refusedByBorder" (the edge has one triangle only),
      * "refusedByDegree", "refusedByLength", "refusedByShape" (a triangle would have no area), "refusedByEnergy" and
-     * "refusedByEdge" (the new edge was there already); "acceptance", accepted over attempts; "time", the time that has been simulated, ps; "rate", accepted
-     * for each edge and ps; and "demonEnergy", kJ/mol. Ratios are NaN as long as there is nothing to divide by.
+     * "refusedByEdge" (the new edge was there already); "acceptance", accepted over attempts; "time", the time that has
+     * been simulated, ps; "rate", accepted for each edge and ps; and "demonEnergy", kJ/mol. Ratios are NaN as long as
+     * there is nothing to divide by.
      *
      * @param context  the Context
      */
