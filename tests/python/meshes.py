@@ -291,7 +291,7 @@ def _disk() -> Surface:
     steps = np.arange(-2, 3)
     i, j = (x.ravel() for x in np.meshgrid(steps, steps, indexing="ij"))
     inside = np.abs(i + j) <= 2
-    number = {pair: n for n, pair in enumerate(zip(i[inside].tolist(), j[inside].tolist()))}
+    number = {pair: n for n, pair in enumerate(map(tuple, np.stack([i, j], 1)[inside].tolist()))}
     triangles = [
         [number[corner] for corner in corners]
         for i, j in number

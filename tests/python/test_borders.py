@@ -149,7 +149,7 @@ def test_nothing_bends_a_flat_disk():
 
 
 def test_line_tension_pulls_a_flat_disk_together():
-    """A regular polygon of n corners of radius r: 2 n r sin(π/n), and each corner is pulled alike."""
+    """A regular polygon of n corners of radius r is 2 n r sin(π/n) long, and pulled inwards."""
     n, r = 9, 20.0
     turns = 2 * np.pi * np.arange(n) / n
     positions = np.concatenate(

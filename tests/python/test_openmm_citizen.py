@@ -167,7 +167,7 @@ def _faults() -> dict[str, tuple]:
     m = membrane("octahedron")
     t = m.triangles
     assert m.num_particles == 15
-    a, b, c = t[0].tolist()
+    a, b, _ = t[0].tolist()
 
     def edges(row) -> set[str]:
         return {rf"\({min(e)}, {max(e)}\)" for e in itertools.pairwise([*row, row[0]])}

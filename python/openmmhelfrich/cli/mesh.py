@@ -51,7 +51,7 @@ def _tidy_errors() -> Iterator[None]:
 
 @click.group()
 def mesh() -> None:
-    """Make, inspect, convert and transform closed triangulated surfaces.
+    """Make, inspect, convert and transform triangulated surfaces.
 
     The extension of a file gives its format: PLY, OBJ, STL, OFF, VTK, VTU, or Gmsh (.msh); VTP is
     read only. Numbers are taken as nm.
@@ -220,8 +220,7 @@ def _facts(given, softness: float) -> dict:
             str(d): int(n) for d, n in zip(degrees.tolist(), counts.tolist(), strict=True)
         },
         "area (nm²)": given.area,
-        "volume (nm³)": given.volume,
-        "reduced volume": given.reduced_volume,
+        **_closure(given),
         "radius of that area (nm)": math.sqrt(given.area / (4 * math.pi)),
         "centre (nm)": given.vertices.mean(axis=0).tolist(),
         "extent (nm)": np.ptp(given.vertices, axis=0).tolist(),
@@ -229,6 +228,13 @@ def _facts(given, softness: float) -> dict:
         "heights, least to largest (nm)": [float(heights.min()), float(heights.max())],
         f"least height d at Ξ = {softness:g} (nm)": float(given.min_height(softness)),
     }
+
+
+def _closure(given) -> dict[str, object]:
+    """What it encloses, or how many edges its borders have."""
+    if given.borders:
+        return {"edges of borders": [len(border) for border in given.borders]}
+    return {"volume (nm³)": given.volume, "reduced volume": given.reduced_volume}
 
 
 def _text(value) -> str:

@@ -18,6 +18,10 @@ namespace HelfrichPlugin {
  * the triangles at the vertex weighted by their angles (B9); setUnsignedSpontaneousCurvature() chooses |c|
  * instead, as VCM does, which cannot tell a bulge from a dent.
  *
+ * Borders are free, as in Capovilla, Guven and Santiago, Phys. Rev. E 66, 021607 (2002),
+ * doi:10.1103/PhysRevE.66.021607, without tension of their own: no scheme has curvature at a vertex on a border, which
+ * is left out of the sum, and a border edge has no angle. An inner edge that ends at a border counts for its inner end.
+ *
  * The Voronoi area of the schemes GompperKroll and JulicherVoronoi goes through zero where triangles
  * are obtuse. The energy then has pits and poles, as the formula has; it is not clamped.
  *

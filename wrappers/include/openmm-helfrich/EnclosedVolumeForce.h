@@ -14,6 +14,8 @@ namespace HelfrichPlugin {
  * doi:10.1103/PhysRevE.108.015301. V is positive for outward triangles, the sum over all components of
  * the surface, and does not depend on the origin.
  *
+ * A surface with a border encloses nothing: creating a Context throws an exception that names the border.
+ *
  * Triangles must run counter-clockwise seen from outside. Where V is below zero when a Context first evaluates the
  * force, it throws an exception: swap two corners of each triangle. Of several surfaces some may face inward, as
  * the inner wall of a shell does, if V as a whole is above zero, and a flat surface (|V| below a thousandth of a

@@ -10,11 +10,11 @@
 namespace HelfrichPlugin {
 
 /**
- * The common part of all forces on a membrane: a closed triangulated surface, and named scalars.
+ * The common part of all forces on a membrane: a triangulated surface, and named scalars.
  *
- * The triangles refer to particles of the System. They must form one or several closed, oriented
- * 2-manifold surfaces, each triangle counter-clockwise seen from outside; this is checked when a Context
- * is created. Particles that no triangle mentions feel no force.
+ * The triangles refer to particles of the System. They must form one or several oriented 2-manifold surfaces, of any
+ * genus, closed or with borders, each triangle counter-clockwise seen from outside; this is checked when a Context
+ * is created. Particles that no triangle mentions feel no force. A border is pinned where its particles have no mass.
  *
  * Forces on the same triangles in one Context share one evaluation of the geometry.
  *

@@ -18,9 +18,9 @@ namespace HelfrichPlugin {
  * simulation.
  *
  * The edge ij of two triangles (i, j, k) and (j, i, l) becomes kl, at fixed positions and momenta. An edge is chosen
- * uniformly among all; the flip is refused if a vertex would have fewer neighbours than minDegree or more than
- * maxDegree, if kl would be longer than maxEdgeLength or exists already, or if a new triangle would have no area.
- * Otherwise it is accepted with probability
+ * uniformly among all; the flip is refused if the edge is a border, if a vertex would have fewer neighbours than
+ * minDegree (one fewer on a border) or more than maxDegree, if kl would be longer than maxEdgeLength or exists already,
+ * or if a new triangle would have no area. Otherwise it is accepted with probability
  *
  *     min(1, exp(-dE / kB T))
  *
@@ -86,7 +86,7 @@ public:
      * @param frequency        every how many time steps flips are tried; 0 for never
      * @param attemptsPerEdge  how many flips are tried each time, for each edge of the mesh, from 0 to 1000; a fraction
      * of an attempt is carried over to the next time
-     * @param minDegree        the fewest neighbours of a vertex, 3 or more
+     * @param minDegree        the fewest neighbours of a vertex, 3 or more; of one on a border, one fewer
      * @param maxDegree        the most neighbours of a vertex
      * @param maxEdgeLength    the longest that a new edge may be, nm; 0 for any length
      */

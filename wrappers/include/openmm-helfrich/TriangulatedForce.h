@@ -13,7 +13,7 @@
 namespace HelfrichPlugin {
 
 /**
- * What acts on a closed triangulated surface of particles.
+ * What acts on a triangulated surface of particles.
  *
  * The triangles are those that a Context begins with, and they tell which forces act on the same surface. Bond flips
  * (MonteCarloBondFlip) and setTrianglesInContext() change which particles are connected in a Context, for all forces on
