@@ -147,9 +147,7 @@ def strings(case: Case, m) -> oracle.Result:
     """By OpenMM's Custom forces with periodic boundary conditions."""
     if case.force != "BendingForce":
         return case.expected(m, "geometric")
-    forces = string_forces.bending(
-        m.triangles, 50.0, 0.02, case.variant[1], "geometric"
-    )
+    forces = string_forces.bending(m.triangles, 50.0, 0.02, case.variant[1], "geometric")
     return oracle.evaluate(forces, m.positions)
 
 
@@ -207,7 +205,9 @@ PLACES = [(name, target) for target in [CPU, HELFRICH, *ON_GPU] for name in ("sp
 def test_platforms_and_backends_agree(name: str, target: Target):
     m = periodic(name, "triclinic")
     cases = [case for case in PRESENT if where(case) == "spanning" or name == "vesicle"][::3]
-    expected = Running([make(case, name, "triclinic") for case in cases], m.num_particles, REFERENCE)
+    expected = Running(
+        [make(case, name, "triclinic") for case in cases], m.num_particles, REFERENCE
+    )
     found = Running([make(case, name, "triclinic") for case in cases], m.num_particles, target)
     energy, forces = expected.evaluate(m.positions)
     other, pushes = found.evaluate(m.positions)
@@ -336,9 +336,10 @@ def test_a_run_goes_on_with_the_same_bits(flips: bool):
 
     def bits(context: mm.Context) -> bytes:
         state = context.getState(getPositions=True, getForces=True)
-        return plain(state.getPositions(asNumpy=True)).tobytes() + plain(
-            state.getForces(asNumpy=True)
-        ).tobytes()
+        return (
+            plain(state.getPositions(asNumpy=True)).tobytes()
+            + plain(state.getForces(asNumpy=True)).tobytes()
+        )
 
     context = start()
     context.setPositions(np.asarray(m.positions))
@@ -359,8 +360,9 @@ def test_a_run_goes_on_with_the_same_bits(flips: bool):
 
 def test_the_virial_counts_groups_and_surfaces():
     m = periodic("spanning", "triclinic")
-    bending, area = helfrich.BendingForce(m.triangles, 50.0), helfrich.SurfaceAreaForce(
-        m.triangles, 1e-3, 5e5
+    bending, area = (
+        helfrich.BendingForce(m.triangles, 50.0),
+        helfrich.SurfaceAreaForce(m.triangles, 1e-3, 5e5),
     )
     for group, force in enumerate((bending, area)):
         force.setForceGroup(31 * group)
