@@ -219,16 +219,7 @@ impl Membrane {
         state: &mut FlipState,
         force_change: Option<&mut [f64]>,
     ) -> Result<u64> {
-        self.flip_together(
-            terms,
-            positions,
-            cell,
-            rules,
-            attempts,
-            state,
-            force_change,
-            &mut [],
-        )
+        self.flip_together(terms, positions, cell, rules, attempts, state, force_change, &mut [])
     }
 
     /// The same with membranes that follow: their energy counts, and they make the same flips.

@@ -35,6 +35,7 @@ x = 0.02, are let go at 3 K, at several γR in units of that of their own mesh; 
 closed but for a hole that the vertices of the border fill. A potential of the dihedral angles,
 κ (1 − cos φ)², is added there: where the angles at a vertex cancel, Jülicher's curvature is zero
 however they fold, and a negative κ_G then gains from folds at the border.
+(At κ_G = −1.5 κ that is not enough: the border ruffles.)
 """
 
 import numpy as np
@@ -213,7 +214,7 @@ def main():
     n, duration = (6, 4000.0) if report.quick else (8, 20000.0)
     seeds = (1,) if report.quick else (1, 2)
     rows = []
-    for gaussian in (0.0, -1.0, -1.5):
+    for gaussian in (0.0, -1.0):
         exact = unstable_from(n, gaussian)["mode"]
         for factor in (0.7, 1.5) if report.quick else (0.8, 0.9, 1.1, 1.2):
             points = [

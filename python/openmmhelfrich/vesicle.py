@@ -51,7 +51,7 @@ class Vesicle:
     Parameters
     ----------
     mesh : Mesh
-        The vertices become particles in their order, at their places.
+        The vertices become particles in their order, at their places; a System gets its box.
     rigidity : float, array_like or Quantity
         Bending rigidity κ, kJ/mol, of the membrane or, with shape (num_vertices,), of each vertex.
         Default 20 kBT at 300 K.
@@ -293,6 +293,8 @@ class Vesicle:
         for (name, force), group in zip(forces.items(), groups, strict=True):
             force.setName(name)
             force.setForceGroup(group)
+        if self._mesh.box is not None:
+            system.setDefaultPeriodicBoxVectors(*self._mesh.box)
         for _ in range(self._mesh.num_vertices):
             system.addParticle(self._mass)
         for force in forces.values():

@@ -156,7 +156,7 @@ fn in_one_piece(
         for k in 0..3 {
             let (edge, length) =
                 ([trio[k], trio[(k + 1) % 3]], (place[(k + 1) % 3] - place[k]).norm());
-            if !(length < cell.half_width()) {
+            if length >= cell.half_width() {
                 let (limit, vectors) = (cell.half_width(), cell.vectors().map(<[f64; 3]>::from));
                 return Err(Error::LongEdge { edge, length, limit, vectors: Box::new(vectors) });
             }

@@ -125,6 +125,18 @@ def test_volume_of_what_does_not_span():
             _ = MESHES[name]().volume
 
 
+def test_a_vesicle_across_the_faces_of_its_box():
+    whole, parts = ball(), scattered(ball())
+    simulation = helfrich.Vesicle(parts, softness=0.1).simulation(openmm.VerletIntegrator(0.001))
+    alone = helfrich.Vesicle(Mesh(whole.vertices, whole.triangles), softness=0.1)
+    expected = alone.simulation(openmm.VerletIntegrator(0.001))
+    energies = [
+        each.context.getState(energy=True).getPotentialEnergy()._value
+        for each in (simulation, expected)
+    ]
+    assert energies[0] == pytest.approx(energies[1], rel=1e-9)
+
+
 def test_a_spanning_part_keeps_the_orientation_of_its_first_triangle():
     mesh = Mesh.sheet(5, 5, 1.0, periodic=True)
     turned = np.array(mesh.triangles)[:, ::-1]

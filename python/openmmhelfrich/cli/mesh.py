@@ -232,8 +232,8 @@ def _facts(given, softness: float) -> dict:
 
 def _closure(given) -> dict[str, object]:
     """What it encloses, or how many edges its borders have."""
-    if given.borders:
-        return {"edges of borders": [len(border) for border in given.borders]}
+    if given.border_loops:
+        return {"edges of borders": [len(border) for border in given.border_loops]}
     return {"volume (nm³)": given.volume, "reduced volume": given.reduced_volume}
 
 
