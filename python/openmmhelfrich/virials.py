@@ -14,11 +14,11 @@ __all__ = ["virial"]
 def virial(context, groups: int | Iterable[int] = -1) -> np.ndarray:
     """The derivative of the membranes' energy with respect to a homogeneous strain.
 
-    With positions r → r + ε r, and the vectors of the periodic box likewise, it is W = ∂E/∂ε: exact,
-    in triclinic boxes too, and symmetric. Where no surface spans the box it is −Σ F ⊗ r. A sheet in
-    the xy plane that spans a box of sides a and b has the tension (W_xx + W_yy) / (2 a b), and a tube
-    along z pulls at the box with W_zz / c; to the pressure tensor W adds −W / V. What motion adds, and
-    other forces, is not among it.
+    With positions r → r + ε r, and the vectors of the periodic box likewise, it is W = ∂E/∂ε:
+    exact, in triclinic boxes too, and symmetric. Where no surface spans the box it is −Σ F ⊗ r.
+    A sheet in the xy plane that spans a box of sides a and b has the tension (W_xx + W_yy) / (2
+    a b), and a tube along z pulls at the box with W_zz / c; to the pressure tensor W adds −W /
+    V. What motion adds, and other forces, is not among it.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Surfaces in a periodic box: a sheet, a tube and a Schwarz P cell that span it, a vesicle across faces.
+"""Surfaces in a periodic box: sheet, tube and Schwarz P cell that span it, vesicle across faces.
 
 Positions know their box, so that whoever takes differences of them can take the nearest images.
 They are on a grid of dyadic fractions, as the box is: wrapping then changes no bit.
@@ -76,7 +76,7 @@ def tube(n: int, m: int, rng: np.random.Generator) -> Surface:
 
 
 def schwarz_p(k: int, rng: np.random.Generator) -> Surface:
-    """cos X + cos Y + cos Z = 0, from cubes: a node and three arms in each period, k³ cubes each."""
+    """cos X + cos Y + cos Z = 0, from cubes: a node and three arms a period, k³ cubes each."""
     n = 2 * k
     inside = (np.indices((n, n, n)) >= k).sum(axis=0) <= 1
     quads = []
