@@ -28,8 +28,9 @@ def run(adhesion, steps):
     flat = helfrich.Mesh.disk(16, 3.2 * REACH).translated((0, 0, -REACH))
     bead = flat.num_vertices
     system = openmm.System()
-    for _ in range(bead + 1):
+    for _ in range(bead):
         system.addParticle(50.0)
+    system.addParticle(0.0)  # The bead stays where it is.
     system.addForce(helfrich.BendingForce(flat, KAPPA))
     system.addForce(helfrich.SurfaceAreaForce(flat, 20.0, flat.area))
     system.addForce(helfrich.TriangleHeightForce(flat, flat.min_height(0.2), 1.0))
