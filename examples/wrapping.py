@@ -32,7 +32,8 @@ def run(adhesion, steps):
         system.addParticle(50.0)
     system.addParticle(0.0)  # The bead stays where it is.
     system.addForce(helfrich.BendingForce(flat, KAPPA))
-    system.addForce(helfrich.SurfaceAreaForce(flat, 20.0, flat.area))
+    system.addForce(helfrich.TriangleAreaForce(flat, 20.0, flat.area / flat.num_triangles))
+    system.addForce(helfrich.EdgeTensionForce(flat, 0.3))  # A border without any ruffles.
     system.addForce(helfrich.TriangleHeightForce(flat, flat.min_height(0.2), 1.0))
     system.addForce(
         helfrich.ParticleSurfaceForce(
@@ -47,7 +48,7 @@ def run(adhesion, steps):
     )
     flips = helfrich.MonteCarloBondFlip(flat, COLD, frequency=10, attemptsPerEdge=0.1)
     system.addForce(flips)
-    integrator = openmm.LangevinMiddleIntegrator(COLD, 0.02, 0.04)
+    integrator = openmm.LangevinMiddleIntegrator(COLD, 0.1, 0.02)
     platform = openmm.Platform.getPlatformByName("Helfrich")
     context = openmm.Context(system, integrator, platform)
     context.setPositions([*flat.vertices, (0, 0, 0)])
