@@ -33,7 +33,7 @@ def run(adhesion, steps):
     system.addParticle(0.0)  # The bead stays where it is.
     system.addForce(helfrich.BendingForce(flat, KAPPA))
     system.addForce(helfrich.TriangleAreaForce(flat, 20.0, flat.area / flat.num_triangles))
-    system.addForce(helfrich.EdgeTensionForce(flat, 0.3))  # A border without any ruffles.
+    system.addForce(helfrich.EdgeTensionForce(flat, 1.0))  # Against ruffles.
     system.addForce(helfrich.TriangleHeightForce(flat, flat.min_height(0.2), 1.0))
     system.addForce(
         helfrich.ParticleSurfaceForce(
@@ -48,7 +48,7 @@ def run(adhesion, steps):
     )
     flips = helfrich.MonteCarloBondFlip(flat, COLD, frequency=10, attemptsPerEdge=0.1)
     system.addForce(flips)
-    integrator = openmm.LangevinMiddleIntegrator(COLD, 0.1, 0.02)
+    integrator = openmm.LangevinMiddleIntegrator(COLD, 0.03, 0.02)
     platform = openmm.Platform.getPlatformByName("Helfrich")
     context = openmm.Context(system, integrator, platform)
     context.setPositions([*flat.vertices, (0, 0, 0)])
@@ -61,7 +61,7 @@ def run(adhesion, steps):
 def main(arguments=None) -> None:
     """Run both, and draw."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--steps", type=int, default=60000)
+    parser.add_argument("--steps", type=int, default=100000)
     parser.add_argument("--out", type=Path, default=Path("out/wrapping"))
     options = parser.parse_args(arguments)
     panels = {}
