@@ -27,7 +27,7 @@ pub struct Nearest {
 }
 
 /// `to` − `from`, of the nearest image in a periodic box.
-#[inline]
+#[inline(always)]
 pub fn difference(cell: Option<&Cell>, to: &Vec3, from: &Vec3) -> Vec3 {
     let plain = to - from;
     match cell {
@@ -38,7 +38,7 @@ pub fn difference(cell: Option<&Cell>, to: &Vec3, from: &Vec3) -> Vec3 {
 
 impl Arms {
     /// Of a point and the corners of a triangle.
-    #[inline]
+    #[inline(always)]
     pub fn new(cell: Option<&Cell>, point: &Vec3, [a, b, c]: [&Vec3; 3]) -> Self {
         let Some(cell) = cell else { return Self { point: point - a, sides: [b - a, c - a] } };
         let [u, v] = [b, c].map(|end| difference(Some(cell), end, a));
@@ -111,7 +111,7 @@ pub struct Crossing {
 }
 
 /// From the beginning of the second edge to that of the first, and along both.
-#[inline]
+#[inline(always)]
 pub fn edge_arms(cell: Option<&Cell>, [p, p_end]: [&Vec3; 2], [q, q_end]: [&Vec3; 2]) -> [Vec3; 3] {
     let [u, v] = [difference(cell, p_end, p), difference(cell, q_end, q)];
     let mut away = p - q;

@@ -191,7 +191,7 @@ impl Contacts {
         let [surface, particles] = sorted(terms);
         let quiet = particles.iter().zip(&self.particles).all(|(_, contacts)| contacts.is_quiet());
         let attracts = |(_, term): &(usize, &Term)| particle_surface::attracts(term);
-        if (surface.is_empty() || self.surface.is_quiet(quad)) && quiet {
+        if (surface.is_empty() || self.surface.is_quiet(mesh, quad)) && quiet {
             0.0
         } else if particles.iter().any(attracts) && !quiet {
             f64::INFINITY

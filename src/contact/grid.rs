@@ -137,12 +137,7 @@ impl Grid {
 
     /// The same as [`Self::near`], as places among [`Self::all_items`].
     #[inline]
-    pub fn runs(
-        &self,
-        points: &[Vec3],
-        reach: f64,
-        mut visit: impl FnMut(std::ops::Range<usize>),
-    ) {
+    pub fn runs(&self, points: &[Vec3], reach: f64, mut visit: impl FnMut(std::ops::Range<usize>)) {
         let [x, y, z] = self.range(points, reach);
         let count = self.counts[0];
         // What lies in boxes side by side lies side by side.

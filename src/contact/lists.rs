@@ -22,7 +22,7 @@ const OUTER: [f64; 3] = [0.4, 0.1, 1.0];
 const INNER: [f64; 3] = [0.2, 0.02, 0.6];
 
 /// What it costs to make the outer list, by triangle or edge, in looks at a pair.
-const MAKING: f64 = 10.0;
+const MAKING: f64 = 30.0;
 
 /// After so many flips the edges are sorted into boxes anew.
 const MOST_NEW: usize = 200;
@@ -50,6 +50,8 @@ pub struct Lists {
     /// The references of the outer and the inner list.
     outer: Vec<Vec3>,
     inner: Vec<Vec3>,
+    /// How far each vertex was from its outer reference at the inner one, nm.
+    moved: Vec<f32>,
     /// The outer skin in mean edges, the inner one as a share of it; none before the first lists.
     shares: Option<[f64; 2]>,
     /// The triangles that the lists are of.
@@ -99,6 +101,8 @@ struct Made {
     /// nm.
     outer_skin: f64,
     inner_skin: f64,
+    /// The mean edge, nm.
+    mean: f64,
 }
 
 /// Vertices or edges by their middles, sorted into boxes.
@@ -136,7 +140,7 @@ impl Spheres {
         self.sorted.extend(self.grid.all_items().iter().map(|item| self.all[*item as usize]));
     }
 
-    /// The places among `sorted` of what is nearer than `range` to a sphere, or may be.
+    /// The places among `sorted` of what is no larger than `largest` and may be nearer than `range` to a sphere.
     #[inline]
     fn near(
         &self,
@@ -148,20 +152,39 @@ impl Spheres {
     ) {
         found.clear();
         let own = range + radius;
+        let sizes = [own, largest];
         self.grid.runs(std::slice::from_ref(middle), own + largest, |run| {
             let start = found.len();
             found.resize(start + run.len(), 0);
-            let (mut count, first) = (start, run.start as u32);
-            for (place, sphere) in (first..).zip(&self.sorted[run]) {
-                let most = own + sphere.radius;
-                // Without a branch, as none could be foretold.
-                found[count] = place;
-                let apart = difference(cell, &sphere.middle, middle).norm_squared();
-                count += usize::from(apart < most * most);
-            }
-            found.truncate(count);
+            let (first, spheres) = (run.start as u32, &self.sorted[run]);
+            let into = &mut found[start..];
+            let count = match cell {
+                None => sift(spheres, sizes, first, into, |at| at - middle),
+                Some(_) => sift(spheres, sizes, first, into, |at| difference(cell, at, middle)),
+            };
+            found.truncate(start + count);
         });
     }
+}
+
+/// Put the places of spheres that are near enough into a list; returns how many there are.
+#[inline(always)]
+fn sift(
+    spheres: &[Sphere],
+    [own, largest]: [f64; 2],
+    first: u32,
+    into: &mut [u32],
+    from: impl Fn(&Vec3) -> Vec3,
+) -> usize {
+    let mut count = 0;
+    for (place, sphere) in (first..).zip(spheres) {
+        let most = own + sphere.radius;
+        // Without a branch, as none could be foretold.
+        into[count] = place;
+        let near = from(&sphere.middle).norm_squared() < most * most;
+        count += usize::from(near & (sphere.radius <= largest));
+    }
+    count
 }
 
 impl Lists {
@@ -178,7 +201,8 @@ impl Lists {
         (reach, between_parts): (f64, bool),
         team: &mut Team,
     ) -> Result<()> {
-        let at = |particle: &u32| Vec3::from_column_slice(&positions[3 * *particle as usize..][..3]);
+        let at =
+            |particle: &u32| Vec3::from_column_slice(&positions[3 * *particle as usize..][..3]);
         self.positions.clear();
         self.positions.extend(mesh.particles().iter().map(at));
         // Lists of a longer reach are good, too: force groups may take turns.
@@ -236,11 +260,12 @@ impl Lists {
 
     /// Whether no vertex is farther than half of a skin from where it was.
     fn is_within(&self, reference: &[Vec3], skin: f64) -> bool {
-        let farthest = self.positions.iter().zip(reference).fold(0.0, |farthest: f64, (now, then)| {
-            let moved = (now - then).norm_squared();
-            // What is no number counts as far.
-            if moved <= farthest { farthest } else { moved }
-        });
+        let farthest =
+            self.positions.iter().zip(reference).fold(0.0, |farthest: f64, (now, then)| {
+                let moved = (now - then).norm_squared();
+                // What is no number counts as far.
+                if moved <= farthest { farthest } else { moved }
+            });
         farthest < 0.25 * skin * skin
     }
 
@@ -304,7 +329,7 @@ impl Lists {
         let range = reach + outer_skin;
         self.leave_out_what_is_far(cell, range);
         self.vertices.sort(cell, range + 0.5 * mean);
-        self.edges.sort(cell, range + 0.5 * mean);
+        self.edges.sort(cell, range + mean);
         let mut scratch = std::mem::take(&mut self.scratch);
         scratch.resize_with(team.size().max(scratch.len()), Default::default);
         let places = Parts::new(&mut scratch);
@@ -317,7 +342,14 @@ impl Lists {
             edges.clear();
             let mut block = Block::new([0; 4]);
             for triangle in &this.triangles[member.share(this.triangles.len())] {
-                this.pair_triangle(cell, range, lowest_first(*triangle), found, &mut block, vertices);
+                this.pair_triangle(
+                    cell,
+                    range,
+                    lowest_first(*triangle),
+                    found,
+                    &mut block,
+                    vertices,
+                );
             }
             note(&mut block, range, vertices);
             let mut block = Block::new([0; 4]);
@@ -341,7 +373,7 @@ impl Lists {
         self.scratch = scratch;
         let (cell, fingerprint) = (cell.copied(), mesh.fingerprint());
         let inner_skin = inner * outer_skin;
-        Ok(Made { reach, between_parts, cell, fingerprint, outer_skin, inner_skin })
+        Ok(Made { reach, between_parts, cell, fingerprint, outer_skin, inner_skin, mean })
     }
 
     /// All vertices and edges at the outer reference.
@@ -442,9 +474,11 @@ impl Lists {
     /// Make the inner list of the outer one.
     fn choose(&mut self, made: &Made, team: &mut Team) {
         self.inner.clone_from(&self.positions);
-        let moved = self.inner.iter().zip(&self.outer);
-        let moved = moved.fold(0.0, |far: f64, (now, then)| far.max((now - then).norm_squared()));
-        let (range, moved) = (made.reach + made.inner_skin, moved.sqrt());
+        let pairs = self.inner.iter().zip(&self.outer);
+        self.moved.clear();
+        // A little more, for what is lost in rounding.
+        self.moved.extend(pairs.map(|(now, then)| (now - then).norm() as f32 * (1.0 + 1e-6)));
+        let range = made.reach + made.inner_skin;
         let mut scratch = std::mem::take(&mut self.scratch);
         scratch.resize_with(team.size().max(scratch.len()), Default::default);
         let places = Parts::new(&mut scratch);
@@ -455,11 +489,15 @@ impl Lists {
                 &mut unsafe { places.part(member.index()..member.index() + 1) }[0];
             vertices.clear();
             edges.clear();
-            // Both of a pair may have come nearer by as much.
-            let most = (range + 2.0 * moved) as f32;
+            let most = range as f32 * (1.0 + 1e-6);
+            // What a pair has lost of its distance is no more than its vertices have moved.
             let of = |kind: usize| {
                 let far = &this.far[kind];
-                far[member.share(far.len())].iter().filter(move |far| far.distance <= most)
+                far[member.share(far.len())].iter().filter(move |far| {
+                    let [a, b, c, d] = far.pair.map(|vertex| this.moved[vertex as usize]);
+                    let lost = if kind == 0 { a + b.max(c).max(d) } else { a.max(b) + c.max(d) };
+                    far.distance <= most + lost
+                })
             };
             let cell = made.cell.as_ref();
             let mut block = Block::<_, false>::new([0; 4]);
@@ -510,9 +548,8 @@ impl Lists {
         let mut touched = vec![false; mesh.num_vertices()];
         old.as_flattened().iter().for_each(|vertex| touched[*vertex as usize] = true);
         let touched = |vertex: u32| touched[vertex as usize];
-        let has_gone = |a: u32, b: u32| {
-            touched(a) && touched(b) && old_edges.binary_search(&[a, b]).is_ok()
-        };
+        let has_gone =
+            |a: u32, b: u32| touched(a) && touched(b) && old_edges.binary_search(&[a, b]).is_ok();
         let triangle_stays = |[_, a, b, c]: Pair| {
             !(touched(a) && touched(b) && touched(c) && old.binary_search(&[a, b, c]).is_ok())
         };
@@ -525,9 +562,7 @@ impl Lists {
         let range = made.reach + made.outer_skin;
         self.collect_edges(mesh, cell);
         self.leave_out_what_is_far(cell, range);
-        let size = range + self.edges.all.iter().map(|edge| edge.radius).sum::<f64>()
-            / self.edges.all.len().max(1) as f64;
-        self.edges.sort(cell, size);
+        self.edges.sort(cell, range + made.mean);
         let [known_vertices, known_edges] = [0, 1].map(|kind| self.far[kind].len());
         let mut far = std::mem::take(&mut self.far);
         let mut found = Vec::new();
@@ -620,7 +655,7 @@ impl Lists {
         move_or_add(old, &mut self.new, &mut self.gone);
         move_or_add(new, &mut self.gone, &mut self.new);
         if self.new.len() > MOST_NEW {
-            let (cell, size) = (made.cell.as_ref(), made.reach + made.outer_skin);
+            let (cell, size) = (made.cell.as_ref(), made.reach + made.outer_skin + made.mean);
             self.edges.all.retain(|edge| !self.gone.contains(&edge.ends));
             let new = self.new.iter().map(|ends| edge_sphere(cell, &self.outer, *ends));
             self.edges.all.extend(new);
@@ -657,7 +692,7 @@ fn move_or_add(edge: [u32; 2], from: &mut Vec<[u32; 2]>, to: &mut Vec<[u32; 2]>)
 }
 
 #[inline]
-fn ascending(a: u32, b: u32) -> [u32; 2] {
+pub fn ascending(a: u32, b: u32) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }
 

@@ -2,7 +2,7 @@
 
 use super::block::Block;
 use super::closest::{Arms, Nearest, crossing, edge_arms};
-use super::lists::{Lists, Pair, arms, lowest_first};
+use super::lists::{Lists, Pair, arms, ascending, lowest_first};
 use crate::error::Result;
 use crate::mesh::geometry::Vec3;
 use crate::mesh::triangulation::Quad;
@@ -10,6 +10,7 @@ use crate::mesh::{Cell, Triangulation};
 use crate::potentials::{Contribution, ONLY_BETWEEN_PARTS, Term, surface_repulsion};
 use crate::team::{Member, Parts, Team};
 use nalgebra::Matrix3;
+use std::collections::HashSet;
 
 /// A vertex and a triangle, or two edges, within reach of each other.
 #[derive(Clone, Copy)]
@@ -35,13 +36,35 @@ pub struct SurfaceContacts {
     parts: Vec<u32>,
     /// Of vertices and triangles, and of edges, for each thread; the hits of all, one after the other, are in the order of the lists.
     hits: [Vec<Vec<Hit>>; 2],
-    /// While flips go on, whether each vertex takes part in a pair within reach; never fewer.
-    touched: Vec<bool>,
-    /// The vertices of all pairs that [`Self::around`] found last.
-    last: Vec<u32>,
+    /// While flips go on, the triangles and edges that take part in a pair within reach, or did.
+    touched: Touched,
+    /// What takes part in the pairs that [`Self::around`] found last.
+    last: Vec<(Pair, bool)>,
     /// Kept for their memory.
     near: Vec<u32>,
     near_edges: Vec<[u32; 2]>,
+}
+
+/// Triangles from the lowest corner on, and edges from the lower end on.
+#[derive(Default)]
+struct Touched {
+    triangles: HashSet<[u32; 3]>,
+    edges: HashSet<[u32; 2]>,
+}
+
+impl Touched {
+    fn clear(&mut self) {
+        self.triangles.clear();
+        self.edges.clear();
+    }
+
+    fn add(&mut self, [a, b, c, d]: Pair, are_edges: bool) {
+        if are_edges {
+            self.edges.extend([ascending(a, b), ascending(c, d)]);
+        } else {
+            self.triangles.insert([b, c, d]);
+        }
+    }
 }
 
 /// How far the terms reach, nm, and whether all of them act between parts only; none if there are no terms.
@@ -108,9 +131,8 @@ impl SurfaceContacts {
         let Some((reach, _)) = range(terms) else { return };
         self.find(reach, team);
         self.touched.clear();
-        self.touched.resize(self.lists.positions().len(), false);
         for hit in self.hits.iter().flatten().flatten() {
-            hit.vertices.into_iter().for_each(|vertex| self.touched[vertex as usize] = true);
+            self.touched.add(hit.vertices, hit.are_edges);
         }
     }
 
@@ -164,8 +186,11 @@ impl SurfaceContacts {
         particles: &[u32],
     ) {
         let [r, u, v] = &hit.arms;
-        let (weight, turns) =
-            if hit.are_edges { surface_repulsion::edge_weight(u, v) } else { (1.0, [Vec3::zeros(); 2]) };
+        let (weight, turns) = if hit.are_edges {
+            surface_repulsion::edge_weight(u, v)
+        } else {
+            (1.0, [Vec3::zeros(); 2])
+        };
         let (mut strength, mut energy) = (0.0, 0.0);
         for (term, sum) in terms.iter().zip(contributions) {
             if self.acts(term, hit.vertices) {
@@ -183,9 +208,8 @@ impl SurfaceContacts {
         let [turn_u, turn_v] = turns.map(|turn| turn * energy);
         // An end moves its edge forward, a beginning backward.
         let turns = [turn_u, -turn_u, turn_v, -turn_v];
-        let all: [Vec3; 4] = std::array::from_fn(|k| {
-            hit.separation * (strength * hit.weights[k]) + turns[k]
-        });
+        let all: [Vec3; 4] =
+            std::array::from_fn(|k| hit.separation * (strength * hit.weights[k]) + turns[k]);
         if let Some(forces) = &mut forces {
             for (vertex, force) in hit.vertices.into_iter().zip(&all) {
                 let slot = &mut forces[3 * particles[vertex as usize] as usize..][..3];
@@ -208,9 +232,12 @@ impl SurfaceContacts {
             || self.parts[first as usize] != self.parts[last as usize]
     }
 
-    /// Whether no flip of a quadrilateral can free energy, as nothing is near it.
-    pub fn is_quiet(&self, quad: &Quad) -> bool {
-        !quad.vertices.iter().any(|vertex| self.touched[*vertex as usize])
+    /// Whether no flip of a quadrilateral can free energy, as nothing is near its edge and its triangles.
+    pub fn is_quiet(&self, mesh: &Triangulation, quad: &Quad) -> bool {
+        let [i, j, ..] = quad.vertices;
+        let triangles = quad.triangles().map(|triangle| lowest_first(mesh.triangles()[triangle]));
+        !self.touched.edges.contains(&ascending(i, j))
+            && !triangles.iter().any(|triangle| self.touched.triangles.contains(triangle))
     }
 
     /// The energy, kJ/mol, of two triangles and the edge between them, as a half-edge of one of them has them now.
@@ -225,11 +252,11 @@ impl SurfaceContacts {
         let mut energy = 0.0;
         let mut last = std::mem::take(&mut self.last);
         last.clear();
-        let mut add = |vertices: [u32; 4], squared: f64, weight: f64| {
+        let mut add = |vertices: Pair, squared: f64, weight: f64, are_edges: bool| {
             let acting = terms.iter().filter(|term| self.acts(term, vertices));
             let pairs = acting.map(|term| surface_repulsion::pair(term, squared).0.energy);
             energy += weight * pairs.sum::<f64>();
-            last.extend(vertices);
+            last.push((vertices, are_edges));
         };
         for triangle in quad.triangles() {
             let corners = lowest_first(mesh.triangles()[triangle]);
@@ -237,7 +264,7 @@ impl SurfaceContacts {
             for &vertex in &near {
                 let Nearest { squared, .. } =
                     Arms::new(cell, at(vertex), corners.map(at)).nearest();
-                add([vertex, corners[0], corners[1], corners[2]], squared, 1.0);
+                add([vertex, corners[0], corners[1], corners[2]], squared, 1.0, false);
             }
         }
         let [i, j, ..] = quad.vertices;
@@ -245,7 +272,7 @@ impl SurfaceContacts {
         for &[p, q] in &edges {
             let [_, u, v] = edge_arms(cell, [at(i), at(j)], [at(p), at(q)]);
             let squared = crossing(cell, [at(i), at(j)], [at(p), at(q)]).squared;
-            add([i, j, p, q], squared, surface_repulsion::edge_weight(&u, &v).0);
+            add([i, j, p, q], squared, surface_repulsion::edge_weight(&u, &v).0, true);
         }
         (self.near, self.near_edges, self.last) = (near, edges, last);
         energy
@@ -258,7 +285,9 @@ impl SurfaceContacts {
 
     /// What [`Self::around`] found last is here to stay.
     pub fn note_new_pairs(&mut self) {
-        self.last.iter().for_each(|vertex| self.touched[*vertex as usize] = true);
+        for (pair, are_edges) in &self.last {
+            self.touched.add(*pair, *are_edges);
+        }
     }
 
     /// Know nothing of any positions or triangles.
