@@ -27,7 +27,7 @@ pub struct Nearest {
 }
 
 /// `to` − `from`, of the nearest image in a periodic box.
-#[inline]
+#[inline(always)]
 pub fn difference(cell: Option<&Cell>, to: &Vec3, from: &Vec3) -> Vec3 {
     let plain = to - from;
     match cell {
@@ -38,10 +38,14 @@ pub fn difference(cell: Option<&Cell>, to: &Vec3, from: &Vec3) -> Vec3 {
 
 impl Arms {
     /// Of a point and the corners of a triangle.
-    #[inline]
+    #[inline(always)]
     pub fn new(cell: Option<&Cell>, point: &Vec3, [a, b, c]: [&Vec3; 3]) -> Self {
-        let to = |end| difference(cell, end, a);
-        Self { point: to(point), sides: [to(b), to(c)] }
+        let Some(cell) = cell else { return Self { point: point - a, sides: [b - a, c - a] } };
+        let [u, v] = [b, c].map(|end| difference(Some(cell), end, a));
+        // The corner of a large triangle may be far; its middle tells which image is near.
+        let away = point - a;
+        let image = cell.nearest(&(away - (u + v) / 3.0));
+        Self { point: away + cell.shift(image), sides: [u, v] }
     }
 
     /// From the nearest point of the triangle to the point.
@@ -107,12 +111,15 @@ pub struct Crossing {
 }
 
 /// From the beginning of the second edge to that of the first, and along both.
-#[inline]
+#[inline(always)]
 pub fn edge_arms(cell: Option<&Cell>, [p, p_end]: [&Vec3; 2], [q, q_end]: [&Vec3; 2]) -> [Vec3; 3] {
     let [u, v] = [difference(cell, p_end, p), difference(cell, q_end, q)];
-    // Beginnings of long edges may be far apart; the middles tell which image is near.
-    let away = difference(cell, &(p + u * 0.5), &(q + v * 0.5));
-    [away - u * 0.5 + v * 0.5, u, v]
+    let mut away = p - q;
+    if let Some(cell) = cell {
+        // Beginnings of long edges may be far apart; the middles tell which image is near.
+        away += cell.shift(cell.nearest(&(away + (u - v) * 0.5)));
+    }
+    [away, u, v]
 }
 
 /// The nearest points of two edges.

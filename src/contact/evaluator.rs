@@ -8,6 +8,7 @@ use crate::mesh::triangulation::Quad;
 use crate::mesh::{Cell, Triangulation};
 use crate::potentials::{Contribution, Needs, Term, particle_surface};
 use crate::team::{Team, default_threads};
+use nalgebra::Matrix3;
 use smallvec::SmallVec;
 
 /// Below so many pairs or particles several threads are never faster.
@@ -63,6 +64,11 @@ impl Contacts {
         self.choice = Choice::new();
     }
 
+    /// Other triangles have come, not by flips.
+    pub fn forget(&mut self) {
+        self.surface.forget();
+    }
+
     /// Refuse particles of a term that do not exist, come twice or are vertices.
     ///
     /// # Errors
@@ -83,7 +89,35 @@ impl Contacts {
         terms: &[Term],
         positions: &[f64],
         contributions: &mut [Contribution],
-        mut forces: Option<&mut [f64]>,
+        forces: Option<&mut [f64]>,
+    ) -> Result<()> {
+        self.evaluate_all(mesh, cell, terms, positions, contributions, (forces, None))
+    }
+
+    /// ∂E/∂ε for a homogeneous strain ε of all positions and of the periodic box, kJ/mol.
+    ///
+    /// # Errors
+    /// Those of [`Self::evaluate`].
+    pub fn virial(
+        &mut self,
+        mesh: &Triangulation,
+        cell: Option<&Cell>,
+        terms: &[Term],
+        positions: &[f64],
+    ) -> Result<Matrix3<f64>> {
+        let mut virial = Matrix3::zeros();
+        self.evaluate_all(mesh, cell, terms, positions, &mut [], (None, Some(&mut virial)))?;
+        Ok(virial)
+    }
+
+    fn evaluate_all(
+        &mut self,
+        mesh: &Triangulation,
+        cell: Option<&Cell>,
+        terms: &[Term],
+        positions: &[f64],
+        contributions: &mut [Contribution],
+        (mut forces, mut virial): (Option<&mut [f64]>, Option<&mut Matrix3<f64>>),
     ) -> Result<()> {
         let [surface, particles] = sorted(terms);
         if surface.is_empty() && particles.is_empty() {
@@ -103,14 +137,16 @@ impl Contacts {
             let only: SmallVec<[&Term; 4]> = surface.iter().map(|(_, term)| *term).collect();
             sums.resize(only.len(), Contribution::default());
             self.surface.prepare(mesh, cell, &only, positions, team)?;
-            self.surface.evaluate(mesh, &only, &mut sums, forces.as_deref_mut(), team);
+            let into = (forces.as_deref_mut(), virial.as_deref_mut());
+            self.surface.evaluate(mesh, &only, &mut sums, into, team);
         }
         self.particles
             .resize_with(particles.len().max(self.particles.len()), ParticleContacts::default);
         for ((_, term), contacts) in particles.iter().zip(&mut self.particles) {
             let mut sum = Contribution::default();
             let on = (mesh, cell);
-            contacts.evaluate(on, term, positions, &mut sum, forces.as_deref_mut(), team)?;
+            let into = (forces.as_deref_mut(), virial.as_deref_mut());
+            contacts.evaluate(on, term, positions, &mut sum, into, team)?;
             sums.push(sum);
         }
         for ((place, term), sum) in surface.iter().chain(&particles).zip(&sums) {
@@ -141,6 +177,7 @@ impl Contacts {
         let [surface, particles] = sorted(terms);
         let only: SmallVec<[&Term; 4]> = surface.iter().map(|(_, term)| *term).collect();
         self.surface.prepare(mesh, cell, &only, positions, &mut self.alone)?;
+        self.surface.prepare_flips(&only, &mut self.alone);
         self.particles
             .resize_with(particles.len().max(self.particles.len()), ParticleContacts::default);
         for ((_, term), contacts) in particles.iter().zip(&mut self.particles) {
@@ -154,7 +191,7 @@ impl Contacts {
         let [surface, particles] = sorted(terms);
         let quiet = particles.iter().zip(&self.particles).all(|(_, contacts)| contacts.is_quiet());
         let attracts = |(_, term): &(usize, &Term)| particle_surface::attracts(term);
-        if (surface.is_empty() || self.surface.is_quiet(quad)) && quiet {
+        if (surface.is_empty() || self.surface.is_quiet(mesh, quad)) && quiet {
             0.0
         } else if particles.iter().any(attracts) && !quiet {
             f64::INFINITY
@@ -180,7 +217,7 @@ impl Contacts {
         self.surface.follow(quad);
     }
 
-    /// Flips have made something that touches.
+    /// What [`Self::around`] found last is here to stay.
     pub fn note_new_pairs(&mut self) {
         self.surface.note_new_pairs();
     }

@@ -127,6 +127,17 @@ impl Grid {
 
     /// The numbers in all boxes that are nearer than `reach` to some points or between them.
     pub fn near(&self, points: &[Vec3], reach: f64, mut visit: impl FnMut(u32)) {
+        self.runs(points, reach, |run| self.items[run].iter().for_each(|item| visit(*item)));
+    }
+
+    /// The numbers in all boxes, one box after another.
+    pub fn all_items(&self) -> &[u32] {
+        &self.items
+    }
+
+    /// The same as [`Self::near`], as places among [`Self::all_items`].
+    #[inline]
+    pub fn runs(&self, points: &[Vec3], reach: f64, mut visit: impl FnMut(std::ops::Range<usize>)) {
         let [x, y, z] = self.range(points, reach);
         let count = self.counts[0];
         // What lies in boxes side by side lies side by side.
@@ -143,7 +154,7 @@ impl Grid {
                 for [first, last] in runs.into_iter().filter(|[first, last]| first <= last) {
                     let start = self.starts[(row + first) as usize] as usize;
                     let end = self.starts[(row + last + 1) as usize] as usize;
-                    self.items[start..end].iter().for_each(|item| visit(*item));
+                    visit(start..end);
                 }
             }
         }

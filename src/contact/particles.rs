@@ -11,6 +11,7 @@ use crate::mesh::{Cell, Triangulation};
 use crate::potentials::particle_surface::{self, RADIUS};
 use crate::potentials::{Contribution, Term};
 use crate::team::{Parts, Team};
+use nalgebra::Matrix3;
 
 /// The skin as a share of the reach.
 const SKIN: f64 = 0.3;
@@ -133,7 +134,7 @@ impl ParticleContacts {
         term: &Term,
         positions: &[f64],
         contribution: &mut Contribution,
-        forces: Option<&mut [f64]>,
+        (forces, virial): (Option<&mut [f64]>, Option<&mut Matrix3<f64>>),
         team: &mut Team,
     ) -> Result<()> {
         let reach = self.prepare(mesh, cell, term, positions)?;
@@ -173,6 +174,15 @@ impl ParticleContacts {
                 for (slot, force) in slots.into_iter().zip([particle, -particle - b - c, b, c]) {
                     let slot = &mut forces[3 * slot as usize..][..3];
                     slot.iter_mut().zip(force.iter()).for_each(|(sum, force)| *sum += force);
+                }
+            }
+        }
+        if let Some(virial) = virial.filter(|_| lost.is_none()) {
+            for Touch { place, triangle, pair } in touches() {
+                let (at, _) = of(term, positions, *place);
+                let Arms { point, sides } = self.arms(mesh, &at, *triangle);
+                for (force, arm) in pair.forces.iter().zip([sides[0], sides[1], point]) {
+                    *virial -= force * arm.transpose();
                 }
             }
         }

@@ -2,13 +2,15 @@
 
 use super::block::Block;
 use super::closest::{Arms, Nearest, crossing, edge_arms};
-use super::lists::Lists;
+use super::lists::{Lists, Pair, arms, ascending, lowest_first};
 use crate::error::Result;
 use crate::mesh::geometry::Vec3;
 use crate::mesh::triangulation::Quad;
 use crate::mesh::{Cell, Triangulation};
 use crate::potentials::{Contribution, ONLY_BETWEEN_PARTS, Term, surface_repulsion};
 use crate::team::{Member, Parts, Team};
+use nalgebra::Matrix3;
+use std::collections::HashSet;
 
 /// A vertex and a triangle, or two edges, within reach of each other.
 #[derive(Clone, Copy)]
@@ -20,8 +22,9 @@ struct Hit {
     squared: f64,
     /// The way, nm.
     separation: Vec3,
-    /// The way along the edges, zero for a vertex and a triangle.
-    edges: [Vec3; 2],
+    /// From the first of the second thing to that of the first, and along both edges or sides, nm.
+    arms: [Vec3; 3],
+    are_edges: bool,
 }
 
 /// Evaluates repulsions on one mesh.
@@ -33,9 +36,35 @@ pub struct SurfaceContacts {
     parts: Vec<u32>,
     /// Of vertices and triangles, and of edges, for each thread; the hits of all, one after the other, are in the order of the lists.
     hits: [Vec<Vec<Hit>>; 2],
+    /// While flips go on, the triangles and edges that take part in a pair within reach, or did.
+    touched: Touched,
+    /// What takes part in the pairs that [`Self::around`] found last.
+    last: Vec<(Pair, bool)>,
     /// Kept for their memory.
     near: Vec<u32>,
     near_edges: Vec<[u32; 2]>,
+}
+
+/// Triangles from the lowest corner on, and edges from the lower end on.
+#[derive(Default)]
+struct Touched {
+    triangles: HashSet<[u32; 3]>,
+    edges: HashSet<[u32; 2]>,
+}
+
+impl Touched {
+    fn clear(&mut self) {
+        self.triangles.clear();
+        self.edges.clear();
+    }
+
+    fn add(&mut self, [a, b, c, d]: Pair, are_edges: bool) {
+        if are_edges {
+            self.edges.extend([ascending(a, b), ascending(c, d)]);
+        } else {
+            self.triangles.insert([b, c, d]);
+        }
+    }
 }
 
 /// How far the terms reach, nm, and whether all of them act between parts only; none if there are no terms.
@@ -74,20 +103,40 @@ impl SurfaceContacts {
 
     /// How many pairs an evaluation looks at.
     pub fn work(&self) -> usize {
-        self.lists.vertex_pairs().len() + self.lists.edge_pairs().len()
+        self.lists.work()
     }
 
     /// Add the energies of terms at the positions of [`Self::prepare`], and forces (kJ/mol/nm) to those of all particles.
-    /// A term's contributions are what `contributions` has at the same place.
+    /// A term's contributions are what `contributions` has at the same place. The virial is that of `Membrane::virial`.
     pub fn evaluate(
         &mut self,
         mesh: &Triangulation,
         terms: &[&Term],
         contributions: &mut [Contribution],
-        mut forces: Option<&mut [f64]>,
+        (mut forces, mut virial): (Option<&mut [f64]>, Option<&mut Matrix3<f64>>),
         team: &mut Team,
     ) {
         let Some((reach, _)) = range(terms) else { return };
+        self.find(reach, team);
+        let (hits, particles) = (std::mem::take(&mut self.hits), mesh.particles());
+        for hit in hits.iter().flatten().flatten() {
+            let forces = (forces.as_deref_mut(), virial.as_deref_mut());
+            self.add(hit, terms, contributions, forces, particles);
+        }
+        self.hits = hits;
+    }
+
+    /// Be ready for flips at the positions of [`Self::prepare`].
+    pub fn prepare_flips(&mut self, terms: &[&Term], team: &mut Team) {
+        let Some((reach, _)) = range(terms) else { return };
+        self.find(reach, team);
+        self.touched.clear();
+        for hit in self.hits.iter().flatten().flatten() {
+            self.touched.add(hit.vertices, hit.are_edges);
+        }
+    }
+
+    fn find(&mut self, reach: f64, team: &mut Team) {
         for hits in &mut self.hits {
             hits.resize_with(team.size().max(hits.len()), Vec::new);
             hits.iter_mut().for_each(Vec::clear);
@@ -101,49 +150,25 @@ impl SurfaceContacts {
             // SAFETY: each member has its own places.
             let (of_vertices, of_edges) =
                 unsafe { (of_vertices.part(place.clone()), of_edges.part(place)) };
-            this.find_vertices(mesh, reach * reach, &member, &mut of_vertices[0]);
-            this.find_edges(reach * reach, &member, &mut of_edges[0]);
+            this.find_some::<false>(reach * reach, &member, &mut of_vertices[0]);
+            this.find_some::<true>(reach * reach, &member, &mut of_edges[0]);
         });
-        let particles = mesh.particles();
-        for hit in hits.iter().flatten().flatten() {
-            self.add(hit, terms, contributions, forces.as_deref_mut(), particles);
-        }
         self.hits = hits;
     }
 
-    fn find_vertices(&self, mesh: &Triangulation, most: f64, member: &Member, hits: &mut Vec<Hit>) {
-        let (positions, pairs) = (self.lists.positions(), self.lists.vertex_pairs());
-        let mut block = Block::<[u32; 4], false>::new([0; 4]);
-        let mut note = |vertices: [u32; 4], [squared, s, t]: [f64; 3], [r, u, v]: [Vec3; 3]| {
-            let (weights, separation) = ([1.0, s + t - 1.0, -s, -t], r - u * s - v * t);
-            let edges = [Vec3::zeros(); 2];
-            hits.push(Hit { vertices, weights, squared, separation, edges });
+    fn find_some<const EDGES: bool>(&self, most: f64, member: &Member, hits: &mut Vec<Hit>) {
+        let (positions, pairs) = (self.lists.positions(), &self.lists.pairs()[usize::from(EDGES)]);
+        let mut block = Block::<Pair, EDGES>::new([0; 4]);
+        let mut note = |vertices: Pair, [squared, s, t]: [f64; 3], arms: [Vec3; 3]| {
+            let [r, u, v] = arms;
+            let (weights, separation) = match EDGES {
+                true => ([1.0 - s, s, t - 1.0, -t], r + u * s - v * t),
+                false => ([1.0, s + t - 1.0, -s, -t], r - u * s - v * t),
+            };
+            hits.push(Hit { vertices, weights, squared, separation, arms, are_edges: EDGES });
         };
-        for &[triangle, vertex] in &pairs[member.share(pairs.len())] {
-            let [a, b, c] = mesh.triangles()[triangle as usize];
-            let corners = [a, b, c].map(|corner| &positions[corner as usize]);
-            let Arms { point, sides: [u, v] } =
-                Arms::new(self.cell.as_ref(), &positions[vertex as usize], corners);
-            block.push([vertex, a, b, c], &[point, u, v]);
-            if block.is_full() {
-                block.find(most, &mut note);
-            }
-        }
-        block.find(most, &mut note);
-    }
-
-    fn find_edges(&self, most: f64, member: &Member, hits: &mut Vec<Hit>) {
-        let (positions, pairs) = (self.lists.positions(), self.lists.edge_pairs());
-        let mut block = Block::<[u32; 4], true>::new([0; 4]);
-        let mut note = |vertices: [u32; 4], [squared, s, t]: [f64; 3], [r, u, v]: [Vec3; 3]| {
-            let (weights, separation) = ([1.0 - s, s, t - 1.0, -t], r + u * s - v * t);
-            hits.push(Hit { vertices, weights, squared, separation, edges: [u, v] });
-        };
-        for pair in &pairs[member.share(pairs.len())] {
-            let [[a, b], [c, d]] = pair.map(|edge| self.lists.ends(edge));
-            let at = |vertex: u32| &positions[vertex as usize];
-            let arms = edge_arms(self.cell.as_ref(), [at(a), at(b)], [at(c), at(d)]);
-            block.push([a, b, c, d], &arms);
+        for &pair in &pairs[member.share(pairs.len())] {
+            block.push(pair, &arms::<EDGES>(self.cell.as_ref(), positions, pair));
             if block.is_full() {
                 block.find(most, &mut note);
             }
@@ -157,13 +182,15 @@ impl SurfaceContacts {
         hit: &Hit,
         terms: &[&Term],
         contributions: &mut [Contribution],
-        forces: Option<&mut [f64]>,
+        (mut forces, virial): (Option<&mut [f64]>, Option<&mut Matrix3<f64>>),
         particles: &[u32],
     ) {
-        let [u, v] = &hit.edges;
-        let of_edges = *u != Vec3::zeros();
-        let (weight, turns) =
-            if of_edges { surface_repulsion::edge_weight(u, v) } else { (1.0, [Vec3::zeros(); 2]) };
+        let [r, u, v] = &hit.arms;
+        let (weight, turns) = if hit.are_edges {
+            surface_repulsion::edge_weight(u, v)
+        } else {
+            (1.0, [Vec3::zeros(); 2])
+        };
         let (mut strength, mut energy) = (0.0, 0.0);
         for (term, sum) in terms.iter().zip(contributions) {
             if self.acts(term, hit.vertices) {
@@ -175,14 +202,26 @@ impl SurfaceContacts {
                 *sum += pair;
             }
         }
-        let Some(forces) = forces else { return };
+        if forces.is_none() && virial.is_none() {
+            return;
+        }
         let [turn_u, turn_v] = turns.map(|turn| turn * energy);
         // An end moves its edge forward, a beginning backward.
         let turns = [turn_u, -turn_u, turn_v, -turn_v];
-        for (k, vertex) in hit.vertices.into_iter().enumerate() {
-            let force = hit.separation * (strength * hit.weights[k]) + turns[k];
-            let slot = &mut forces[3 * particles[vertex as usize] as usize..][..3];
-            slot.iter_mut().zip(force.iter()).for_each(|(sum, force)| *sum += force);
+        let all: [Vec3; 4] =
+            std::array::from_fn(|k| hit.separation * (strength * hit.weights[k]) + turns[k]);
+        if let Some(forces) = &mut forces {
+            for (vertex, force) in hit.vertices.into_iter().zip(&all) {
+                let slot = &mut forces[3 * particles[vertex as usize] as usize..][..3];
+                slot.iter_mut().zip(force.iter()).for_each(|(sum, force)| *sum += force);
+            }
+        }
+        if let Some(virial) = virial {
+            let zero = Vec3::zeros();
+            let points = if hit.are_edges { [*r, r + u, zero, *v] } else { [*r, zero, *u, *v] };
+            for (force, point) in all.iter().zip(&points) {
+                *virial -= force * point.transpose();
+            }
         }
     }
 
@@ -193,9 +232,12 @@ impl SurfaceContacts {
             || self.parts[first as usize] != self.parts[last as usize]
     }
 
-    /// Whether no flip of a quadrilateral can free energy, as nothing is near it.
-    pub fn is_quiet(&self, quad: &Quad) -> bool {
-        !self.lists.has_any(&quad.vertices)
+    /// Whether no flip of a quadrilateral can free energy, as nothing is near its edge and its triangles.
+    pub fn is_quiet(&self, mesh: &Triangulation, quad: &Quad) -> bool {
+        let [i, j, ..] = quad.vertices;
+        let triangles = quad.triangles().map(|triangle| lowest_first(mesh.triangles()[triangle]));
+        !self.touched.edges.contains(&ascending(i, j))
+            && !triangles.iter().any(|triangle| self.touched.triangles.contains(triangle))
     }
 
     /// The energy, kJ/mol, of two triangles and the edge between them, as a half-edge of one of them has them now.
@@ -208,18 +250,21 @@ impl SurfaceContacts {
         let (positions, cell) = (self.lists.positions(), self.cell.as_ref());
         let at = |vertex: u32| &positions[vertex as usize];
         let mut energy = 0.0;
-        let mut add = |vertices: [u32; 4], squared: f64, weight: f64| {
+        let mut last = std::mem::take(&mut self.last);
+        last.clear();
+        let mut add = |vertices: Pair, squared: f64, weight: f64, are_edges: bool| {
             let acting = terms.iter().filter(|term| self.acts(term, vertices));
             let pairs = acting.map(|term| surface_repulsion::pair(term, squared).0.energy);
             energy += weight * pairs.sum::<f64>();
+            last.push((vertices, are_edges));
         };
         for triangle in quad.triangles() {
-            let corners = mesh.triangles()[triangle];
+            let corners = lowest_first(mesh.triangles()[triangle]);
             self.lists.vertices_near_now(corners, &mut near);
             for &vertex in &near {
                 let Nearest { squared, .. } =
                     Arms::new(cell, at(vertex), corners.map(at)).nearest();
-                add([vertex, corners[0], corners[1], corners[2]], squared, 1.0);
+                add([vertex, corners[0], corners[1], corners[2]], squared, 1.0, false);
             }
         }
         let [i, j, ..] = quad.vertices;
@@ -227,9 +272,9 @@ impl SurfaceContacts {
         for &[p, q] in &edges {
             let [_, u, v] = edge_arms(cell, [at(i), at(j)], [at(p), at(q)]);
             let squared = crossing(cell, [at(i), at(j)], [at(p), at(q)]).squared;
-            add([i, j, p, q], squared, surface_repulsion::edge_weight(&u, &v).0);
+            add([i, j, p, q], squared, surface_repulsion::edge_weight(&u, &v).0, true);
         }
-        (self.near, self.near_edges) = (near, edges);
+        (self.near, self.near_edges, self.last) = (near, edges, last);
         energy
     }
 
@@ -238,8 +283,15 @@ impl SurfaceContacts {
         self.lists.follow(quad);
     }
 
-    /// Flips have made something that touches.
+    /// What [`Self::around`] found last is here to stay.
     pub fn note_new_pairs(&mut self) {
-        self.lists.note_new_pairs();
+        for (pair, are_edges) in &self.last {
+            self.touched.add(*pair, *are_edges);
+        }
+    }
+
+    /// Know nothing of any positions or triangles.
+    pub fn forget(&mut self) {
+        self.lists.forget();
     }
 }

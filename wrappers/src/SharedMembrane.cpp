@@ -149,11 +149,19 @@ void SharedMembrane::join(MembraneForceImpl* member) {
 }
 
 void SharedMembrane::checkAgreement(const MembraneForceImpl& joining) const {
+    checkAgreementWithMembers(joining, "on the same triangles");
+    for (const vector<Link>* links : {&parts, &wholes})
+        for (const Link& link : *links)
+            if (auto other = link.other.lock())
+                other->checkAgreementWithMembers(joining, "on triangles of which some are the same");
+}
+
+void SharedMembrane::checkAgreementWithMembers(const MembraneForceImpl& joining, const string& where) const {
     if (members.empty() || members[0]->isPeriodic() == joining.isPeriodic())
         return;
     const MembraneForceImpl& periodic = joining.isPeriodic() ? joining : *members[0];
     const MembraneForceImpl& other = joining.isPeriodic() ? *members[0] : joining;
-    throw OpenMMException(joining.getOwner().getTypeName() + ": of the forces on the same triangles, \"" +
+    throw OpenMMException(joining.getOwner().getTypeName() + ": of the forces " + where + ", \"" +
                           periodic.getOwner().getName() + "\" uses periodic boundary conditions and \"" +
                           other.getOwner().getName() +
                           "\" does not; call setUsesPeriodicBoundaryConditions() of both with the same value");

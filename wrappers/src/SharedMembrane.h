@@ -188,6 +188,8 @@ private:
         /** The fingerprint of the part that the whole has followed. */
         double followed;
     };
+    /** Refuse a force that uses periodic boundary conditions if the members do not, or the other way round. */
+    void checkAgreementWithMembers(const MembraneForceImpl& joining, const std::string& where) const;
     /** Note it if the triangles of one membrane are among those of another. */
     static void link(const std::shared_ptr<SharedMembrane>& whole, const std::shared_ptr<SharedMembrane>& part);
     /** Whether all members act on contacts, so that they may follow flips of parts. */

@@ -1,0 +1,213 @@
+"""Contacts across the faces of a periodic box: wrapped, against a tiling without one, and their virial."""
+
+from __future__ import annotations
+
+import itertools
+
+import contact_twin as twin
+import numpy as np
+import openmm as mm
+import openmmhelfrich as helfrich
+import pytest
+from platforms import HELFRICH, REFERENCE
+from test_contact import DISTANCE, EPSILON, beads, crumpled, particle_force
+
+# Positions and boxes are on a grid of dyadic fractions, nm, so that wrapping is exact.
+BOXES = {
+    "triclinic": np.array([[40, 0, 0], [11.25, 44, 0], [-14.5, 17, 48]]),
+    "straight": np.diag([40.0, 44, 48]),
+}
+SIDES = (12, 13)
+every_box = pytest.mark.parametrize("box", BOXES.values(), ids=BOXES)
+
+
+def dyadic(x: np.ndarray) -> np.ndarray:
+    return np.round(x * 2.0**16) / 2.0**16
+
+
+def heights(level: float, seed: int) -> np.ndarray:
+    """Fractional coordinates of a rough sheet, shape SIDES + (3,)."""
+    rng = np.random.default_rng(seed)
+    u, v = np.meshgrid(*(np.arange(n) / n for n in SIDES), indexing="ij")
+    w = level + 0.012 * np.sin(2 * np.pi * u) + 0.01 * rng.uniform(-1, 1, SIDES)
+    u, v = (x + 0.02 * rng.uniform(-1, 1, SIDES) for x in (u, v))
+    return np.stack([u, v, w], axis=2)
+
+
+def quads(n: int, m: int, number) -> np.ndarray:
+    """The triangles of a grid of n × m quadrilaterals."""
+    found = []
+    for i, j in itertools.product(range(n), range(m)):
+        p, q, r, s = number(i, j), number(i + 1, j), number(i + 1, j + 1), number(i, j + 1)
+        found += [(p, q, r), (p, r, s)]
+    return np.array(found)
+
+
+def facing(box: np.ndarray):
+    """Two sheets that span the box and face each other across it, with beads between: positions, triangles, beads."""
+    n, m = SIDES
+    sheets = [heights(0.04, 1), heights(0.96, 2)]
+    points = [dyadic(sheet.reshape(-1, 3) @ box) for sheet in sheets]
+    triangles = [
+        quads(n, m, lambda i, j, k=k: k * n * m + m * (i % n) + j % m) for k in range(2)
+    ]
+    middle = (sheets[0] + sheets[1] + [0, 0, 1]).reshape(-1, 3)[::7] / 2
+    particles = dyadic(middle @ box)
+    positions = np.vstack([*points, particles])
+    return positions, np.vstack(triangles), np.arange(2 * n * m, len(positions))
+
+
+def forces_on(triangles, particles) -> list[mm.Force]:
+    wall = helfrich.SurfaceRepulsionForce(triangles, DISTANCE, EPSILON)
+    bead = helfrich.ParticleSurfaceForce(
+        triangles, particles, 2.0, EPSILON, 0.3, 0.5, "LennardJones"
+    )
+    return [wall, bead]
+
+
+def start(forces, count, box=None, target=REFERENCE) -> mm.Context:
+    system = mm.System()
+    for _ in range(count):
+        system.addParticle(50.0)
+    for force in forces:
+        force.setUsesPeriodicBoundaryConditions(box is not None)
+        system.addForce(force)
+    if box is not None:
+        system.setDefaultPeriodicBoxVectors(*box)
+    return target.context(system)
+
+
+def evaluate(context, positions):
+    context.setPositions(positions)
+    state = context.getState(energy=True, forces=True)
+    return state.getPotentialEnergy()._value, state.getForces(asNumpy=True)._value
+
+
+@every_box
+@pytest.mark.parametrize("target", [REFERENCE, HELFRICH], ids=str)
+def test_wrapping_changes_no_bit(box, target):
+    positions, triangles, particles = facing(box)
+    context = start(forces_on(triangles, particles), len(positions), box, target)
+    energy, forces = evaluate(context, positions)
+    assert np.abs(forces[particles]).max() > 1
+    for seed in range(3):
+        images = np.random.default_rng(seed).integers(-3, 4, positions.shape)
+        again, same = evaluate(context, positions + images @ box)
+        assert (again, same.tobytes()) == (energy, forces.tobytes())
+
+
+@every_box
+@pytest.mark.parametrize("kind", [0, 1], ids=["surface", "particles"])
+def test_a_tiling_without_a_box_has_the_same_forces(box, kind):
+    positions, triangles, particles = facing(box)
+    context = start([forces_on(triangles, particles)[kind]], len(positions), box)
+    _, expected = evaluate(context, positions)
+    n, m = SIDES
+    many, tiles = [], []
+    centre = []
+    for k in range(2):
+        sheet = positions[k * n * m : (k + 1) * n * m].reshape(n, m, 3)
+        # The upper sheet comes from the box below.
+        shift = -k * box[2]
+        first = sum(map(len, many))
+        i, j = np.meshgrid(np.arange(3 * n + 1), np.arange(3 * m + 1), indexing="ij")
+        turns = (i // n - 1)[..., None] * box[0] + (j // m - 1)[..., None] * box[1]
+        many.append((sheet[i % n, j % m] + turns + shift).reshape(-1, 3))
+        tiles.append(quads(3 * n, 3 * m, lambda i, j, f=first: f + (3 * m + 1) * i + j))
+        inner = [
+            first + (3 * m + 1) * i + j for i in range(n, 2 * n) for j in range(m, 2 * m)
+        ]
+        centre.append(inner)
+    first = sum(map(len, many))
+    images = [[i, j, k] for i in (0, -1, 1) for j in (0, -1, 1) for k in (-1, 0, -2)]
+    copies = [positions[particles] + np.array(image) @ box for image in images]
+    everything = np.vstack([*many, *copies])
+    other = start(
+        [forces_on(np.vstack(tiles), np.arange(first, len(everything)))[kind]], len(everything)
+    )
+    _, forces = evaluate(other, everything)
+    scale = np.abs(expected).max()
+    assert scale > 1
+    found = forces[np.concatenate(centre)]
+    np.testing.assert_allclose(found, expected[: 2 * n * m], atol=1e-9 * scale)
+    if kind == 1:
+        felt = forces[first:].reshape(len(images), len(particles), 3).sum(axis=0)
+        near = np.abs(felt).max(axis=1) > 0
+        assert near.any()
+
+
+def slope_along(energy, step):
+    def slope(h):
+        return (energy(h) - energy(-h)) / (2 * h)
+
+    return (4 * slope(step) - slope(2 * step)) / 3
+
+
+@every_box
+@pytest.mark.parametrize("kind", [0, 1], ids=["surface", "particles"])
+def test_the_virial_is_the_slope_along_a_strain(box, kind):
+    positions, triangles, particles = facing(box)
+    context = start([forces_on(triangles, particles)[kind]], len(positions), box)
+    context.setPositions(positions)
+    found = helfrich.virial(context)
+    largest = np.abs(found).max()
+    assert largest > 1
+    np.testing.assert_allclose(found, found.T, atol=1e-9 * largest)
+    # OpenMM's form of a box leaves six strains.
+    strain = np.triu(np.random.default_rng(7).uniform(-1, 1, (3, 3)))
+
+    def energy(h):
+        map_ = np.eye(3) + h * strain
+        context.setPeriodicBoxVectors(*(box @ map_.T))
+        return evaluate(context, positions @ map_.T)[0]
+
+    assert abs(slope_along(energy, 1e-5) - np.sum(found * strain)) < 1e-6 * largest
+
+
+@pytest.mark.parametrize("kind", [0, 1], ids=["surface", "particles"])
+def test_the_virial_without_a_box(kind):
+    membrane = crumpled()
+    positions, particles = beads(membrane)
+    force = [
+        helfrich.SurfaceRepulsionForce(membrane.triangles, DISTANCE, EPSILON),
+        particle_force(membrane, particles),
+    ][kind]
+    context = start([force], len(positions))
+    energy, forces = evaluate(context, positions)
+    assert energy != 0
+    found = helfrich.virial(context)
+    expected = -forces.T @ positions
+    np.testing.assert_allclose(found, expected, atol=1e-9 * np.abs(forces).max() * 200)
+
+
+def test_wholes_and_parts_agree_about_the_box():
+    """A repulsion of several vesicles and their own forces."""
+    one = helfrich.Mesh.icosphere(2, 20)
+    other = one.triangles + one.num_vertices
+    both = helfrich.SurfaceRepulsionForce(np.vstack([one.triangles, other]), DISTANCE, EPSILON)
+    both.setName("both")
+    system = mm.System()
+    for _ in range(2 * one.num_vertices):
+        system.addParticle(50.0)
+    bending = helfrich.BendingForce(other, 50.0)
+    bending.setName("one")
+    bending.setUsesPeriodicBoundaryConditions(True)
+    system.addForce(both)
+    system.addForce(bending)
+    mover = helfrich.MonteCarloBondFlip(other, 300.0)
+    system.addForce(mover)
+    system.setDefaultPeriodicBoxVectors(*np.diag([200.0] * 3))
+    with pytest.raises(mm.OpenMMException, match='"one" uses periodic .* "both" does not'):
+        REFERENCE.context(system)
+
+
+def test_twin_and_box_agree_where_nothing_crosses():
+    """A box much larger than the membrane changes nothing."""
+    membrane = crumpled()
+    force = helfrich.SurfaceRepulsionForce(membrane.triangles, DISTANCE, EPSILON)
+    context = start([force], membrane.num_particles, np.diag([1000.0] * 3))
+    energy, _ = evaluate(context, membrane.positions)
+    expected = twin.surface_repulsion(
+        membrane.positions, membrane.triangles, DISTANCE, EPSILON
+    )
+    assert energy == pytest.approx(expected, rel=1e-10)
