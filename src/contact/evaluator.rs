@@ -8,6 +8,7 @@ use crate::mesh::triangulation::Quad;
 use crate::mesh::{Cell, Triangulation};
 use crate::potentials::{Contribution, Needs, Term, particle_surface};
 use crate::team::{Team, default_threads};
+use nalgebra::Matrix3;
 use smallvec::SmallVec;
 
 /// Below so many pairs or particles several threads are never faster.
@@ -125,6 +126,28 @@ impl Contacts {
             self.choice.done(&attempt);
         }
         Ok(())
+    }
+
+    /// ∂E/∂ε of the terms of contacts among all, for a homogeneous strain ε of positions and box, kJ/mol.
+    ///
+    /// # Errors
+    /// Those of [`Self::evaluate`].
+    pub fn virial(
+        &mut self,
+        mesh: &Triangulation,
+        cell: Option<&Cell>,
+        terms: &[Term],
+        positions: &[f64],
+    ) -> Result<Matrix3<f64>> {
+        self.evaluate(mesh, cell, terms, positions, &mut [], None)?;
+        let [surface, particles] = sorted(terms);
+        let only: SmallVec<[&Term; 4]> = surface.iter().map(|(_, term)| *term).collect();
+        let mut virial =
+            if only.is_empty() { Matrix3::zeros() } else { self.surface.virial(&only) };
+        for ((_, term), contacts) in particles.iter().zip(&mut self.particles) {
+            virial += contacts.virial((mesh, cell), term, positions)?;
+        }
+        Ok(virial)
     }
 
     /// Be ready for flips at some positions.

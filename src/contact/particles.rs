@@ -11,6 +11,7 @@ use crate::mesh::{Cell, Triangulation};
 use crate::potentials::particle_surface::{self, RADIUS};
 use crate::potentials::{Contribution, Term};
 use crate::team::{Parts, Team};
+use nalgebra::Matrix3;
 
 /// The skin as a share of the reach.
 const SKIN: f64 = 0.3;
@@ -181,6 +182,32 @@ impl ParticleContacts {
             let (particle, (at, _)) = (term.particles[place as usize], of(term, positions, place));
             Err(Error::NonFinitePosition { particle, position: at.into() })
         })
+    }
+
+    /// ∂E/∂ε of a term for a homogeneous strain ε, which radii do not follow, kJ/mol.
+    ///
+    /// # Errors
+    /// Those of [`Self::evaluate`].
+    pub fn virial(
+        &mut self,
+        (mesh, cell): (&Triangulation, Option<&Cell>),
+        term: &Term,
+        positions: &[f64],
+    ) -> Result<Matrix3<f64>> {
+        let reach = self.prepare(mesh, cell, term, positions)?;
+        let mut virial = Matrix3::zeros();
+        for place in 0..term.particles.len() as u32 {
+            let (at, radius) = of(term, positions, place);
+            self.each_near(&reach, &at, radius, |triangle| {
+                let arms = self.arms(mesh, &at, triangle);
+                let pair = particle_surface::pair(term, radius, &arms);
+                let ways = [arms.sides[0], arms.sides[1], arms.point];
+                for (force, way) in pair.forces.iter().zip(&ways) {
+                    virial -= force * way.transpose();
+                }
+            });
+        }
+        Ok(virial)
     }
 
     /// Take the positions of the vertices, and have maps for particles of all radii.

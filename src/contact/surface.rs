@@ -9,6 +9,7 @@ use crate::mesh::triangulation::Quad;
 use crate::mesh::{Cell, Triangulation};
 use crate::potentials::{Contribution, ONLY_BETWEEN_PARTS, Term, surface_repulsion};
 use crate::team::{Member, Parts, Team};
+use nalgebra::Matrix3;
 
 /// A vertex and a triangle, or two edges, within reach of each other.
 #[derive(Clone, Copy)]
@@ -109,6 +110,28 @@ impl SurfaceContacts {
             self.add(hit, terms, contributions, forces.as_deref_mut(), particles);
         }
         self.hits = hits;
+    }
+
+    /// ∂E/∂ε of what [`Self::evaluate`] has found, for a homogeneous strain ε, kJ/mol.
+    pub fn virial(&self, terms: &[&Term]) -> Matrix3<f64> {
+        let mut virial = Matrix3::zeros();
+        for Hit { vertices, squared, separation, edges: [u, v], .. } in
+            self.hits.iter().flatten().flatten()
+        {
+            let of_edges = *u != Vec3::zeros();
+            let (weight, [by_u, by_v]) = if of_edges {
+                surface_repulsion::edge_weight(u, v)
+            } else {
+                (1.0, [Vec3::zeros(); 2])
+            };
+            let turn = by_u * u.transpose() + by_v * v.transpose();
+            for term in terms.iter().filter(|term| self.acts(term, *vertices)) {
+                let (pair, slope) = surface_repulsion::pair(term, *squared);
+                virial += separation * separation.transpose() * (2.0 * weight * slope);
+                virial += turn * pair.energy;
+            }
+        }
+        virial
     }
 
     fn find_vertices(&self, mesh: &Triangulation, most: f64, member: &Member, hits: &mut Vec<Hit>) {
