@@ -411,6 +411,9 @@ impl Membrane {
         // What this refuses, nothing below has to.
         self.evaluate(terms, positions, cell, &mut [], None)?;
         let of_contacts = self.contacts.virial(&self.mesh, cell, terms, positions)?;
+        if terms.iter().all(is_contact) {
+            return Ok(of_contacts);
+        }
         let positions = unfolded!(self, positions, cell);
         let of_geometry = virial_of_geometry(&self.mesh, terms, positions, cell)?;
         let of_borders = self.borders.virial(&self.mesh, terms, positions, cell)?;

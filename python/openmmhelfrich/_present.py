@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
+from openmm import unit
 
 from .forces import MembraneForce, MonteCarloBondFlip
 
-__all__ = ["is_periodic", "present_triangles", "surfaces_of"]
+__all__ = ["is_periodic", "present_box", "present_triangles", "surfaces_of"]
 
 _CLASSES = [MonteCarloBondFlip, *MembraneForce.__subclasses__()]
 
@@ -23,6 +24,15 @@ def is_periodic(context, force) -> bool:
                 if other._triangleBuffer() == corners:
                     return other.usesPeriodicBoundaryConditions()
     return False
+
+
+def present_box(context, state, particles: np.ndarray) -> np.ndarray | None:
+    """The box of a State, shape (3, 3), nm, if a surface on these particles lives in it."""
+    for force in surfaces_of(context):
+        corners = np.frombuffer(force._triangleBuffer(), dtype=np.intc)
+        if np.isin(corners, particles).any() and is_periodic(context, force):
+            return state.getPeriodicBoxVectors(asNumpy=True).value_in_unit(unit.nanometer)
+    return None
 
 
 def surfaces_of(context) -> list:

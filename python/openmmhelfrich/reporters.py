@@ -9,8 +9,9 @@ import numpy as np
 import openmm
 from openmm import unit
 
+from ._mesh.periodic import unfolded
 from ._numbers import whole_number
-from ._present import present_triangles
+from ._present import present_box, present_triangles
 from .analysis import mode_amplitudes, shape
 from .analysis._arrays import triangles_of
 from .analysis.tables import open_table
@@ -45,9 +46,11 @@ class _SurfaceReporter:
     """What is asked for of one membrane at equal intervals.
 
     Subclasses have `_include`, what they need of the State, `_begin`, which opens their file, and
-    `_write`, from time, positions and triangles of the moment.
+    `_write`, from time, positions, triangles and periodic box of the moment, where parts that cross
+    faces of the box are whole. Those that span it are refused unless `_spans`.
     """
 
+    _spans = False
     _include = ("positions",)
 
     def __init__(self, file, reportInterval, triangles, offset, append):
@@ -79,7 +82,18 @@ class _SurfaceReporter:
             raise ValueError(f"{type(self).__name__}: {reason}") from None
         triangles = np.searchsorted(self._particles, corners)
         vertices = np.asarray(positions)[self._particles]
-        self._write(simulation, state, time, vertices, triangles)
+        box = present_box(simulation.context, state, self._particles)
+        if box is not None:
+            edges = np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+            vertices, _, spanning = unfolded(vertices, edges, box)
+            if spanning.any() and not self._spans:
+                raise ValueError(
+                    f"{type(self).__name__}: the surface spans the periodic box, so that it cannot "
+                    "be shown with each vertex once; write "
+                    "Mesh(*Mesh.from_context(context, force).unfolded()) to files, or use a "
+                    "MembraneReporter"
+                )
+        self._write(simulation, state, time, vertices, triangles, box)
 
     def _open(self, simulation):
         if self._begun:
@@ -108,8 +122,8 @@ class _TableReporter(_SurfaceReporter):
             table.cut(simulation.currentStep)
         self._table = table
 
-    def _write(self, simulation, state, time, vertices, triangles):
-        values = self._values(simulation, state, vertices, triangles)
+    def _write(self, simulation, state, time, vertices, triangles, box):
+        values = self._values(simulation, state, vertices, triangles, box)
         self._table.add([int(simulation.currentStep), time, *(float(value) for value in values)])
 
 
@@ -175,7 +189,7 @@ class ModeReporter(_TableReporter):
     def _columns(self, simulation):
         return {f"u_{l}_{m}": "" for l in range(self._lmax + 1) for m in range(-l, l + 1)}
 
-    def _values(self, simulation, state, positions, triangles):
+    def _values(self, simulation, state, positions, triangles, box):
         return mode_amplitudes(positions, triangles, self._lmax, **self._options)
 
 
@@ -186,7 +200,8 @@ class MembraneReporter(_TableReporter):
     of the System; ``potential_energy`` and ``kinetic_energy`` (kJ/mol) of the whole System;
     ``temperature`` (K); and of the membrane the fields of `analysis.Shape`: ``area`` (nm²),
     ``volume`` (nm³), ``reduced_volume``, ``radius_of_gyration`` (nm), ``asphericity`` and
-    ``acylindricity`` (nm²), ``anisotropy``. `analysis.read_table` reads the file back.
+    ``acylindricity`` (nm²), ``anisotropy``; NaN where a border or a periodic box that the surface
+    spans leaves them without meaning. `analysis.read_table` reads the file back.
 
     Energies per term are those of the Context itself, group by group, and so are exact whatever was
     changed during the run. NAME is the name of the force; forces that share a group have one column
@@ -219,6 +234,7 @@ class MembraneReporter(_TableReporter):
     """
 
     _include = ("positions", "energy")
+    _spans = True
 
     def __init__(self, file, reportInterval, triangles, *, offset=0, append=False):
         super().__init__(file, reportInterval, triangles, offset, append)
@@ -239,7 +255,7 @@ class MembraneReporter(_TableReporter):
             "anisotropy": "",
         }
 
-    def _values(self, simulation, state, positions, triangles):
+    def _values(self, simulation, state, positions, triangles, box):
         context = simulation.context
         terms = [
             context.getState(getEnergy=True, groups={group}).getPotentialEnergy() / _ENERGY
@@ -254,7 +270,7 @@ class MembraneReporter(_TableReporter):
             potential,
             kinetic / _ENERGY,
             temperature,
-            *shape(positions, triangles),
+            *shape(positions, triangles, box=box),
         ]
 
 
@@ -264,8 +280,8 @@ class VTKHDFReporter(_SurfaceReporter):
     Each frame has its own positions and triangles, so that membranes whose bonds flip are shown as
     they are. Vertices carry ``mean_curvature``, H = C1 + C2 by Jülicher's scheme (B13,
     doi:10.1103/PhysRevE.108.015301), 1/nm; ``area``, a third of the triangles around, nm²;
-    ``neighbours``, how many there are; and ``component``, the number of their closed surface, from
-    0. Triangles carry ``area``, nm², and ``component``. Coordinates are in nm, times in ps. It
+    ``neighbours``, how many there are; and ``component``, the number of their connected surface,
+    from 0. Triangles carry ``area``, nm², and ``component``. Coordinates are in nm, times in ps. It
     takes VTK 9.3, ParaView 5.12 or newer ones to read them.
 
     Every frame is on disk when it has been written, and the file is closed in between: ParaView may
@@ -292,7 +308,7 @@ class VTKHDFReporter(_SurfaceReporter):
         Without h5py.
     ValueError
         A number out of range, or another suffix; at the first report, a file that is none of this
-        reporter or has other numbers of vertices or triangles, or a surface that is not closed.
+        reporter or has other numbers of vertices or triangles, or a surface that spans its box.
 
     Examples
     --------
@@ -313,7 +329,7 @@ class VTKHDFReporter(_SurfaceReporter):
         else:
             self._series.remove()
 
-    def _write(self, simulation, state, time, vertices, triangles):
+    def _write(self, simulation, state, time, vertices, triangles, box):
         step = int(simulation.currentStep)
         self._series.add([SurfaceFrame(step, time, vertices, triangles)])
 

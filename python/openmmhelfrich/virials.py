@@ -18,7 +18,8 @@ def virial(context, groups: int | Iterable[int] = -1) -> np.ndarray:
     exact, in triclinic boxes too, and symmetric. Where no surface spans the box it is −Σ F ⊗ r.
     A sheet in the xy plane that spans a box of sides a and b has the tension (W_xx + W_yy) / (2
     a b), and a tube along z pulls at the box with W_zz / c; to the pressure tensor W adds −W /
-    V. What motion adds, and other forces, is not among it.
+    V. Contacts are among it, with the particles that they act on; what motion adds, and other
+    forces, are not.
 
     Parameters
     ----------

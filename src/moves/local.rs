@@ -152,7 +152,8 @@ impl LocalEnergy {
 
     /// The length, nm, that new edges must stay below: that of the rules, or what a periodic box allows; 0 for any.
     pub fn longest(&self, max_edge_length: f64) -> f64 {
-        match self.cell.as_ref().map(Cell::half_width) {
+        // The next evaluation may measure the edge between other images, and round differently.
+        match self.cell.as_ref().map(|cell| cell.half_width() * (1.0 - 1e-9)) {
             Some(limit) if max_edge_length == 0.0 || limit < max_edge_length => limit,
             _ => max_edge_length,
         }

@@ -12,6 +12,7 @@ import openmm as mm
 import openmmhelfrich as helfrich
 import platforms
 import pytest
+from running import plain
 
 DISTANCE, EPSILON = 5.0, 2.5
 ON_ALL = platforms.ON_PROCESSOR + platforms.ON_OPENCL
@@ -282,3 +283,39 @@ def test_what_touches_is_an_error(membrane):
     positions[bead, 1] = np.nan
     with pytest.raises(Exception, match=f"particle {bead} .*not finite|NaN"):
         evaluate(platforms.REFERENCE, again, positions)
+
+
+@pytest.mark.parametrize("periodic", [False, True], ids=["open", "periodic"])
+@pytest.mark.parametrize("attraction", ["WCA", "LennardJones"])
+def test_contacts_are_part_of_the_virial(membrane, attraction, periodic):
+    positions, particles = beads(membrane)
+    system = mm.System()
+    for _ in positions:
+        system.addParticle(50)
+    surface = helfrich.SurfaceRepulsionForce(membrane.triangles, DISTANCE, EPSILON)
+    bodies = particle_force(membrane, particles, attraction=attraction)
+    box = np.diag([1000.0, 1100.0, 1200.0])
+    box[1, 0] = 100
+    for one in (surface, bodies):
+        one.setUsesPeriodicBoundaryConditions(periodic)
+        system.addForce(one)
+    context = platforms.HELFRICH.context(system)
+
+    def strained(strain: np.ndarray) -> mm.Context:
+        map_ = np.eye(3) + strain
+        context.setPeriodicBoxVectors(*(box @ map_.T))
+        context.setPositions(positions @ map_.T)
+        return context
+
+    def energy(strain: np.ndarray) -> float:
+        return plain(strained(strain).getState(getEnergy=True).getPotentialEnergy())
+
+    found = helfrich.virial(strained(np.zeros((3, 3))))
+    largest = np.abs(found).max()
+    assert largest > 1
+    np.testing.assert_allclose(found, found.T, atol=1e-9 * largest)
+    # OpenMM's form of a box leaves six strains.
+    strain = 1e-5 * np.triu(np.random.default_rng(3).uniform(-1, 1, (3, 3)))
+    slopes = [(energy(h * strain) - energy(-h * strain)) / (2 * h) for h in (1, 2)]
+    measured = (4 * slopes[0] - slopes[1]) / 3
+    assert abs(measured - np.sum(found * strain)) < 1e-6 * largest * np.abs(strain).max()

@@ -375,3 +375,19 @@ def test_the_virial_counts_groups_and_surfaces():
     assert np.abs(one).max() > 0 and np.abs(other).max() > 0
     np.testing.assert_array_equal(helfrich.virial(context, groups=(0, 31)), both)
     assert not helfrich.virial(context_of(particles=3)).any()
+
+
+def test_flips_leave_edges_alone_that_would_be_as_long_as_the_box_allows():
+    mesh = helfrich.Mesh.sheet(4, 4, 10.0, periodic=True)
+    flips = helfrich.MonteCarloBondFlip(mesh, 300.0, 1, 1.0)
+    flips.setRandomNumberSeed(1)
+    system = system_of(helfrich.BendingForce(mesh, 1.0), flips, particles=mesh.num_vertices)
+    system.setDefaultPeriodicBoxVectors(*mesh.box)
+    integrator = mm.VerletIntegrator(1e-6)
+    context = mm.Context(system, integrator, mm.Platform.getPlatformByName("Reference"))
+    context.setPositions(mesh.vertices)
+    # The other diagonals are exactly half as long as the box is wide.
+    integrator.step(3)
+    statistics = flips.getStatistics(context)
+    assert statistics["accepted"] == 0
+    assert statistics["refused"]["length"] > 0

@@ -8,6 +8,7 @@ import openmm.app
 from openmm import unit
 
 from .._mesh.inputs import box_array
+from .._mesh.periodic import unfolded
 
 # Frames are worked on in chunks of about this many numbers, which bounds the memory and stays
 # close to the processor.
@@ -17,13 +18,16 @@ _CHUNK = 1 << 20
 def positions_in(source):
     """Positions of a Mesh, State, Context or Simulation; anything else as it is.
 
+    Those of a Mesh in a periodic box are unfolded, so that parts that cross its faces are whole.
+
     Raises
     ------
     ValueError
         The State has no positions.
     """
     if hasattr(source, "vertices") and hasattr(source, "triangles"):
-        return source.vertices
+        box = getattr(source, "box", None)
+        return source.vertices if box is None else unfolded(source.vertices, source.edges, box)[0]
     if isinstance(source, openmm.app.Simulation):
         source = source.context
     if isinstance(source, openmm.Context):
@@ -41,6 +45,8 @@ def positions_in(source):
 def box_of(box, *sources):
     """The periodic box of an argument, nm, or else that of a Mesh among others, or None.
 
+    With positions of a State, Context or Simulation it is the box that these have now.
+
     Raises
     ------
     TypeError
@@ -50,8 +56,20 @@ def box_of(box, *sources):
     """
     if box is None:
         boxes = (getattr(source, "box", None) for source in sources)
-        return next((box for box in boxes if box is not None), None)
+        box = next((box for box in boxes if box is not None), None)
+        return box if box is None else _present_box(sources[0], box)
     return box_array(box, "analysis")
+
+
+def _present_box(source, box):
+    """The box, nm, of an object of OpenMM; of anything else the one that is given."""
+    if isinstance(source, openmm.app.Simulation):
+        source = source.context
+    if isinstance(source, openmm.Context):
+        source = source.getState()
+    if isinstance(source, openmm.State):
+        return source.getPeriodicBoxVectors(asNumpy=True).value_in_unit(unit.nanometer)
+    return box
 
 
 def over_frames(work, vertices, triangles=None, cost=None):

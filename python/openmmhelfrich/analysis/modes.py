@@ -4,6 +4,7 @@ import numpy as np
 
 from .._numbers import whole_number
 from ._arrays import dot, over_frames
+from .elements import edges_of
 from .harmonics import harmonics_of
 from .solid_angles import triangle_solid_angles, vertex_solid_angles
 
@@ -194,6 +195,8 @@ def _check(positions, faces, first):
             f"vertices: vertex {vertex} of frame {first + frame} is at the centre of mass, where "
             "it has no direction"
         )
+    if (edges_of(faces)[3] < 0).any():
+        raise ValueError("triangles: the surface has a border; need a closed one")
     volume = _volume(positions, faces)
     if not (volume > 0).all():
         frame = np.flatnonzero(~(volume > 0))[0]

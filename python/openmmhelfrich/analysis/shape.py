@@ -4,7 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ._arrays import dot, over_frames
+from .._mesh.periodic import corner_positions, unfolded
+from ._arrays import box_of, dot, over_frames
+from .elements import edges_of
 
 
 class Shape(NamedTuple):
@@ -13,7 +15,7 @@ class Shape(NamedTuple):
     area: np.ndarray
     """Area A of the triangles, nm²."""
     volume: np.ndarray
-    """Volume V within them, nm³."""
+    """Volume V within them, nm³; NaN where the surface has borders or spans its box."""
     reduced_volume: np.ndarray
     """6 √π V / A^{3/2}, without unit, 1 for a sphere."""
     radius_of_gyration: np.ndarray
@@ -27,7 +29,7 @@ class Shape(NamedTuple):
     rod."""
 
 
-def shape(vertices, triangles) -> Shape:
+def shape(vertices, triangles, *, box=None) -> Shape:
     """Area, volume, reduced volume and the measures of the gyration tensor.
 
     With the eigenvalues λ1 ≤ λ2 ≤ λ3 of the tensor of `gyration_tensor`: R_g² = λ1 + λ2 + λ3,
@@ -40,12 +42,16 @@ def shape(vertices, triangles) -> Shape:
         Shape (num_vertices, 3) for one frame or (num_frames, num_vertices, 3), nm.
     triangles : array_like of int or Mesh
         Shape (num_triangles, 3), or (num_frames, num_triangles, 3) if each frame has its own;
-        counter-clockwise seen from outside, a closed surface.
+        counter-clockwise seen from outside.
+    box : array_like or Quantity, optional
+        Periodic box, shape (3, 3), nm: each connected part is put together by nearest images.
+        Default: that of a `Mesh` among the other arguments, if it has one.
 
     Returns
     -------
     Shape
-        The measures, one value for each frame.
+        The measures, one value for each frame. Volume and reduced volume are NaN if the surface has
+        a border; they and the measures of the gyration tensor if it spans the box.
 
     Raises
     ------
@@ -54,15 +60,26 @@ def shape(vertices, triangles) -> Shape:
     ValueError
         A wrong shape, an index out of range, or a coordinate that is not finite.
     """
+    box = box_of(box, vertices, triangles)
 
     def work(frames, faces, first):
+        start, end, _, right = edges_of(faces)
+        has_border = bool((right < 0).any())
+        spans = np.zeros(len(frames), dtype=bool)
+        if box is not None:
+            edges = np.column_stack([start, end])
+            whole = [unfolded(frame, edges, box) for frame in frames]
+            frames = np.stack([places for places, _, _ in whole])
+            spans = np.array([spanning.any() for _, _, spanning in whole])
         positions = frames - frames.mean(axis=1, keepdims=True)
-        a, b, c = (positions[:, faces[:, corner]] for corner in range(3))
+        a, b, c = np.moveaxis(corner_positions(positions, faces, box), 2, 0)
         normals = np.cross(b - a, c - a)
         area = np.linalg.norm(normals, axis=2).sum(axis=1) / 2
         # A sum of a·(b × c) about the mean of the vertices, where rounding is least.
         volume = dot(a, np.cross(b, c)).sum(axis=1) / 6
-        small, middle, large = np.linalg.eigvalsh(_tensor(positions)).T
+        volume = np.where(spans | has_border, np.nan, volume)
+        values = np.linalg.eigvalsh(_tensor(positions))
+        small, middle, large = np.where(spans[:, np.newaxis], np.nan, values).T
         square = small + middle + large
         asphericity = large - (small + middle) / 2
         acylindricity = middle - small
@@ -106,7 +123,7 @@ def gyration_tensor(vertices):
     return over_frames(work, vertices)
 
 
-def area_excess(vertices, triangles):
+def area_excess(vertices, triangles, *, box=None):
     """Area in excess of the sphere of equal volume, A / 4πR_V² − 1 with R_V = (3V/4π)^⅓.
 
     `theory.area_excess` has its mean for thermal undulations. In terms of the reduced volume v it
@@ -115,7 +132,7 @@ def area_excess(vertices, triangles):
 
     Parameters
     ----------
-    vertices, triangles
+    vertices, triangles, box
         As for `shape`.
 
     Returns
@@ -128,9 +145,14 @@ def area_excess(vertices, triangles):
     TypeError
         As for `shape`.
     ValueError
-        As for `shape`; a frame that is inside out, whose volume is negative.
+        As for `shape`; a surface that encloses nothing; a frame that is inside out, whose volume is
+        negative.
     """
-    reduced = np.asarray(shape(vertices, triangles).reduced_volume)
+    reduced = np.asarray(shape(vertices, triangles, box=box).reduced_volume)
+    if np.isnan(reduced).any():
+        raise ValueError(
+            "area_excess: the surface has a border or spans its periodic box, and so has no volume"
+        )
     inverted = np.flatnonzero(reduced <= 0)
     if len(inverted):
         frame = f"frame {inverted[0]}" if reduced.ndim else "the mesh"

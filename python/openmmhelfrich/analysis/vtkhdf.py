@@ -18,7 +18,7 @@ from .._journal import JournaledFile
 from .._writing import naming
 from ._arrays import over_frames, triangles_of
 from .curvature import vertex_quantities
-from .elements import triangle_areas
+from .elements import edges_of, triangle_areas
 from .tables import import_h5py
 from .trajectories import Trajectory
 
@@ -154,7 +154,7 @@ class SurfaceSeries:
 
     Vertices carry ``mean_curvature``, H = C1 + C2 by Jülicher's scheme (B13), 1/nm; ``area``, a
     third of the triangles around, nm²; ``neighbours``, how many there are; ``component``, the
-    number of the closed surface that they belong to, from 0. Triangles carry ``area``, nm², and
+    number of the connected surface that they belong to, from 0. Triangles carry ``area``, nm², and
     ``component``. Coordinates are in nm in double precision, values in single precision, times in
     ps. Triangles are stored anew only where they have changed. The group ``/openmm-helfrich`` has
     the ``step`` of the simulation of each frame.
@@ -190,8 +190,8 @@ class SurfaceSeries:
         OSError
             If the system refuses; no frame has been added then.
         ValueError
-            If the numbers of vertices or triangles are not those of the file, or a surface is not
-            closed, see `mean_curvature`.
+            If the numbers of vertices or triangles are not those of the file, or as for
+            `mean_curvature`.
         """
         frames = list(frames)
         if not frames:
@@ -296,8 +296,8 @@ class SurfaceSeries:
         _extend(root["Points"], frame.vertices)
         _extend(root["PointData/mean_curvature"], found.mean_curvature())
         _extend(root["PointData/area"], found.barycentric_area)
-        # On a closed surface there are as many neighbours as triangles.
-        neighbours = np.bincount(corners.ravel(), minlength=num_vertices)
+        ends = np.concatenate(edges_of(corners)[:2])
+        neighbours = np.bincount(ends, minlength=num_vertices)
         _extend(root["PointData/neighbours"], neighbours)
         _extend(root["CellData/area"], triangle_areas(frame.vertices, corners))
         connectivity = root["Polygons/Connectivity"]

@@ -1,0 +1,128 @@
+"""Reporters and `analysis` on surfaces with borders and in boxes: right numbers, or none."""
+
+from __future__ import annotations
+
+import csv
+
+import numpy as np
+import openmm as mm
+import openmmhelfrich as helfrich
+import pytest
+from openmm import app
+from openmmhelfrich import analysis
+
+BOX = np.array([[100.0, 0, 0], [20, 110, 0], [-30, 15, 120]])
+
+
+def sphere() -> helfrich.Mesh:
+    """A rough one, whole."""
+    mesh = helfrich.Mesh.icosphere(4, 20)
+    noise = np.random.default_rng(1).normal(scale=0.3, size=mesh.vertices.shape)
+    return helfrich.Mesh(mesh.vertices + noise, mesh.triangles)
+
+
+def wrapped() -> helfrich.Mesh:
+    """The same in a box, its vertices anywhere."""
+    mesh = sphere()
+    images = np.random.default_rng(2).integers(-2, 3, mesh.vertices.shape)
+    return helfrich.Mesh(mesh.vertices + images @ BOX, mesh.triangles, BOX)
+
+
+def holed() -> helfrich.Mesh:
+    mesh = sphere()
+    return helfrich.Mesh(mesh.vertices, mesh.triangles[6:])
+
+
+def sheet() -> helfrich.Mesh:
+    return helfrich.Mesh.sheet(8, 9, 10.0, periodic=True)
+
+
+def report(mesh: helfrich.Mesh, reporter) -> None:
+    system = mm.System()
+    for _ in range(mesh.num_vertices):
+        system.addParticle(50.0)
+    if mesh.box is not None:
+        system.setDefaultPeriodicBoxVectors(*mesh.box)
+    system.addForce(helfrich.BendingForce(mesh, 1e-9))
+    platform = mm.Platform.getPlatformByName("Reference")
+    simulation = app.Simulation(app.Topology(), system, mm.VerletIntegrator(1e-6), platform)
+    simulation.context.setPositions(mesh.vertices)
+    simulation.reporters.append(reporter)
+    simulation.step(1)
+
+
+def reported(mesh: helfrich.Mesh, path) -> dict[str, float]:
+    report(mesh, helfrich.MembraneReporter(path, 1, mesh))
+    with open(path) as file:
+        (row,) = csv.DictReader(file)
+    return {name.split(" ")[0]: float(value) for name, value in row.items()}
+
+
+def test_the_shape_of_what_crosses_faces_is_that_of_the_whole(tmp_path):
+    whole, row = analysis.shape(sphere(), sphere()), reported(wrapped(), tmp_path / "a.csv")
+    found = analysis.shape(wrapped(), wrapped())
+    bare = analysis.shape(wrapped().vertices, wrapped().triangles, box=BOX)
+    for name in ("area", "volume", "reduced_volume", "radius_of_gyration", "asphericity"):
+        expected = pytest.approx(getattr(whole, name), rel=1e-9)
+        assert getattr(found, name) == getattr(bare, name) == expected
+        assert row[name] == expected
+
+
+@pytest.mark.parametrize(
+    "mesh, lost",
+    [
+        (holed(), {"volume", "reduced_volume"}),
+        (sheet(), {*analysis.Shape._fields} - {"area"}),
+    ],
+    ids=["holed", "sheet"],
+)
+def test_what_has_no_meaning_is_nan(mesh, lost, tmp_path):
+    row, found = reported(mesh, tmp_path / "a.csv"), analysis.shape(mesh, mesh)
+    assert row["area"] == pytest.approx(mesh.area)
+    for name, value in found._asdict().items():
+        assert np.isnan(value) == np.isnan(row[name]) == (name in lost)
+    with pytest.raises(ValueError, match=r"area_excess: .* border or spans"):
+        analysis.area_excess(mesh, mesh)
+
+
+def test_modes_need_a_closed_surface_in_one_piece(tmp_path):
+    with pytest.raises(ValueError, match="the surface has a border"):
+        analysis.mode_amplitudes(holed(), holed(), 2)
+    with pytest.raises(ValueError, match="ModeReporter: the surface spans the periodic box"):
+        report(sheet(), helfrich.ModeReporter(tmp_path / "a.csv", 1, sheet(), 2))
+    report(wrapped(), helfrich.ModeReporter(tmp_path / "b.csv", 1, wrapped(), 3))
+    expected = analysis.mode_amplitudes(sphere(), sphere(), 3)
+    _, _, found = analysis.read_modes(tmp_path / "b.csv")
+    np.testing.assert_allclose(found[0], expected, atol=1e-9)
+    found = analysis.mode_amplitudes(wrapped(), wrapped(), 3)
+    np.testing.assert_allclose(found, expected, atol=1e-12)
+
+
+def test_vtkhdf_has_whole_surfaces_and_counts_neighbours_at_borders(tmp_path):
+    h5py = pytest.importorskip("h5py")
+
+    def read(mesh: helfrich.Mesh, name: str) -> np.ndarray:
+        path = tmp_path / "a.vtkhdf"
+        report(mesh, helfrich.VTKHDFReporter(path, 1, mesh))
+        with h5py.File(path) as file:
+            return file["VTKHDF"][name][:]
+
+    assert read(wrapped(), "CellData/area").sum() == pytest.approx(sphere().area, rel=1e-6)
+    np.testing.assert_array_equal(read(holed(), "PointData/neighbours"), holed().degrees)
+    with pytest.raises(ValueError, match="VTKHDFReporter: the surface spans the periodic box"):
+        read(sheet(), "Points")
+
+
+def test_the_box_of_a_context_is_the_present_one():
+    mesh = sheet()
+    system = mm.System()
+    for _ in range(mesh.num_vertices):
+        system.addParticle(50.0)
+    system.addForce(helfrich.BendingForce(mesh, 1.0))
+    system.setDefaultPeriodicBoxVectors(*mesh.box)
+    platform = mm.Platform.getPlatformByName("Reference")
+    context = mm.Context(system, mm.VerletIntegrator(0.001), platform)
+    context.setPeriodicBoxVectors(*(1.1 * mesh.box))
+    context.setPositions(1.1 * mesh.vertices)
+    areas = analysis.triangle_areas(context, mesh)
+    assert areas.sum() == pytest.approx(1.21 * mesh.area, rel=1e-12)
