@@ -1,9 +1,9 @@
 """Two different vesicles and a solution of ordinary particles in one System.
 
 A soft vesicle with a stiff domain and a hard one with spontaneous curvature sit side by side in a
-cloud of beads. The beads, and the vertices of different vesicles, repel one another by a
-CustomNonbondedForce of OpenMM's own; the vertices of one vesicle do not, their distances are the
-membrane's affair. The script prints energies per term of each vesicle and writes the last meshes.
+cloud of beads. A SurfaceRepulsionForce keeps the vesicles apart and a ParticleSurfaceForce the
+beads outside of both; beads pass through each other. The script prints energies per term of each
+vesicle and writes the last meshes.
 
     python examples/two_vesicles.py [--steps N] [--out DIR]
 """
@@ -23,6 +23,7 @@ TEMPERATURE = 300 * unit.kelvin
 KBT = (unit.MOLAR_GAS_CONSTANT_R * TEMPERATURE).value_in_unit(unit.kilojoule_per_mole)
 RADIUS = 200.0
 CONTACT = 40.0
+BEAD = 15.0
 
 
 def build(seed: int):
@@ -57,22 +58,19 @@ def build(seed: int):
     home = openmm.CustomExternalForce("0.5*k*((x-x0)^2+y^2+z^2)")
     home.addGlobalParameter("k", 1e-6)
     home.addGlobalParameter("x0", RADIUS)
-    # Every vesicle and every bead is a body. (Interaction groups have no neighbour lists.)
-    repulsion = openmm.CustomNonbondedForce(
-        "(1-delta(body1-body2))*strength*(1-r/contact)^2*step(contact-r)"
+    # Both vesicles, one after the other.
+    surfaces = np.vstack(
+        [mesh.triangles, hard_mesh.triangles + placements[1].offset]
     )
-    repulsion.addPerParticleParameter("body")
-    repulsion.addGlobalParameter("strength", 10 * KBT)
-    repulsion.addGlobalParameter("contact", CONTACT)
-    for body, placement in enumerate(placements):
-        for _ in placement.particles:
-            repulsion.addParticle([body])
-    for bead in range(repulsion.getNumParticles(), system.getNumParticles()):
-        repulsion.addParticle([bead])
-        home.addParticle(bead)
-    repulsion.setNonbondedMethod(openmm.CustomNonbondedForce.CutoffNonPeriodic)
-    repulsion.setCutoffDistance(CONTACT)
-    for group, force in ((30, home), (31, repulsion)):
+    between = helfrich.SurfaceRepulsionForce(surfaces, distance=0.5 * CONTACT, epsilon=KBT)
+    between.setOnlyBetweenParts(True)
+    particles = np.arange(system.getNumParticles() - len(beads), system.getNumParticles())
+    around = helfrich.ParticleSurfaceForce(
+        surfaces, particles, distance=10, epsilon=KBT, radius=BEAD
+    )
+    for bead in particles:
+        home.addParticle(int(bead))
+    for group, force in ((30, home), (31, between), (31, around)):
         force.setForceGroup(group)
         system.addForce(force)
     return system, np.vstack([*positions, *beads]), placements, [mesh, hard_mesh]
@@ -88,7 +86,6 @@ def main(arguments=None) -> None:
     system, positions, placements, meshes = build(options.seed)
     integrator = openmm.LangevinMiddleIntegrator(TEMPERATURE, 0.01, 0.05)
     integrator.setRandomNumberSeed(options.seed)
-    # Pairs of particles interact, for which a membrane's platform is not the fastest.
     platform, reason = helfrich.platforms.choose(system, integrator)
     print(f"Platform {platform}: {reason}")
     context = openmm.Context(system, integrator, openmm.Platform.getPlatformByName(platform))
