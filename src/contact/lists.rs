@@ -50,6 +50,8 @@ pub struct Lists {
     listed: Vec<bool>,
     /// Whether flips have made pairs that are in no list.
     has_new_pairs: bool,
+    /// Whether the edges may have other places than the pairs know; flips that are taken back move them, too.
+    has_followed: bool,
     /// One for each thread; kept for their memory.
     scratch: Vec<[Vec<[u32; 2]>; 2]>,
 }
@@ -90,7 +92,8 @@ impl Lists {
         // Lists of a longer reach are good, too: force groups may take turns.
         let good = self.made_for.filter(|made| {
             let Made { reach, between_parts, cell, fingerprint, .. } = *made;
-            reach >= wanted.reach
+            !self.has_followed
+                && reach >= wanted.reach
                 && between_parts <= wanted.between_parts
                 && (cell, fingerprint) == (wanted.cell, wanted.fingerprint)
         });
@@ -207,7 +210,7 @@ impl Lists {
             scratch.iter().for_each(|found| pairs.extend_from_slice(&found[kind]));
         }
         self.scratch = scratch;
-        self.has_new_pairs = false;
+        (self.has_new_pairs, self.has_followed) = (false, false);
         self.listed.clear();
         self.listed.resize(mesh.num_vertices(), false);
         let mut note = |vertex: u32| self.listed[vertex as usize] = true;
@@ -377,6 +380,7 @@ impl Lists {
     /// Have kl in place of ij.
     pub fn follow(&mut self, quad: &Quad) {
         let Some(made) = self.made_for else { return };
+        self.has_followed = true;
         let [i, j, k, l] = quad.vertices;
         let mut gone = None;
         let is_gone = |ends: &[u32; 2]| *ends == [i, j] || *ends == [j, i];
