@@ -28,10 +28,12 @@ def run(adhesion, steps):
     flat = helfrich.Mesh.disk(16, 3.2 * REACH).translated((0, 0, -REACH))
     bead = flat.num_vertices
     system = openmm.System()
-    for _ in range(bead + 1):
+    for _ in range(bead):
         system.addParticle(50.0)
+    system.addParticle(0.0)  # The bead stays where it is.
     system.addForce(helfrich.BendingForce(flat, KAPPA))
-    system.addForce(helfrich.SurfaceAreaForce(flat, 20.0, flat.area))
+    system.addForce(helfrich.TriangleAreaForce(flat, 20.0, flat.area / flat.num_triangles))
+    system.addForce(helfrich.EdgeTensionForce(flat, 1.0))  # Against ruffles.
     system.addForce(helfrich.TriangleHeightForce(flat, flat.min_height(0.2), 1.0))
     system.addForce(
         helfrich.ParticleSurfaceForce(
@@ -46,7 +48,7 @@ def run(adhesion, steps):
     )
     flips = helfrich.MonteCarloBondFlip(flat, COLD, frequency=10, attemptsPerEdge=0.1)
     system.addForce(flips)
-    integrator = openmm.LangevinMiddleIntegrator(COLD, 0.02, 0.04)
+    integrator = openmm.LangevinMiddleIntegrator(COLD, 0.03, 0.02)
     platform = openmm.Platform.getPlatformByName("Helfrich")
     context = openmm.Context(system, integrator, platform)
     context.setPositions([*flat.vertices, (0, 0, 0)])
@@ -59,7 +61,7 @@ def run(adhesion, steps):
 def main(arguments=None) -> None:
     """Run both, and draw."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--steps", type=int, default=60000)
+    parser.add_argument("--steps", type=int, default=100000)
     parser.add_argument("--out", type=Path, default=Path("out/wrapping"))
     options = parser.parse_args(arguments)
     panels = {}

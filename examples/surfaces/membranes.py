@@ -23,15 +23,15 @@ def system_of(mesh, forces, mass=50.0, others=0):
     mesh : Mesh
     forces : iterable of openmm.Force
     mass : float
-        Of a particle, amu.
+        Of a vertex, amu.
     others : int
-        Particles behind the vertices.
+        Particles behind the vertices, of mass 0: they stay where they are.
     """
     system = openmm.System()
     if mesh.box is not None:
         system.setDefaultPeriodicBoxVectors(*mesh.box)
-    for _ in range(mesh.num_vertices + others):
-        system.addParticle(mass)
+    for each in [mass] * mesh.num_vertices + [0.0] * others:
+        system.addParticle(each)
     for force in forces:
         system.addForce(force)
     return system
@@ -40,7 +40,7 @@ def system_of(mesh, forces, mass=50.0, others=0):
 def context_of(mesh, forces, integrator=None, mass=50.0, others=()):
     """A Context of a mesh on one thread of platform Helfrich, at the positions of the mesh.
 
-    `others` are positions of further particles, shape (count, 3), nm.
+    `others` are positions of further particles that do not move, shape (count, 3), nm.
     """
     integrator = integrator or openmm.VerletIntegrator(1e-3)
     platform = openmm.Platform.getPlatformByName("Helfrich")

@@ -241,9 +241,12 @@ fn one(
     // Either half-edge of an edge stands for one of the two ways to turn it.
     let turn = if draw.half < quad.halves[1] { Turn::Left } else { Turn::Right };
     let degree = |vertex: u32| mesh.degrees()[vertex as usize];
-    let (most, has_least) =
-        (rules.max_degree as u32, |vertex| degree(vertex) <= rules.least(mesh, vertex));
-    if has_least(i) || has_least(j) || degree(k).max(degree(l)) >= most {
+    let (least, most) = (rules.min_degree as u32, rules.max_degree as u32);
+    let too_few = match mesh.is_closed() {
+        true => degree(i).min(degree(j)) <= least,
+        false => [i, j].iter().any(|vertex| degree(*vertex) <= rules.least(mesh, *vertex)),
+    };
+    if too_few || degree(k).max(degree(l)) >= most {
         state.by_degree += 1;
         return;
     }

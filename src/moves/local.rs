@@ -236,8 +236,8 @@ impl LocalEnergy {
             flipped.totals_energy = self.energy_of_totals(terms, &flipped.totals);
             difference += flipped.totals_energy - self.totals_energy;
         }
-        flipped.borders = self.borders;
-        if !self.acting.borders.is_empty() && !mesh.is_closed() {
+        if !mesh.is_closed() && !self.acting.borders.is_empty() {
+            flipped.borders = self.borders;
             flipped.borders.turning -= angles_on_borders(mesh, quad, &points);
             difference += self.energy_of_borders(terms, &flipped.borders)
                 - self.energy_of_borders(terms, &self.borders);
@@ -390,16 +390,42 @@ impl LocalEnergy {
         let vectors = if wants_vectors { &flipped.vectors[..] } else { &[] };
         let total = self.survey.vertices.len();
         let (ids, scalars) = (&quad.vertices, &flipped.vertices);
-        let on_border = ids.map(|vertex| mesh.is_border(vertex));
         for term in at(terms, &self.acting.vertices) {
-            let mut energies = [0.0; 4];
-            let run = Vertices::Energies { total, ids, scalars, vectors, energies: &mut energies };
+            if !mesh.is_closed() && !term.potential.acts_at_borders() {
+                continue;
+            }
+            let energies = &mut flipped.vertex_energies[..];
+            let run = Vertices::Energies { total, ids, scalars, vectors, energies };
             term.potential.vertices(term, run);
-            let everywhere = term.potential.acts_at_borders();
-            for (n, sum) in flipped.vertex_energies.iter_mut().enumerate() {
-                if everywhere || !on_border[n] {
-                    *sum += energies[n];
-                }
+        }
+        if !mesh.is_closed() {
+            self.inner_vertices_of(mesh, terms, quad, flipped);
+        }
+    }
+
+    /// The energies of those of the four vertices that are on no border, of the terms that act on no others.
+    fn inner_vertices_of(
+        &self,
+        mesh: &Triangulation,
+        terms: &[Term],
+        quad: &Quad,
+        flipped: &mut Flipped,
+    ) {
+        let total = self.survey.vertices.len();
+        for term in at(terms, &self.acting.vertices) {
+            if term.potential.acts_at_borders() {
+                continue;
+            }
+            for n in (0..4).filter(|n| !mesh.is_border(quad.vertices[*n])) {
+                let vectors = if self.survey.vectors.is_empty() { 0..0 } else { n..n + 1 };
+                let run = Vertices::Energies {
+                    total,
+                    ids: &quad.vertices[n..=n],
+                    scalars: &flipped.vertices[n..=n],
+                    vectors: &flipped.vectors[vectors],
+                    energies: &mut flipped.vertex_energies[n..=n],
+                };
+                term.potential.vertices(term, run);
             }
         }
     }
@@ -447,7 +473,9 @@ impl LocalEnergy {
         }
         survey.totals = flipped.totals;
         self.totals_energy = flipped.totals_energy;
-        self.borders = flipped.borders;
+        if !mesh.is_closed() {
+            self.borders = flipped.borders;
+        }
     }
 }
 

@@ -75,7 +75,7 @@ class TestCheckpoints:
     def test_that_are_damaged(self):
         context, _ = flowing(HELFRICH)
         checkpoint = step(context, 10).createCheckpoint()
-        begin = checkpoint.index(b"HLC1")
+        begin = checkpoint.index(b"HLC2")
         before = bits(context)[2]
         for place in (begin - 3, begin + 5, begin + 30, begin + 400, begin + 2500):
             broken = bytearray(checkpoint)

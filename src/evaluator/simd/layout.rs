@@ -190,8 +190,10 @@ impl Layout {
             let vertices = &self.vertex_ids[block * BLOCK..][..BLOCK];
             let degrees: [usize; BLOCK] =
                 std::array::from_fn(|lane| mesh.degrees()[vertices[lane] as usize] as usize);
-            let corners: [usize; BLOCK] =
-                std::array::from_fn(|lane| mesh.num_corners(vertices[lane]) as usize);
+            let corners = match mesh.is_closed() {
+                true => degrees,
+                false => std::array::from_fn(|lane| mesh.num_corners(vertices[lane]) as usize),
+            };
             let longest = degrees.into_iter().max().unwrap_or(0);
             let start = self.neighbours.len();
             self.neighbours.resize(start + longest + 1, [0; BLOCK]);
