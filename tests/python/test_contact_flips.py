@@ -175,3 +175,47 @@ def test_one_surface_flips_with_its_contacts():
         now = energy(context) + mover.getStatistics(context)["demonEnergy"]
         assert now == pytest.approx(expected, rel=1e-9)
     assert mover.getStatistics(context)["accepted"] > 50
+
+
+def test_flips_that_are_refused_leave_contacts_as_they_are():
+    mesh = helfrich.Mesh.icosphere(5, 20)
+    squashed = mesh.vertices * [1, 1, 0.07]
+    noise = np.random.default_rng(5).normal(scale=0.2, size=squashed.shape)
+    mesh = helfrich.Mesh(squashed + noise * [1, 1, 0.1], mesh.triangles)
+
+    def forces(triangles):
+        yield helfrich.SurfaceRepulsionForce(triangles, 2.0, 2.5)
+        # Nothing flips against it.
+        yield helfrich.BendingForce(triangles, 1e3)
+
+    flips = helfrich.MonteCarloBondFlip(mesh, 1.0, 1, 1.0)
+    flips.setRandomNumberSeed(3)
+
+    def energies(context):
+        state = context.getState(getEnergy=True, getForces=True)
+        return state.getPotentialEnergy()._value, state.getForces(asNumpy=True)._value
+
+    def context_of(*all_forces):
+        system = mm.System()
+        for _ in range(mesh.num_vertices):
+            # So heavy that they stay.
+            system.addParticle(1e30)
+        for force in all_forces:
+            system.addForce(force)
+        platform = mm.Platform.getPlatformByName("Helfrich")
+        context = mm.Context(system, mm.VerletIntegrator(1e-6), platform)
+        context.setPositions(mesh.vertices)
+        return context
+
+    context = context_of(*forces(mesh.triangles), flips)
+    refused_rounds = 0
+    for _ in range(40):
+        before = flips.getStatistics(context)["accepted"]
+        context.getIntegrator().step(1)
+        refused_rounds += flips.getStatistics(context)["accepted"] == before
+        fresh = context_of(*forces(flips.getTrianglesInContext(context)))
+        (energy, forces_now), (expected, forces_then) = energies(context), energies(fresh)
+        assert energy == pytest.approx(expected, rel=1e-12)
+        largest = np.abs(forces_then).max()
+        np.testing.assert_allclose(forces_now, forces_then, atol=1e-12 * largest)
+    assert refused_rounds > 5
