@@ -385,7 +385,8 @@ impl Lists {
             radius: 0.0,
             ends: [vertex; 2],
         }));
-        (self.gone.clear(), self.new.clear());
+        self.gone.clear();
+        self.new.clear();
         let ends = |half| ascending(mesh.origin(half), mesh.origin(next(half)));
         self.edges.all.clear();
         self.edges.all.extend(mesh.edges().map(|half| edge_sphere(cell, reference, ends(half))));
@@ -659,7 +660,8 @@ impl Lists {
             self.edges.all.retain(|edge| !self.gone.contains(&edge.ends));
             let new = self.new.iter().map(|ends| edge_sphere(cell, &self.outer, *ends));
             self.edges.all.extend(new);
-            (self.gone.clear(), self.new.clear());
+            self.gone.clear();
+            self.new.clear();
             self.edges.sort(cell, size);
         }
     }
