@@ -59,9 +59,7 @@ def build(seed: int):
     home.addGlobalParameter("k", 1e-6)
     home.addGlobalParameter("x0", RADIUS)
     # Both vesicles, one after the other.
-    surfaces = np.vstack(
-        [mesh.triangles, hard_mesh.triangles + placements[1].offset]
-    )
+    surfaces = np.vstack([mesh.triangles, hard_mesh.triangles + placements[1].offset])
     between = helfrich.SurfaceRepulsionForce(surfaces, distance=0.5 * CONTACT, epsilon=KBT)
     between.setOnlyBetweenParts(True)
     particles = np.arange(system.getNumParticles() - len(beads), system.getNumParticles())

@@ -219,3 +219,36 @@ def test_flips_that_are_refused_leave_contacts_as_they_are():
         largest = np.abs(forces_then).max()
         np.testing.assert_allclose(forces_now, forces_then, atol=1e-12 * largest)
     assert refused_rounds > 5
+def test_lists_that_followed_flips_have_the_same_bits_as_new_ones():
+    """Flips renew the lists where triangles have changed; a new Context makes all of them."""
+    mesh = start()
+    vertices = mesh.vertices * [1, 1, 0.12]
+    positions = np.array(vertices)
+
+    def context_of(triangles, *movers):
+        system = mm.System()
+        for _ in vertices:
+            system.addParticle(0.0)
+        wall = helfrich.SurfaceRepulsionForce(triangles, 2 * DISTANCE, EPSILON)
+        wall.setForceGroup(1)
+        for force in (wall, helfrich.BendingForce(triangles, 20.0), *movers):
+            system.addForce(force)
+        context = REFERENCE.context(system, mm.VerletIntegrator(0.001))
+        context.setPositions(positions)
+        return context
+
+    def bits(context):
+        state = context.getState(energy=True, forces=True, groups={1})
+        return state.getPotentialEnergy()._value, state.getForces(asNumpy=True)._value.tobytes()
+
+    mover = mover_of(mesh, frequency=1, attemptsPerEdge=0.1, maxEdgeLength=60.0)
+    context = context_of(mesh.triangles, mover)
+    rng = np.random.default_rng(2)
+    seen = set()
+    for _ in range(20):
+        positions += rng.normal(scale=0.1, size=positions.shape)
+        context.setPositions(positions)
+        context.getIntegrator().step(1)
+        seen.add(bits(context))
+        assert bits(context) == bits(context_of(mover.getTrianglesInContext(context)))
+    assert len(seen) == 20 and mover.getStatistics(context)["accepted"] > 10

@@ -1,4 +1,4 @@
-"""Contacts across the faces of a periodic box: wrapped, against a tiling without one, and their virial."""
+"""Contacts across the faces of a periodic box: wrapped, against a tiling, and their virial."""
 
 from __future__ import annotations
 
@@ -44,13 +44,14 @@ def quads(n: int, m: int, number) -> np.ndarray:
 
 
 def facing(box: np.ndarray):
-    """Two sheets that span the box and face each other across it, with beads between: positions, triangles, beads."""
+    """Two sheets that span the box and face each other across it, with beads between.
+
+    Returns positions, triangles and beads.
+    """
     n, m = SIDES
     sheets = [heights(0.04, 1), heights(0.96, 2)]
     points = [dyadic(sheet.reshape(-1, 3) @ box) for sheet in sheets]
-    triangles = [
-        quads(n, m, lambda i, j, k=k: k * n * m + m * (i % n) + j % m) for k in range(2)
-    ]
+    triangles = [quads(n, m, lambda i, j, k=k: k * n * m + m * (i % n) + j % m) for k in range(2)]
     middle = (sheets[0] + sheets[1] + [0, 0, 1]).reshape(-1, 3)[::7] / 2
     particles = dyadic(middle @ box)
     positions = np.vstack([*points, particles])
@@ -114,9 +115,7 @@ def test_a_tiling_without_a_box_has_the_same_forces(box, kind):
         turns = (i // n - 1)[..., None] * box[0] + (j // m - 1)[..., None] * box[1]
         many.append((sheet[i % n, j % m] + turns + shift).reshape(-1, 3))
         tiles.append(quads(3 * n, 3 * m, lambda i, j, f=first: f + (3 * m + 1) * i + j))
-        inner = [
-            first + (3 * m + 1) * i + j for i in range(n, 2 * n) for j in range(m, 2 * m)
-        ]
+        inner = [first + (3 * m + 1) * i + j for i in range(n, 2 * n) for j in range(m, 2 * m)]
         centre.append(inner)
     first = sum(map(len, many))
     images = [[i, j, k] for i in (0, -1, 1) for j in (0, -1, 1) for k in (-1, 0, -2)]
@@ -131,9 +130,7 @@ def test_a_tiling_without_a_box_has_the_same_forces(box, kind):
     found = forces[np.concatenate(centre)]
     np.testing.assert_allclose(found, expected[: 2 * n * m], atol=1e-9 * scale)
     if kind == 1:
-        felt = forces[first:].reshape(len(images), len(particles), 3).sum(axis=0)
-        near = np.abs(felt).max(axis=1) > 0
-        assert near.any()
+        assert np.abs(forces[first:]).max() > 1
 
 
 def slope_along(energy, step):
@@ -197,7 +194,7 @@ def test_wholes_and_parts_agree_about_the_box():
     mover = helfrich.MonteCarloBondFlip(other, 300.0)
     system.addForce(mover)
     system.setDefaultPeriodicBoxVectors(*np.diag([200.0] * 3))
-    with pytest.raises(mm.OpenMMException, match='"one" uses periodic .* "both" does not'):
+    with pytest.raises(mm.OpenMMException, match=r'"one" uses periodic .* "both" does not'):
         REFERENCE.context(system)
 
 
@@ -207,7 +204,5 @@ def test_twin_and_box_agree_where_nothing_crosses():
     force = helfrich.SurfaceRepulsionForce(membrane.triangles, DISTANCE, EPSILON)
     context = start([force], membrane.num_particles, np.diag([1000.0] * 3))
     energy, _ = evaluate(context, membrane.positions)
-    expected = twin.surface_repulsion(
-        membrane.positions, membrane.triangles, DISTANCE, EPSILON
-    )
+    expected = twin.surface_repulsion(membrane.positions, membrane.triangles, DISTANCE, EPSILON)
     assert energy == pytest.approx(expected, rel=1e-10)
