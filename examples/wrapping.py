@@ -33,7 +33,8 @@ def run(adhesion, steps):
     system.addParticle(0.0)  # The bead stays where it is.
     system.addForce(helfrich.BendingForce(flat, KAPPA))
     system.addForce(helfrich.TriangleAreaForce(flat, 20.0, flat.area / flat.num_triangles))
-    system.addForce(helfrich.EdgeTensionForce(flat, 1.0))  # Against ruffles.
+    system.addForce(helfrich.EdgeTensionForce(flat, 1.0))
+    system.addForce(helfrich.DihedralForce(flat, 0.1 * KAPPA))  # Borders do not fold over.
     system.addForce(helfrich.TriangleHeightForce(flat, flat.min_height(0.2), 1.0))
     system.addForce(
         helfrich.ParticleSurfaceForce(
