@@ -219,6 +219,8 @@ def test_flips_that_are_refused_leave_contacts_as_they_are():
         largest = np.abs(forces_then).max()
         np.testing.assert_allclose(forces_now, forces_then, atol=1e-12 * largest)
     assert refused_rounds > 5
+
+
 def test_lists_that_followed_flips_have_the_same_bits_as_new_ones():
     """Flips renew the lists where triangles have changed; a new Context makes all of them."""
     mesh = start()
