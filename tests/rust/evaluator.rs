@@ -34,7 +34,9 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 #[test]
 fn every_potential_of_the_registry_is_tested_here() {
     let terms = [all_terms(true), border_terms()].concat();
-    for potential in REGISTRY {
+    // No evaluator sees those of pairs, which `src/contact/` looks after.
+    let pairs = ["SurfaceRepulsionForce", "ParticleSurfaceForce"];
+    for potential in REGISTRY.into_iter().filter(|one| !pairs.contains(&one.name())) {
         assert!(terms.iter().any(|term| term.potential.name() == potential.name()));
     }
 }
