@@ -1,7 +1,14 @@
 //! A grid of cells over some points, or over a periodic box.
 
+use crate::dynamics::instructions::{Arithmetic, Kernel, run};
 use crate::mesh::Cell;
 use crate::mesh::geometry::Vec3;
+
+/// Positions whose boxes are found together, in lanes.
+pub const TOGETHER: usize = 64;
+
+/// No box.
+pub const NOWHERE: u32 = u32::MAX;
 
 /// Boxes of equal size, with a list of numbers in each.
 #[derive(Default)]
@@ -68,20 +75,43 @@ impl Grid {
     /// The box that a position is in, if there is one.
     #[inline]
     pub fn home(&self, position: &Vec3) -> Option<usize> {
-        let place = self.coordinates(position);
-        let mut index = 0;
-        for k in [2, 1, 0] {
-            let count = self.counts[k];
-            let mut x = place[k].floor();
-            if self.periodic {
-                x -= (x / count as f64).floor() * count as f64;
+        let home = self.home_of([position.x, position.y, position.z]);
+        (home != NOWHERE).then_some(home as usize)
+    }
+
+    /// The boxes that many positions are in, or [`NOWHERE`]; x, y and z of all of them, one after the other.
+    pub fn homes(&self, positions: &[[f64; TOGETHER]; 3]) -> [u32; TOGETHER] {
+        struct All<'a>(&'a Grid, &'a [[f64; TOGETHER]; 3], &'a mut [u32; TOGETHER]);
+        impl Kernel for All<'_> {
+            #[inline(always)]
+            fn execute<A: Arithmetic>(self) {
+                let Self(grid, [x, y, z], homes) = self;
+                for n in 0..TOGETHER {
+                    homes[n] = grid.home_of([x[n], y[n], z[n]]);
+                }
             }
-            if !(x >= 0.0 && x < count as f64) {
-                return None;
-            }
-            index = index * count + x as i64;
         }
-        Some(index as usize)
+        let mut homes = [NOWHERE; TOGETHER];
+        run(All(self, positions, &mut homes));
+        homes
+    }
+
+    #[inline(always)]
+    fn home_of(&self, [x, y, z]: [f64; 3]) -> u32 {
+        let (x, y, z) = (x - self.origin.x, y - self.origin.y, z - self.origin.z);
+        let mut index = 0.0;
+        let mut is_inside = true;
+        for k in [2, 1, 0] {
+            let (row, count) = (&self.rows[k], self.counts[k] as f64);
+            let mut place = (row.x * x + row.y * y + row.z * z).floor();
+            if self.periodic {
+                place -= (place / count).floor() * count;
+            }
+            is_inside &= (place >= 0.0) & (place < count);
+            index = index * count + place;
+        }
+        // There are fewer boxes than a double has whole numbers.
+        if is_inside { index as u32 } else { NOWHERE }
     }
 
     /// Put a number into the box of a position.

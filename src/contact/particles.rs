@@ -4,7 +4,7 @@
 //! themselves are not remembered: each looks into its box, which for most of a million is empty.
 
 use super::closest::{Arms, difference};
-use super::grid::{Grid, bounds};
+use super::grid::{Grid, NOWHERE, TOGETHER, bounds};
 use crate::error::{Error, Result};
 use crate::mesh::geometry::Vec3;
 use crate::mesh::{Cell, Triangulation};
@@ -12,6 +12,7 @@ use crate::potentials::particle_surface::{self, RADIUS};
 use crate::potentials::{Contribution, Term};
 use crate::team::{Parts, Team};
 use nalgebra::Matrix3;
+use std::ops::Range;
 
 /// The skin as a share of the reach.
 const SKIN: f64 = 0.3;
@@ -147,17 +148,19 @@ impl ParticleContacts {
             let found = &mut unsafe { parts.part(member.index()..member.index() + 1) }[0];
             found.touches.clear();
             found.lost = None;
-            for place in member.share(term.particles.len()) {
-                let place = place as u32;
-                let (at, radius) = of(term, positions, place);
-                let lost = this.each_near(&reach, &at, radius, |triangle| {
-                    let pair =
-                        particle_surface::pair(term, radius, &this.arms(mesh, &at, triangle));
-                    found.touches.push(Touch { place, triangle, pair });
+            let share = member.share(term.particles.len());
+            for first in share.clone().step_by(TOGETHER) {
+                let places = first as u32..(first + TOGETHER).min(share.end) as u32;
+                this.each_home(&reach, term, positions, places, |place, at, radius, home| {
+                    let lost = this.each_near(&reach, &at, radius, home, |triangle| {
+                        let arms = this.arms(mesh, &at, triangle);
+                        let pair = particle_surface::pair(term, radius, &arms);
+                        found.touches.push(Touch { place, triangle, pair });
+                    });
+                    if lost {
+                        found.lost = Some(place);
+                    }
                 });
-                if lost {
-                    found.lost = Some(place);
-                }
             }
         });
         let used = &found[..team.size()];
@@ -245,13 +248,56 @@ impl ParticleContacts {
         Arms::new(self.cell.as_ref(), at, corners.map(|corner| &self.positions[corner as usize]))
     }
 
+    /// Go through particles in their boxes, but for those far away, of which there may be very many.
+    #[inline]
+    fn each_home(
+        &self,
+        reach: &Reach,
+        term: &Term,
+        positions: &[f64],
+        places: Range<u32>,
+        mut visit: impl FnMut(u32, Vec3, f64, u32),
+    ) {
+        if !term.fields[RADIUS].is_empty() {
+            for place in places {
+                let (at, radius) = of(term, positions, place);
+                let home = self.maps[reach.class(radius)].grid.home(&at);
+                visit(place, at, radius, home.map_or(NOWHERE, |home| home as u32));
+            }
+            return;
+        }
+        let mut all = [[0.0; TOGETHER]; 3];
+        for (n, place) in places.clone().enumerate() {
+            let first = 3 * term.particles[place as usize] as usize;
+            for (axis, all) in all.iter_mut().enumerate() {
+                all[n] = positions[first + axis];
+            }
+        }
+        let radius = term.values[RADIUS];
+        let grid = &self.maps[reach.class(radius)].grid;
+        for (n, (place, home)) in places.zip(grid.homes(&all)).enumerate() {
+            if home == NOWHERE || !grid.items(home as usize).is_empty() {
+                visit(place, Vec3::new(all[0][n], all[1][n], all[2][n]), radius, home);
+            }
+        }
+    }
+
     /// Go through the triangles that a particle may feel, ascending; true if its position is not finite.
     #[inline]
-    fn each_near(&self, reach: &Reach, at: &Vec3, radius: f64, mut visit: impl FnMut(u32)) -> bool {
+    fn each_near(
+        &self,
+        reach: &Reach,
+        at: &Vec3,
+        radius: f64,
+        home: u32,
+        mut visit: impl FnMut(u32),
+    ) -> bool {
+        if home == NOWHERE {
+            return !at.iter().all(|x| x.is_finite());
+        }
         let grid = &self.maps[reach.class(radius)].grid;
-        let Some(home) = grid.home(at) else { return !at.iter().all(|x| x.is_finite()) };
         let own = reach.from_rim + radius;
-        for &triangle in grid.items(home) {
+        for &triangle in grid.items(home as usize) {
             let (middle, size) = &self.spheres[triangle as usize];
             let far = difference(self.cell.as_ref(), at, middle).norm_squared();
             if far < (own + size) * (own + size) {
