@@ -11,15 +11,13 @@ end above the middle of the pore, nm.
 
 "adhesion": energy by area over w, less 1, of a flat sheet that touches a particle so large that it
 is flat too, and energy of a bead that touches a plane over the integral in the header of
-ParticleSurfaceForce. "crowd": free particles of 50 amu, at one density in a vesicle and between it
-and a hull of 1.5 R whose vertices have mass 0, under the Verlet integrator, for as many steps as
-fit into a time. Vertices of the vesicle have 2000 amu, as hundreds of particles touch each.
-"through" of them are on the other side of the vesicle at the end, by rays, "escaped" out of the
-hull; "moved" is the median of their displacement, nm; "drift" is the change of the total energy,
-and "scatter" its largest, over the kinetic energy.
+ParticleSurfaceForce. "crowd": free particles of 50 amu at one density inside of a vesicle and
+around it, in a periodic box of the side "box" or, without one, within a hull of 1.5 R whose
+vertices have mass 0; Verlet. Vertices of the vesicle have 2000 amu, as hundreds of particles touch
+each. "through" of them are on the other side of the vesicle at the end, by rays, "escaped" out of
+the hull; "moved" is the median of their displacement, nm; "drift" is the change of the total
+energy, and "scatter" its largest, over the kinetic energy.
 """
-
-import time
 
 import numpy as np
 import openmm
@@ -183,59 +181,68 @@ def adhesion(edge, radius):
     return {"ratio": -energy_of(context) / np.trapezoid(2 * np.pi * r * phi, r)}
 
 
-def crowd(n, count, duration, seed, seconds):
-    """Free particles within a vesicle and between it and a hull, for a duration or `seconds`."""
-    mesh, hull = vesicle(n), vesicle(n).scaled(1.5)
+def crowd(n, count, duration, seed, box=None):
+    """Free particles inside of a vesicle and around it."""
+    mesh = vesicle(n)
     random = np.random.default_rng(seed)
     distance = 5.0
     # The middles of triangles are nearer to the centre than their corners.
     margin = distance + mean_edge(mesh) ** 2 / RADIUS / 2
     # The same density on both sides, so the same pressure.
-    lengths = np.cbrt(random.uniform(0, (1.5 * RADIUS - margin) ** 3, 2 * count))
+    room = box / 2 if box else 1.5 * RADIUS - margin
+    places = random.uniform(-room, room, (4 * count, 3))
+    lengths = np.linalg.norm(places, axis=1)
     free = (lengths < RADIUS - margin) | (lengths > RADIUS + distance)
-    lengths = lengths[free][:count]
-    within = lengths < RADIUS
-    directions = random.normal(size=(count, 3))
-    directions /= np.linalg.norm(directions, axis=1)[:, np.newaxis]
-    places = directions * lengths[:, np.newaxis]
-    both = side_by_side(mesh, hull)
+    places = places[free if box else free & (lengths < room)][:count]
+    within = np.linalg.norm(places, axis=1) < RADIUS
+    both = mesh if box else side_by_side(mesh, mesh.scaled(1.5))
     first = both.num_vertices
     system = openmm.System()
-    for mass in [HEAVY] * mesh.num_vertices + [0.0] * hull.num_vertices + [50.0] * count:
+    fixed = first - mesh.num_vertices
+    for mass in [HEAVY] * mesh.num_vertices + [0.0] * fixed + [50.0] * count:
         system.addParticle(mass)
-    for force in elasticity(mesh):
-        system.addForce(force)
     particles = np.arange(first, first + count)
-    system.addForce(ParticleSurfaceForce(both, particles, distance, KBT))
+    for force in (*elasticity(mesh), ParticleSurfaceForce(both, particles, distance, KBT)):
+        force.setUsesPeriodicBoundaryConditions(bool(box))
+        system.addForce(force)
+    if box:
+        system.setDefaultPeriodicBoxVectors(*(box * np.eye(3)))
     platform = openmm.Platform.getPlatformByName("Helfrich")
     context = openmm.Context(system, openmm.VerletIntegrator(CROWD_STEP), platform)
     context.setParameter("volume", mesh.volume)
     context.setPositions(np.concatenate([both.vertices, places]))
     context.setVelocitiesToTemperature(TEMPERATURE, seed)
-    start, steps, energies = time.perf_counter(), 0, []
-    while True:
-        state = context.getState(energy=True)
-        kinetic, potential = state.getKineticEnergy(), state.getPotentialEnergy()
-        energies.append([each / unit.kilojoule_per_mole for each in (kinetic, potential)])
-        if steps >= round(duration / CROWD_STEP) or time.perf_counter() - start > seconds:
-            break
+    energies = [energies_of(context)]
+    frames = max(1, round(duration / CROWD_STEP / 50))
+    for _ in range(frames):
         context.getIntegrator().step(50)
-        steps += 50
+        energies.append(energies_of(context))
     positions = positions_of(context)
-    moved = positions[first:]
-    at_end = inside(moved, positions[mesh.triangles])
+    moved, surface = positions[first:], positions[: mesh.num_vertices]
+    now = moved - surface.mean(axis=0)
+    if box:
+        now -= box * np.round(now / box)
+    at_end = inside(now, (surface - surface.mean(axis=0))[mesh.triangles])
     kinetic, potential = np.transpose(energies)
     total = (kinetic + potential) / kinetic[0]
-    lengths = np.linalg.norm(moved, axis=1)
+    hull = np.inf if box else 1.5 * RADIUS
     return {
-        "steps": steps,
+        "steps": 50 * frames,
+        "within": int(within.sum()),
         "through": int((at_end != within).sum()),
-        "escaped": int((lengths > 1.5 * RADIUS).sum()),
+        "escaped": int((np.linalg.norm(moved, axis=1) > hull).sum()),
         "moved": np.median(np.linalg.norm(moved - places, axis=1)),
         "drift": total[-1] - total[0],
         "scatter": abs(total - total[0]).max(),
         "potential": potential.max() / kinetic[0],
     }
+
+
+def energies_of(context):
+    """Kinetic and potential energy, kJ/mol."""
+    state = context.getState(energy=True)
+    both = state.getKineticEnergy(), state.getPotentialEnergy()
+    return [each / unit.kilojoule_per_mole for each in both]
 
 
 def inside(points, corners):
@@ -307,13 +314,15 @@ def main():
                 rows.append((*point.values(), run["ratio"] - 1))
         report.table(["edge", "radius", "E/theory − 1"], rows, "_adhesion")
     if only in (None, "crowd"):
-        sizes = [(10**4, 200.0)] if quick else [(10**6, 5e4), (10**4, 1e4)]
+        sizes = [(10**6, 2e4, 1000.0), (10**4, 7430.0, None)]
+        if quick:
+            sizes = [(10**4, 100.0, 400.0), (10**4, 100.0, None)]
         rows = []
-        for count, duration in sizes:
-            point = {"n": 7, "count": count, "seed": 1, "duration": duration}
-            for run in report.runs(crowd, [point | {"seconds": 300.0}], VERSION):
-                columns = ["particles", *run]
-                rows.append((count, *run.values()))
+        for count, duration, box in sizes:
+            point = {"n": 7, "count": count, "seed": 1, "duration": duration, "box": box}
+            for run in report.runs(crowd, [point], VERSION):
+                columns = ["particles", "box", *run]
+                rows.append((count, box or "", *run.values()))
         if rows:
             report.table(columns, rows, "_crowd")
 
