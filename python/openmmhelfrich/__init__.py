@@ -27,7 +27,12 @@ from .forces import *  # noqa: E402, F403
 from .forces import __all__ as _force_names  # noqa: E402
 from .mesh import Mesh  # noqa: E402
 from .ramps import harden  # noqa: E402
-from .reporters import MembraneReporter, ModeReporter, VTKHDFReporter  # noqa: E402
+from .reporters import (  # noqa: E402
+    MembraneReporter,
+    ModeReporter,
+    VirialReporter,
+    VTKHDFReporter,
+)
 from .states import load_state, save_state  # noqa: E402
 from .vesicle import Vesicle  # noqa: E402
 from .virials import virial  # noqa: E402
@@ -40,6 +45,7 @@ __all__ = [
     "MeshError",
     "ModeReporter",
     "VTKHDFReporter",
+    "VirialReporter",
     "Vesicle",
     "adapters",
     "analysis",

@@ -17,10 +17,21 @@ from .analysis._arrays import triangles_of
 from .analysis.tables import open_table
 from .analysis.vtkhdf import SurfaceFrame, SurfaceSeries
 from .forces import MonteCarloBondFlip, MonteCarloMembraneTension
+from .virials import virial
 
-__all__ = ["MembraneReporter", "ModeReporter", "VTKHDFReporter"]
+__all__ = ["MembraneReporter", "ModeReporter", "VTKHDFReporter", "VirialReporter"]
 
 _ENERGY = unit.kilojoule_per_mole
+
+# Of a symmetric tensor.
+_ELEMENTS = {
+    "xx": (0, 0),
+    "yy": (1, 1),
+    "zz": (2, 2),
+    "xy": (0, 1),
+    "xz": (0, 2),
+    "yz": (1, 2),
+}
 
 
 class _NextReport(dict):
@@ -271,6 +282,72 @@ class MembraneReporter(_TableReporter):
             kinetic / _ENERGY,
             temperature,
             *shape(positions, triangles, box=box),
+        ]
+
+
+class VirialReporter(_TableReporter):
+    """Writes virial, tension and pull of a membrane that spans the periodic box.
+
+    Columns: ``step``; ``time`` (ps); ``ax``, ``bx``, ``by``, ``cx``, ``cy``, ``cz`` (nm), the
+    vectors of the box; ``virial_xx``, ``_yy``, ``_zz``, ``_xy``, ``_xz``, ``_yz`` (kJ/mol), W =
+    ∂E/∂ε of `virial`, of all membrane forces of the Context; ``motion_xx`` and so on (kJ/mol), K =
+    Σ m v ⊗ v of the membrane's particles; ``tension`` (kJ/mol/nm²), (W_xx + W_yy − K_xx − K_yy) /
+    (2 ax by), of a sheet in the xy plane, positive where it would shrink; and ``pull`` (kJ/mol/nm),
+    (W_zz − K_zz) / cz, of a tube along z. Means of these two over a run are what
+    `MonteCarloMembraneTension` imposes: M. P. Allen, D. J. Tildesley, Computer Simulation of
+    Liquids, doi:10.1093/oso/9780198803195.001.0001, section 2.4.
+
+    Parameters
+    ----------
+    file, reportInterval, triangles, offset, append
+        As for `ModeReporter`.
+
+    Raises
+    ------
+    ValueError
+        As for `ModeReporter`; at the first report, a surface without periodic boundary conditions.
+
+    Examples
+    --------
+    >>> simulation.reporters.append(VirialReporter("virial.csv", 100, sheet))
+    >>> simulation.step(100_000)
+    >>> analysis.read_table("virial.csv")["tension"].mean()
+    """
+
+    _include = ("positions", "velocities")
+    _spans = True
+
+    def __init__(self, file, reportInterval, triangles, *, offset=0, append=False):
+        super().__init__(file, reportInterval, triangles, offset, append)
+
+    def _columns(self, simulation):
+        system = simulation.system
+        masses = [system.getParticleMass(int(i)) / unit.dalton for i in self._particles]
+        self._masses = np.array(masses)[:, np.newaxis]
+        return {
+            **dict.fromkeys(("ax", "bx", "by", "cx", "cy", "cz"), "nm"),
+            **{f"{name}_{ij}": "kJ/mol" for name in ("virial", "motion") for ij in _ELEMENTS},
+            "tension": "kJ/mol/nm^2",
+            "pull": "kJ/mol/nm",
+        }
+
+    def _values(self, simulation, state, positions, triangles, box):
+        if box is None:
+            raise ValueError(
+                "VirialReporter: the membrane is in no periodic box; call "
+                "setUsesPeriodicBoundaryConditions(True) of its forces"
+            )
+        speed = unit.nanometer / unit.picosecond
+        velocities = state.getVelocities(asNumpy=True).value_in_unit(speed)
+        velocities = np.asarray(velocities)[self._particles]
+        stored, motion = virial(simulation.context), velocities.T @ (self._masses * velocities)
+        xx, yy, zz = np.diag(stored - motion)
+        elements = list(_ELEMENTS.values())
+        return [
+            *box[np.tril_indices(3)],
+            *(matrix[ij] for matrix in (stored, motion) for ij in elements),
+            (xx + yy) / (2 * box[0, 0] * box[1, 1]),
+            zz / box[2, 2],
         ]
 
 

@@ -126,3 +126,70 @@ def test_the_box_of_a_context_is_the_present_one():
     context.setPositions(1.1 * mesh.vertices)
     areas = analysis.triangle_areas(context, mesh)
     assert areas.sum() == pytest.approx(1.21 * mesh.area, rel=1e-12)
+
+
+class TestVirialReporter:
+    def test_columns_are_what_they_say(self, tmp_path):
+        mesh = wrapped()
+        path = tmp_path / "virial.csv"
+        system = mm.System()
+        for index in range(mesh.num_vertices):
+            system.addParticle(20.0 + index)
+        system.setDefaultPeriodicBoxVectors(*mesh.box)
+        system.addForce(helfrich.BendingForce(mesh, 50))
+        system.addForce(helfrich.SurfaceAreaForce(mesh, 5, 0.9 * mesh.area))
+        platform = mm.Platform.getPlatformByName("Reference")
+        simulation = app.Simulation(app.Topology(), system, mm.VerletIntegrator(1e-9), platform)
+        simulation.context.setPositions(mesh.vertices)
+        simulation.context.setVelocitiesToTemperature(300, 1)
+        simulation.reporters.append(helfrich.VirialReporter(path, 1, mesh))
+        simulation.step(1)
+        table = analysis.read_table(path)
+        stored = helfrich.virial(simulation.context)
+        velocities = simulation.context.getState(velocities=True).getVelocities(asNumpy=True)._value
+        motion = sum(
+            (20.0 + index) * np.outer(velocity, velocity)
+            for index, velocity in enumerate(velocities)
+        )
+        for name, matrix in (("virial", stored), ("motion", motion)):
+            for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)):
+                found = table[f"{name}_{'xyz'[i]}{'xyz'[j]}"][0]
+                assert found == pytest.approx(matrix[i, j], abs=1e-9 * abs(matrix).max())
+        inner = np.diag(stored - motion)
+        assert table["tension"][0] == pytest.approx(inner[:2].sum() / 2 / (100.0 * 110.0))
+        assert table["pull"][0] == pytest.approx(inner[2] / 120.0)
+        vectors = [table[name][0] for name in ("ax", "bx", "by", "cx", "cy", "cz")]
+        assert vectors == [100.0, 20.0, 110.0, -30.0, 15.0, 120.0]
+
+    def test_the_mean_tension_is_the_one_that_is_imposed(self, tmp_path):
+        mesh = helfrich.Mesh.sheet(6, 6, 10.0, periodic=True)
+        system = mm.System()
+        for _ in range(mesh.num_vertices):
+            system.addParticle(50.0)
+        system.setDefaultPeriodicBoxVectors(*mesh.box)
+        system.addForce(helfrich.BendingForce(mesh, 50))
+        system.addForce(helfrich.SurfaceAreaForce(mesh, 20, mesh.area))
+        one = mesh.area / mesh.num_triangles
+        system.addForce(helfrich.TriangleAreaForce(mesh, 2, one))
+        system.addForce(helfrich.TriangleHeightForce(mesh, 7.0, 10.0))
+        mover = helfrich.MonteCarloMembraneTension(300, 0.5, 10)
+        mover.setRandomNumberSeed(1)
+        system.addForce(mover)
+        integrator = mm.LangevinMiddleIntegrator(300, 0.5, 0.1)
+        integrator.setRandomNumberSeed(1)
+        platform = mm.Platform.getPlatformByName("Helfrich")
+        simulation = app.Simulation(app.Topology(), system, integrator, platform)
+        simulation.context.setPositions(mesh.vertices)
+        simulation.context.setVelocitiesToTemperature(300, 1)
+        simulation.step(20000)
+        path = tmp_path / "virial.csv"
+        simulation.reporters.append(helfrich.VirialReporter(path, 20, mesh))
+        simulation.step(100000)
+        tension = analysis.mean_with_error(analysis.read_table(path)["tension"])
+        # What the momenta give is 0.029.
+        assert tension.error < 0.005
+        assert abs(tension.mean - 0.5) < 4 * tension.error
+
+    def test_a_membrane_in_no_box_is_refused(self, tmp_path):
+        with pytest.raises(ValueError, match=r"VirialReporter: .* no periodic box"):
+            report(sphere(), helfrich.VirialReporter(tmp_path / "v.csv", 1, sphere()))
