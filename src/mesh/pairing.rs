@@ -65,7 +65,9 @@ pub(super) fn checked_indices(triangles: &[[i64; 3]], count: usize) -> Result<Ve
 ///
 /// Edges come in the order in which the triangles first mention them, which keeps the edges of
 /// neighbouring triangles together in memory.
-pub(super) fn paired_half_edges(triangles: &[[u32; 3]]) -> Result<Vec<(HalfEdge, Option<HalfEdge>)>> {
+pub(super) fn paired_half_edges(
+    triangles: &[[u32; 3]],
+) -> Result<Vec<(HalfEdge, Option<HalfEdge>)>> {
     let mut halves = Vec::with_capacity(3 * triangles.len());
     for (triangle, corners) in triangles.iter().enumerate() {
         for side in 0..3 {

@@ -9,5 +9,5 @@ mod hinges;
 pub mod local;
 pub mod records;
 
-pub use flips::Touched;
+pub use flips::{Round, Touched};
 pub use records::{FlipRules, FlipState};
