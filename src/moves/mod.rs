@@ -3,6 +3,7 @@
 //! [`local`] computes the energy of any terms around a change, from the formulas that the evaluators use;
 //! [`flips`] are moves of the connectivity.
 
+mod elements;
 mod fetch;
 pub mod flips;
 mod hinges;
