@@ -151,6 +151,8 @@ impl Triangulation {
     }
 
     /// The images of the corners that A and B will have.
+    // Apart, so that attempts without it stay short.
+    #[inline(never)]
     fn flip_images(&mut self, quad: &Quad, taking: [u32; 2]) {
         let Some([i, _, k, l]) = self.images_of(quad) else { return };
         let [a, b] = quad.halves;

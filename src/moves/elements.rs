@@ -206,6 +206,8 @@ impl LocalEnergy {
     }
 
     /// The energies of those of the four vertices that are on no border, of the terms that act on no others.
+    // Apart, so that attempts without it stay short.
+    #[inline(never)]
     fn inner_vertices_of(
         &self,
         mesh: &Triangulation,
@@ -257,6 +259,8 @@ impl LocalEnergy {
 }
 
 /// By how much the angles at those of the four vertices that are on borders will grow.
+// Apart, so that attempts without it stay short.
+#[inline(never)]
 pub(super) fn angles_on_borders(mesh: &Triangulation, quad: &Quad, points: &[Vec3; 4]) -> f64 {
     // Corners by their places among i, j, k, l.
     let angle_at = |corner: [usize; 3]| match mesh.is_border(quad.vertices[corner[0]]) {

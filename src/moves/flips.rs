@@ -152,6 +152,8 @@ impl Touched<'_, '_> {
 
 /// Flip an edge, on which contacts have a say: unless the energy, of which `difference` is known already, rises above the limit.
 /// Returns its change if the flip is made.
+// Apart, so that attempts without it stay short.
+#[inline(never)]
 fn flip_touched(
     mesh: &mut Triangulation,
     touched: &mut [Touched],
