@@ -8,7 +8,7 @@ use openmm_helfrich::evaluator::{CpuEvaluator, InstructionSet, Survey};
 use openmm_helfrich::mesh::numbering::breadth_first;
 use openmm_helfrich::mesh::{Topology, Triangulation};
 use openmm_helfrich::moves::local::LocalEnergy;
-use openmm_helfrich::moves::{FlipRules, FlipState, flips};
+use openmm_helfrich::moves::{FlipRules, FlipState, Round, flips};
 use openmm_helfrich::potentials::Term;
 use std::f64::consts::PI;
 use std::hint::black_box;
@@ -69,14 +69,26 @@ fn main() {
             local.fill(mesh, &terms, None, survey).unwrap();
         };
         fill(&mesh, &mut local, &mut evaluator);
-        flips::attempt(&mut mesh, &mut local, &terms, &rules, 10 * edges, &mut state, &mut []);
+        flips::attempt(
+            &mut mesh,
+            &mut local,
+            &terms,
+            Round { rules: &rules, attempts: 10 * edges, state: &mut state },
+            &mut [],
+        );
         let runs = (200_000 / count).clamp(3, 50);
         evaluator.lay_out(&mesh, &order);
         let begin = shortest(runs, || timed(|| fill(&mesh, &mut local, &mut evaluator)));
         let before = state;
         let attempt = shortest(runs, || {
             timed(|| {
-                flips::attempt(&mut mesh, &mut local, &terms, &rules, edges, &mut state, &mut [])
+                flips::attempt(
+                    &mut mesh,
+                    &mut local,
+                    &terms,
+                    Round { rules: &rules, attempts: edges, state: &mut state },
+                    &mut [],
+                )
             }) / edges as f64
         });
         let accepted =

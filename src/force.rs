@@ -6,12 +6,13 @@ use crate::ffi::last_error;
 use crate::openmm::OpenMM_Force;
 use crate::potentials;
 use std::ffi::{CString, c_int};
-use std::ptr::NonNull;
 
 mod bond_flip;
 mod membrane_tension;
+mod owned;
 pub use bond_flip::MonteCarloBondFlip;
 pub use membrane_tension::{Axes, MonteCarloMembraneTension};
+use owned::Owned;
 
 /// A force on a membrane that no System owns yet.
 ///
@@ -26,7 +27,7 @@ pub use membrane_tension::{Axes, MonteCarloMembraneTension};
 /// # Ok::<(), openmm_helfrich::error::Error>(())
 /// ```
 pub struct MembraneForce {
-    force: NonNull<c_api::Force>,
+    force: Owned,
     class: &'static str,
 }
 
@@ -56,7 +57,8 @@ impl MembraneForce {
         let force = unsafe {
             c_api::create(name.as_ptr(), corners.as_ptr(), count(triangles.len())?, values, 0)
         };
-        let force = NonNull::new(force).ok_or_else(|| Error::Contract(last_error()))?;
+        // SAFETY: nobody else has it.
+        let force = unsafe { Owned::new(force) }?;
         Ok(Self { force, class: known })
     }
 
@@ -207,20 +209,11 @@ impl MembraneForce {
     /// The force as OpenMM's C API knows it. Keep it to steer a force that a System has taken over, with the
     /// functions of [`crate::c_api`]; it lives as long as the System.
     pub fn as_openmm(&self) -> *mut OpenMM_Force {
-        self.force.as_ptr().cast()
+        self.force.as_openmm()
     }
 
     /// The force for `OpenMM_System_addForce`, which takes it over.
     pub fn into_openmm(self) -> *mut OpenMM_Force {
-        let force = self.force.as_ptr().cast();
-        std::mem::forget(self);
-        force
-    }
-}
-
-impl Drop for MembraneForce {
-    fn drop(&mut self) {
-        // SAFETY: no System has taken the force over.
-        unsafe { c_api::Helfrich_MembraneForce_destroy(self.force.as_ptr()) };
+        self.force.into_openmm()
     }
 }

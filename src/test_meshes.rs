@@ -1,4 +1,6 @@
-//! Small closed meshes for the unit tests.
+//! Small meshes for the unit tests.
+
+use crate::mesh::{Topology, Triangulation};
 
 /// Vertices and outward triangles.
 pub type TestMesh = (Vec<[f64; 3]>, Vec<[i64; 3]>);
@@ -66,6 +68,24 @@ pub fn icosahedron() -> TestMesh {
         [9, 8, 1],
     ];
     (vertices, triangles)
+}
+
+/// What a validation from nothing says of the same triangles.
+pub fn rebuilt(mesh: &Triangulation) -> Triangulation {
+    let triangles: Vec<_> = mesh.triangles().iter().map(|t| t.map(i64::from)).collect();
+    Triangulation::new(&Topology::new(&triangles, mesh.num_vertices()).unwrap())
+}
+
+/// The icosahedron; the same with a hole; with two, one of them of several triangles; and as few triangles as have an
+/// edge to flip.
+pub fn with_holes() -> [Triangulation; 4] {
+    let whole = icosahedron().1;
+    let mut one = whole.clone();
+    one.remove(7);
+    let two = whole.iter().copied().filter(|t| !t.contains(&0) && *t != [3, 2, 6]).collect();
+    let few = whole[..5].to_vec();
+    [whole, one, two, few]
+        .map(|triangles| rebuilt(&Triangulation::new(&Topology::new(&triangles, 12).unwrap())))
 }
 
 /// Numbers in [−1, 1) that look random and never change.

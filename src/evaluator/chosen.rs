@@ -28,8 +28,12 @@ pub struct ChosenEvaluator {
     /// What holds, once it is known.
     choice: Option<Choice>,
     cpu: Option<CpuEvaluator>,
+    /// Whether it has been told of the present connectivity.
+    cpu_is_current: bool,
     #[cfg(feature = "gpu")]
     gpu: Option<GpuEvaluator>,
+    #[cfg(feature = "gpu")]
+    gpu_is_current: bool,
     /// Whether it is settled that the processor computes.
     settled_on_cpu: bool,
 }
@@ -59,8 +63,11 @@ impl ChosenEvaluator {
             own: None,
             choice: None,
             cpu: None,
+            cpu_is_current: true,
             #[cfg(feature = "gpu")]
             gpu: None,
+            #[cfg(feature = "gpu")]
+            gpu_is_current: true,
             settled_on_cpu: false,
         }
     }
@@ -100,25 +107,19 @@ impl ChosenEvaluator {
             self.gpu = None;
             if choice.kind == Kind::Gpu {
                 self.gpu = Some(Self::start_gpu(mesh, choice)?);
+                self.gpu_is_current = true;
             }
         }
         Ok(())
     }
 
-    /// Go on with other connectivity, or with another order of the vertices. What has not been made yet will be
-    /// made of what there is then.
-    ///
-    /// # Errors
-    /// Those of a GPU that was asked for.
-    pub fn connectivity_changed(&mut self, present: Present) -> Result<()> {
-        if let Some(cpu) = &mut self.cpu {
-            cpu.lay_out(present.mesh, present.order);
-        }
+    /// Go on with other connectivity, or with another order of the vertices, from the next evaluation on.
+    pub fn connectivity_changed(&mut self) {
+        self.cpu_is_current = false;
         #[cfg(feature = "gpu")]
-        if let Some(gpu) = &mut self.gpu {
-            gpu.set_topology(Arc::new(Topology::of(present.mesh)));
+        {
+            self.gpu_is_current = false;
         }
-        Ok(())
     }
 
     /// Evaluate terms, as [`CpuEvaluator::evaluate`] does.
@@ -173,11 +174,18 @@ impl ChosenEvaluator {
     }
 
     fn cpu(&mut self, present: Present) -> &mut CpuEvaluator {
+        let Present { mesh, order, cell } = present;
+        let is_current = std::mem::replace(&mut self.cpu_is_current, true);
+        if let Some(cpu) = &mut self.cpu
+            && !is_current
+        {
+            cpu.lay_out(mesh, order);
+        }
         let threads = self.threads;
-        let cpu = self.cpu.get_or_insert_with(|| {
-            CpuEvaluator::of(present.mesh, present.order, InstructionSet::Best, threads)
-        });
-        if let Some(cell) = present.cell {
+        let cpu = self
+            .cpu
+            .get_or_insert_with(|| CpuEvaluator::of(mesh, order, InstructionSet::Best, threads));
+        if let Some(cell) = cell {
             cpu.set_cell(cell);
         }
         cpu
@@ -268,12 +276,14 @@ impl ChosenEvaluator {
                 return Ok(false);
             }
             self.gpu = Some(gpu);
+            self.gpu_is_current = true;
             self.cpu = None;
         }
-        match &mut self.gpu {
-            Some(gpu) => gpu.evaluate(terms, positions, contributions, forces),
-            None => Ok(false),
+        let Some(gpu) = &mut self.gpu else { return Ok(false) };
+        if !std::mem::replace(&mut self.gpu_is_current, true) {
+            gpu.set_topology(Arc::new(Topology::of(present.mesh)));
         }
+        gpu.evaluate(terms, positions, contributions, forces)
     }
 
     /// What an earlier measurement says, or else one on this mesh.

@@ -1,6 +1,6 @@
 //! The readable reference: plain scalar code, one pass for each kind of element.
 
-use super::checks::{check_energies, culprit};
+use super::checks::check_energies;
 use super::passes::{Nothing, fill, fill_pair};
 use crate::error::Result;
 use crate::mesh::cell::{Cell, Image};
@@ -10,10 +10,15 @@ use crate::mesh::geometry::{
 };
 use crate::mesh::vertex_vectors::{VertexVectors, add_corner, corner_stress};
 use crate::mesh::{NONE, Topology};
-use crate::potentials::{Contribution, Edges, Needs, Term, Triangles, Vertices};
+use crate::potentials::{Contribution, Needs, Term};
 use nalgebra::Matrix3;
 use std::ops::AddAssign;
 use std::sync::Arc;
+
+mod places;
+mod terms;
+
+use places::Places;
 
 /// From this many triangles on, threads save more than waking them costs.
 const PARALLEL_TRIANGLES: usize = 8192;
@@ -23,12 +28,8 @@ const PARALLEL_TRIANGLES: usize = 8192;
 /// Work is O(N), no memory is allocated once the buffers exist (but for a few words per pass when
 /// threads take part), and the bits of the result do not depend on the number of threads.
 pub struct ReferenceEvaluator {
-    topology: Arc<Topology>,
+    places: Places,
     parallel: bool,
-    /// Relative to the first vertex, so that a mesh far from the origin loses no digits.
-    positions: Vec<Vec3>,
-    /// How far corners of triangles are from their vertices where the mesh spans a periodic box; otherwise empty.
-    shifts: Vec<[Vec3; 3]>,
     triangles: Vec<TriangleGeometry>,
     edges: Vec<EdgeGeometry>,
     vertices: Vec<VertexGeometry>,
@@ -66,42 +67,6 @@ impl AddAssign for TriangleSums {
     }
 }
 
-/// Where the corners of triangles are.
-struct Places<'a> {
-    topology: &'a Topology,
-    positions: &'a [Vec3],
-    shifts: &'a [[Vec3; 3]],
-}
-
-/// A macro, since passes write to other fields meanwhile.
-macro_rules! places {
-    ($evaluator:ident) => {
-        Places {
-            topology: &$evaluator.topology,
-            positions: &$evaluator.positions,
-            shifts: &$evaluator.shifts,
-        }
-    };
-}
-
-impl Places<'_> {
-    fn corners(&self, triangle: usize) -> [Vec3; 3] {
-        let corners = self.topology.triangles[triangle].map(|v| self.positions[v as usize]);
-        match self.shifts.get(triangle) {
-            None => corners,
-            Some(shifts) => std::array::from_fn(|k| corners[k] + shifts[k]),
-        }
-    }
-
-    /// The corners, beginning with that of a vertex.
-    fn from(&self, triangle: u32, vertex: u32) -> [Vec3; 3] {
-        let mut corners = self.corners(triangle as usize);
-        let vertices = self.topology.triangles[triangle as usize];
-        corners.rotate_left(vertices.iter().position(|v| *v == vertex).unwrap_or(0));
-        corners
-    }
-}
-
 impl ReferenceEvaluator {
     /// Buffers for a mesh.
     pub fn new(topology: Arc<Topology>) -> Self {
@@ -111,8 +76,6 @@ impl ReferenceEvaluator {
         let geometry = TriangleGeometry { normal: Vec3::zeros(), twice_area: 0.0, dots: [0.0; 3] };
         Self {
             parallel: t >= PARALLEL_TRIANGLES,
-            positions: vec![Vec3::zeros(); v],
-            shifts: Vec::new(),
             triangles: vec![geometry; t],
             edges: vec![EdgeGeometry::default(); topology.edges.len()],
             vertices: vec![VertexGeometry::default(); v],
@@ -125,7 +88,7 @@ impl ReferenceEvaluator {
             corner_forces: vec![[Vec3::zeros(); 3]; t],
             forces: vec![Vec3::zeros(); v],
             on_border: if is_closed { Vec::new() } else { on_border.collect() },
-            topology,
+            places: Places::new(topology),
         }
     }
 
@@ -133,7 +96,7 @@ impl ReferenceEvaluator {
     ///
     /// [`Triangulation::images`]: crate::mesh::Triangulation::images
     pub fn set_images(&mut self, images: &[[Image; 3]], cell: &Cell) {
-        self.shifts = images.iter().map(|images| images.map(|image| cell.shift(image))).collect();
+        self.places.set_images(images, cell);
     }
 
     /// As [`super::CpuEvaluator::evaluate`].
@@ -163,7 +126,7 @@ impl ReferenceEvaluator {
         let (needs, totals, partials) = self.forward(terms, positions, &mut [])?;
         self.backward(needs, &TotalPartials { volume: 0.0, ..partials });
         let mut virial = Matrix3::identity() * (partials.volume * totals.volume);
-        let places = places!(self);
+        let places = &self.places;
         for (triangle, forces) in self.corner_forces.iter().enumerate() {
             let corners = places.corners(triangle);
             for k in 1..3 {
@@ -181,16 +144,8 @@ impl ReferenceEvaluator {
         contributions: &mut [Contribution],
     ) -> Result<(Needs, Totals, TotalPartials)> {
         let needs = terms.iter().fold(Needs::empty(), |all, term| all | term.potential.needs(term));
-        self.gather_positions(positions);
-        let totals = self.forward_triangles().ok_or_else(|| {
-            let topology = &self.topology;
-            let triangles = (0..topology.triangles.len()).map(|triangle| {
-                let shifts = self.shifts.get(triangle).copied().unwrap_or_default();
-                let particles = topology.particles_of(triangle);
-                std::array::from_fn(|k| (particles[k], shifts[k]))
-            });
-            culprit(&topology.particles, triangles, positions)
-        })?;
+        self.places.gather(positions, self.parallel);
+        let totals = self.forward_triangles().ok_or_else(|| self.places.culprit(positions))?;
         if needs.intersects(Needs::EDGES | Needs::CURVATURES) {
             self.forward_edges();
         }
@@ -214,22 +169,10 @@ impl ReferenceEvaluator {
         self.backward_triangles(needs, totals);
     }
 
-    fn gather_positions(&mut self, all: &[f64]) {
-        let particles = &self.topology.particles;
-        let position = |particle: u32| Vec3::from_column_slice(&all[3 * particle as usize..][..3]);
-        let origin = position(particles[0]);
-        fill(self.parallel, &mut self.positions, |first, chunk| {
-            for (slot, &particle) in chunk.iter_mut().zip(&particles[first..]) {
-                *slot = position(particle) - origin;
-            }
-            Nothing
-        });
-    }
-
     /// Fails where the mesh has no geometry: at a triangle without area, or where positions are not
     /// finite.
     fn forward_triangles(&mut self) -> Option<Totals> {
-        let places = places!(self);
+        let places = &self.places;
         let sums = fill(self.parallel, &mut self.triangles, |first, chunk| {
             let mut sums = TriangleSums::default();
             for (offset, triangle) in chunk.iter_mut().enumerate() {
@@ -246,8 +189,8 @@ impl ReferenceEvaluator {
     }
 
     fn forward_edges(&mut self) {
-        let (places, triangles) = (places!(self), &self.triangles);
-        let topology = &self.topology;
+        let (places, triangles) = (&self.places, &self.triangles);
+        let topology = &self.places.topology;
         fill(self.parallel, &mut self.edges, |first, chunk| {
             for (slot, edge) in chunk.iter_mut().zip(&topology.edges[first..]) {
                 if edge.triangles[1] == NONE {
@@ -266,7 +209,7 @@ impl ReferenceEvaluator {
     }
 
     fn forward_vertices(&mut self, needs: Needs) {
-        let (triangles, edges, topology) = (&self.triangles, &self.edges, &self.topology);
+        let (triangles, edges, topology) = (&self.triangles, &self.edges, &self.places.topology);
         fill(self.parallel, &mut self.vertices, |first, chunk| {
             for (offset, slot) in chunk.iter_mut().enumerate() {
                 let ring = topology.ring(first + offset);
@@ -295,8 +238,8 @@ impl ReferenceEvaluator {
     fn forward_vectors(&mut self, needs: Needs) {
         self.vectors.resize(self.vertices.len(), VertexVectors::default());
         self.vector_partials.resize(self.vertices.len(), VertexVectors::default());
-        let (places, triangles) = (places!(self), &self.triangles);
-        let topology = &self.topology;
+        let (places, triangles) = (&self.places, &self.triangles);
+        let topology = &self.places.topology;
         let normals = needs.contains(Needs::NORMALS);
         fill_pair(
             self.parallel,
@@ -318,79 +261,8 @@ impl ReferenceEvaluator {
         );
     }
 
-    /// Let every term add its energy and its partial derivatives.
-    fn potentials(
-        &mut self,
-        terms: &[&Term],
-        needs: Needs,
-        totals: &Totals,
-        contributions: &mut [Contribution],
-    ) -> TotalPartials {
-        let mut total_partials = TotalPartials::default();
-        if needs.contains(Needs::TRIANGLES) {
-            self.triangle_partials.fill(TrianglePartials::default());
-        }
-        if needs.contains(Needs::EDGES) {
-            self.edge_partials.fill(EdgePartials::default());
-        }
-        if needs.contains(Needs::VERTICES) {
-            self.vertex_partials.fill(VertexPartials::default());
-        }
-        if needs.contains(Needs::VECTORS) {
-            self.vector_partials.fill(VertexVectors::default());
-        }
-        for (&term, contribution) in terms.iter().zip(contributions) {
-            let (potential, needs) = (term.potential, term.potential.needs(term));
-            *contribution = Contribution::default();
-            if needs.contains(Needs::TOTALS) {
-                *contribution += potential.totals(term, totals, &mut total_partials);
-            }
-            if needs.contains(Needs::TRIANGLES) {
-                let triangles = &self.triangles;
-                *contribution +=
-                    fill(self.parallel, &mut self.triangle_partials, |first, chunk| {
-                        let geometry = &triangles[first..][..chunk.len()];
-                        let partials = chunk;
-                        potential.triangles(term, Triangles::Plain { first, geometry, partials })
-                    });
-            }
-            if needs.contains(Needs::EDGES) {
-                let edges = &self.edges;
-                *contribution += fill(self.parallel, &mut self.edge_partials, |first, chunk| {
-                    let geometry = &edges[first..][..chunk.len()];
-                    potential.edges(term, Edges::Plain { geometry, partials: chunk })
-                });
-            }
-            if needs.contains(Needs::VERTICES) {
-                *contribution += self.potential_of_vertices(term, needs);
-            }
-        }
-        total_partials
-    }
-
-    fn potential_of_vertices(&mut self, term: &Term, needs: Needs) -> Contribution {
-        let (vertices, all_vectors) = (&self.vertices, &self.vectors);
-        let wants_vectors = needs.contains(Needs::VECTORS);
-        let left_out = if term.potential.acts_at_borders() { &[] } else { &self.on_border[..] };
-        let beside: &mut [_] = if wants_vectors { &mut self.vector_partials } else { &mut [] };
-        fill_pair(self.parallel, &mut self.vertex_partials, beside, |first, scalars, vectors| {
-            let here = first..first + scalars.len();
-            let known: &[_] = if wants_vectors { &all_vectors[here.clone()] } else { &[] };
-            let run = Vertices::Plain {
-                first,
-                total: vertices.len(),
-                left_out: left_out.get(here.clone()).unwrap_or_default(),
-                scalars: &vertices[here],
-                vectors: known,
-                scalar_partials: scalars,
-                vector_partials: vectors,
-            };
-            term.potential.vertices(term, run)
-        })
-    }
-
     fn backward_edges(&mut self, needs: Needs) {
-        let (edges, topology) = (&self.edges, &self.topology);
+        let (edges, topology) = (&self.edges, &self.places.topology);
         let (vertex_partials, edge_partials) = (&self.vertex_partials, &self.edge_partials);
         fill(self.parallel, &mut self.tensions, |first, chunk| {
             for (offset, slot) in chunk.iter_mut().enumerate() {
@@ -409,8 +281,8 @@ impl ReferenceEvaluator {
     }
 
     fn backward_triangles(&mut self, needs: Needs, totals: &TotalPartials) {
-        let topology = &self.topology;
-        let (places, triangles) = (places!(self), &self.triangles);
+        let topology = &self.places.topology;
+        let (places, triangles) = (&self.places, &self.triangles);
         let (tensions, triangle_partials) = (&self.tensions, &self.triangle_partials);
         let (vertex_partials, vector_partials) = (&self.vertex_partials, &self.vector_partials);
         let by_edges = needs.intersects(Needs::EDGES | Needs::CURVATURES);
@@ -459,7 +331,7 @@ impl ReferenceEvaluator {
     }
 
     fn add_forces(&self, forces: &mut [f64]) {
-        for (force, &particle) in self.forces.iter().zip(&self.topology.particles) {
+        for (force, &particle) in self.forces.iter().zip(&self.places.topology.particles) {
             for (sum, part) in forces[3 * particle as usize..][..3].iter_mut().zip(force) {
                 *sum += part;
             }

@@ -2,10 +2,11 @@
 
 use super::{TermInput, guarded, slice, text};
 use crate::error::Result;
-use crate::membrane::{self, Membrane};
+use crate::membrane::{self, Configuration, Membrane};
 use crate::mesh::Cell;
 use crate::mesh::triangulation::next;
 use crate::potentials::{Contribution, REGISTRY, Term};
+use smallvec::SmallVec;
 use std::ffi::{c_char, c_int};
 use std::slice as slices;
 
@@ -105,6 +106,18 @@ impl TermInput {
     }
 }
 
+/// The usual handful of them costs no allocation.
+///
+/// # Safety
+/// The terms must be as many as is said, and as [`TermInput::term`] wants them.
+pub(super) unsafe fn read_terms<'a>(
+    inputs: *const TermInput,
+    count: i64,
+) -> SmallVec<[Term<'a>; 8]> {
+    let inputs = unsafe { slice(inputs, count as usize) };
+    inputs.iter().map(|input| unsafe { input.term() }).collect()
+}
+
 /// Refuse a term that cannot be evaluated on a membrane.
 ///
 /// # Safety
@@ -161,21 +174,18 @@ pub unsafe extern "C" fn Helfrich_Membrane_evaluate(
     forces: *mut f64,
 ) -> c_int {
     guarded(unsafe { text(subject) }, || {
-        let (count, length) = (num_terms as usize, 3 * num_particles as usize);
-        let inputs = unsafe { slice(terms, count) };
+        let terms = unsafe { read_terms(terms, num_terms) };
         let contributions = if contributions.is_null() {
             &mut []
         } else {
-            unsafe { slices::from_raw_parts_mut(contributions, count) }
+            unsafe { slices::from_raw_parts_mut(contributions, terms.len()) }
         };
-        let positions = unsafe { slice(positions, length) };
+        let positions = unsafe { slice(positions, 3 * num_particles as usize) };
+        let forces = (!forces.is_null())
+            .then(|| unsafe { slices::from_raw_parts_mut(forces, positions.len()) });
         let cell = unsafe { cell(box_vectors) }?;
-        let forces =
-            (!forces.is_null()).then(|| unsafe { slices::from_raw_parts_mut(forces, length) });
-        // The usual handful of terms costs no allocation.
-        let terms: smallvec::SmallVec<[Term; 8]> =
-            inputs.iter().map(|input| unsafe { input.term() }).collect();
-        unsafe { &mut *membrane }.evaluate(&terms, positions, cell.as_ref(), contributions, forces)
+        let at = Configuration::new(positions, cell.as_ref());
+        unsafe { &mut *membrane }.evaluate(&terms, at, contributions, forces)
     })
 }
 
@@ -195,11 +205,11 @@ pub unsafe extern "C" fn Helfrich_Membrane_addVirial(
     virial: *mut f64,
 ) -> c_int {
     guarded(unsafe { text(subject) }, || {
-        let inputs = unsafe { slice(terms, num_terms as usize) };
-        let terms: Vec<_> = inputs.iter().map(|input| unsafe { input.term() }).collect();
+        let terms = unsafe { read_terms(terms, num_terms) };
         let positions = unsafe { slice(positions, 3 * num_particles as usize) };
         let cell = unsafe { cell(box_vectors) }?;
-        let found = unsafe { &mut *membrane }.virial(&terms, positions, cell.as_ref())?;
+        let at = Configuration::new(positions, cell.as_ref());
+        let found = unsafe { &mut *membrane }.virial(&terms, at)?;
         let virial = unsafe { slices::from_raw_parts_mut(virial, 9) };
         // Matrices are stored by columns.
         virial.iter_mut().zip(&found.transpose()).for_each(|(sum, part)| *sum += part);

@@ -1,10 +1,9 @@
 //! The C interface to moves of a membrane's connectivity, and to the connectivity itself.
 
-use super::membrane::cell;
+use super::membrane::{cell, read_terms};
 use super::{FollowerInput, TermInput, guarded, slice, text};
-use crate::membrane::{Connectivity, Follower, Membrane};
-use crate::moves::{FlipRules, FlipState};
-use crate::potentials::Term;
+use crate::membrane::{Configuration, Connectivity, Follower, Membrane};
+use crate::moves::{FlipRules, FlipState, Round};
 use smallvec::SmallVec;
 use std::ffi::{c_char, c_int};
 use std::slice as slices;
@@ -49,16 +48,19 @@ pub unsafe extern "C" fn Helfrich_Membrane_flip(
     num_followers: i64,
 ) -> c_int {
     guarded(unsafe { text(subject) }, || {
-        let inputs = unsafe { slice(terms, num_terms as usize) };
-        let terms: SmallVec<[Term; 8]> =
-            inputs.iter().map(|input| unsafe { input.term() }).collect();
+        let terms = unsafe { read_terms(terms, num_terms) };
         let positions = unsafe { slice(positions, 3 * num_particles as usize) };
+        let cell = unsafe { cell(box_vectors) }?;
+        let at = Configuration::new(positions, cell.as_ref());
         let (membrane, rules, state) = unsafe { (&mut *membrane, &*rules, &mut *state) };
+        let round = Round { rules, attempts: attempts as u64, state };
         let change = (!force_change.is_null())
             .then(|| unsafe { slices::from_raw_parts_mut(force_change, positions.len()) });
         let followers = unsafe { slice(followers, num_followers as usize) };
-        let their_terms: SmallVec<[SmallVec<[Term; 2]>; 1]> =
-            followers.iter().map(|follower| unsafe { follower.terms() }).collect();
+        let their_terms: SmallVec<[_; 1]> = followers
+            .iter()
+            .map(|follower| unsafe { read_terms(follower.terms, follower.num_terms) })
+            .collect();
         let pairs = followers.iter().zip(&their_terms);
         let mut followers: SmallVec<[Follower; 1]> = pairs
             .map(|(follower, terms)| Follower {
@@ -67,29 +69,10 @@ pub unsafe extern "C" fn Helfrich_Membrane_flip(
                 terms,
             })
             .collect();
-        let cell = unsafe { cell(box_vectors) }?;
-        let count = membrane.flip_together(
-            &terms,
-            positions,
-            cell.as_ref(),
-            rules,
-            attempts as u64,
-            state,
-            change,
-            &mut followers,
-        )?;
+        let count = membrane.flip(&terms, at, round, change, &mut followers)?;
         unsafe { made.write(count as i64) };
         Ok(())
     })
-}
-
-impl FollowerInput {
-    /// # Safety
-    /// The terms must be as many as they say, and as [`TermInput::term`] wants them.
-    unsafe fn terms(&self) -> SmallVec<[Term<'_>; 2]> {
-        let inputs = unsafe { slice(self.terms, self.num_terms as usize) };
-        inputs.iter().map(|input| unsafe { input.term() }).collect()
-    }
 }
 
 /// Number of triangles, which never changes.

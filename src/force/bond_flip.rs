@@ -1,12 +1,12 @@
 //! Bond flips for Rust programs.
 
 use super::check;
+use super::owned::{Owned, statistic};
 use crate::c_api;
 use crate::error::{Error, Result};
 use crate::ffi::last_error;
 use crate::openmm::{OpenMM_Context, OpenMM_Force};
-use std::ffi::{CString, c_int};
-use std::ptr::NonNull;
+use std::ffi::c_int;
 
 /// What makes a membrane fluid: an OpenMM `Force` that flips edges of its triangles. The C++ class of this name
 /// says how.
@@ -21,7 +21,7 @@ use std::ptr::NonNull;
 /// # Ok::<(), openmm_helfrich::error::Error>(())
 /// ```
 pub struct MonteCarloBondFlip {
-    force: NonNull<c_api::Force>,
+    force: Owned,
 }
 
 impl MonteCarloBondFlip {
@@ -47,7 +47,8 @@ impl MonteCarloBondFlip {
                 0.0,
             )
         };
-        let force = NonNull::new(force).ok_or_else(|| Error::Contract(last_error()))?;
+        // SAFETY: nobody else has it.
+        let force = unsafe { Owned::new(force) }?;
         Ok(Self { force })
     }
 
@@ -139,19 +140,8 @@ impl MonteCarloBondFlip {
         context: *mut OpenMM_Context,
         name: &str,
     ) -> Result<f64> {
-        let name = CString::new(name)
-            .map_err(|_| Error::Contract(format!("the name {name:?} has a NUL inside")))?;
-        let mut value = f64::NAN;
-        // SAFETY: the caller's promise, and the name ends with a NUL.
-        check(unsafe {
-            c_api::Helfrich_MonteCarloBondFlip_getStatistic(
-                force.cast(),
-                context.cast(),
-                name.as_ptr(),
-                &mut value,
-            )
-        })?;
-        Ok(value)
+        // SAFETY: the caller's promise.
+        unsafe { statistic(c_api::Helfrich_MonteCarloBondFlip_getStatistic, force, context, name) }
     }
 
     /// The particles at the corners of the triangles in a Context, for any membrane force or mover of it.
@@ -182,20 +172,11 @@ impl MonteCarloBondFlip {
 
     /// The force as OpenMM's C API knows it, to steer it when a System has taken it over.
     pub fn as_openmm(&self) -> *mut OpenMM_Force {
-        self.force.as_ptr().cast()
+        self.force.as_openmm()
     }
 
     /// The force for `OpenMM_System_addForce`, which takes it over.
     pub fn into_openmm(self) -> *mut OpenMM_Force {
-        let force = self.as_openmm();
-        std::mem::forget(self);
-        force
-    }
-}
-
-impl Drop for MonteCarloBondFlip {
-    fn drop(&mut self) {
-        // SAFETY: no System has taken it over.
-        unsafe { c_api::Helfrich_MembraneForce_destroy(self.force.as_ptr()) };
+        self.force.into_openmm()
     }
 }

@@ -1,12 +1,11 @@
 //! Constant tension for Rust programs.
 
 use super::check;
+use super::owned::{Owned, statistic};
 use crate::c_api;
-use crate::error::{Error, Result};
-use crate::ffi::last_error;
+use crate::error::Result;
 use crate::openmm::{OpenMM_Context, OpenMM_Force};
-use std::ffi::{CString, c_int};
-use std::ptr::NonNull;
+use std::ffi::c_int;
 
 /// Which edges of the box change.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,7 +32,7 @@ pub enum Axes {
 /// # Ok::<(), openmm_helfrich::error::Error>(())
 /// ```
 pub struct MonteCarloMembraneTension {
-    force: NonNull<c_api::Force>,
+    force: Owned,
 }
 
 impl MonteCarloMembraneTension {
@@ -54,7 +53,8 @@ impl MonteCarloMembraneTension {
                 along_z,
             )
         };
-        let force = NonNull::new(force).ok_or_else(|| Error::Contract(last_error()))?;
+        // SAFETY: nobody else has it.
+        let force = unsafe { Owned::new(force) }?;
         Ok(Self { force })
     }
 
@@ -121,37 +121,19 @@ impl MonteCarloMembraneTension {
         context: *mut OpenMM_Context,
         name: &str,
     ) -> Result<f64> {
-        let name = CString::new(name)
-            .map_err(|_| Error::Contract(format!("the name {name:?} has a NUL inside")))?;
-        let mut value = f64::NAN;
-        // SAFETY: the caller's promise, and the name ends with a NUL.
-        check(unsafe {
-            c_api::Helfrich_MonteCarloMembraneTension_getStatistic(
-                force.cast(),
-                context.cast(),
-                name.as_ptr(),
-                &mut value,
-            )
-        })?;
-        Ok(value)
+        // SAFETY: the caller's promise.
+        unsafe {
+            statistic(c_api::Helfrich_MonteCarloMembraneTension_getStatistic, force, context, name)
+        }
     }
 
     /// The force as OpenMM's C API knows it, to steer it when a System has taken it over.
     pub fn as_openmm(&self) -> *mut OpenMM_Force {
-        self.force.as_ptr().cast()
+        self.force.as_openmm()
     }
 
     /// The force for `OpenMM_System_addForce`, which takes it over.
     pub fn into_openmm(self) -> *mut OpenMM_Force {
-        let force = self.as_openmm();
-        std::mem::forget(self);
-        force
-    }
-}
-
-impl Drop for MonteCarloMembraneTension {
-    fn drop(&mut self) {
-        // SAFETY: no System has taken it over.
-        unsafe { c_api::Helfrich_MembraneForce_destroy(self.force.as_ptr()) };
+        self.force.into_openmm()
     }
 }

@@ -1,4 +1,4 @@
-//! The borders of a surface: how long they are and how they turn, forward and backward.
+//! The borders of a surface: where they are, how long they are and how they turn, forward and backward.
 //!
 //! With θ the angles of the triangles at a vertex, a border turns by π − Σ θ at each of its vertices, which is its
 //! geodesic curvature integrated over the vertex' part of it, and an inner vertex has the Gaussian curvature 2π − Σ θ,
@@ -9,6 +9,27 @@ use super::geometry::Vec3;
 use super::topology::NONE;
 use super::triangulation::{Triangulation, next, previous};
 use std::f64::consts::PI;
+
+impl Triangulation {
+    /// The vertices of each border, with the surface on the left, from the lowest one.
+    pub fn border_loops(&self) -> Vec<Vec<u32>> {
+        let mut loops: Vec<Vec<u32>> = Vec::new();
+        let mut met = vec![false; self.num_vertices()];
+        for first in 0..self.num_vertices() as u32 {
+            let mut vertex = first;
+            let mut border = Vec::new();
+            while self.is_border(vertex) && !met[vertex as usize] {
+                met[vertex as usize] = true;
+                border.push(vertex);
+                vertex = self.origin(next(self.leaving(vertex)));
+            }
+            if !border.is_empty() {
+                loops.push(border);
+            }
+        }
+        loops
+    }
+}
 
 /// Sums over all borders.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -119,7 +140,7 @@ fn angle_gradient([a, b, c]: [Vec3; 3]) -> [Vec3; 2] {
 mod tests {
     use super::*;
     use crate::mesh::Topology;
-    use crate::test_meshes::{icosahedron, noise};
+    use crate::test_meshes::{icosahedron, noise, with_holes};
 
     /// An icosahedron with two holes, one of them of several triangles, and moved vertices.
     fn mesh() -> (Triangulation, Vec<Vec3>) {
@@ -131,6 +152,22 @@ mod tests {
             |particle: &u32| Vec3::from(vertices[*particle as usize].map(|x| x + 0.3 * random()));
         let positions = mesh.particles().iter().map(place).collect();
         (mesh, positions)
+    }
+
+    #[test]
+    fn borders_are_loops_with_the_surface_on_the_left() {
+        let lengths = with_holes().into_iter().map(|mesh| {
+            let loops = mesh.border_loops();
+            for border in &loops {
+                for (n, &vertex) in border.iter().enumerate() {
+                    let half = mesh.leaving(vertex);
+                    assert_eq!((mesh.origin(half), mesh.twin(half)), (vertex, NONE));
+                    assert_eq!(mesh.origin(next(half)), border[(n + 1) % border.len()]);
+                }
+            }
+            loops.iter().map(Vec::len).collect::<Vec<_>>()
+        });
+        assert_eq!(lengths.collect::<Vec<_>>(), [vec![], vec![3], vec![5, 3], vec![5]]);
     }
 
     #[test]

@@ -2,9 +2,11 @@
 
 pub mod borders;
 pub mod cell;
+mod flip;
 pub mod geometry;
 pub mod numbering;
 pub mod orientation;
+mod pairing;
 mod parts;
 pub mod topology;
 pub mod triangulation;

@@ -4,7 +4,8 @@
 use super::Triangulation;
 use super::cell::Cell;
 use super::geometry::{Totals, Vec3};
-use super::topology::{Topology, checked_indices, neighbours};
+use super::pairing::{checked_indices, neighbours};
+use super::topology::Topology;
 use crate::error::{Error, Result};
 use nalgebra::Vector3;
 use std::collections::HashMap;

@@ -11,7 +11,7 @@ impl LocalEnergy {
         let triangle = half as usize / 3;
         fetch(&mesh.triangles()[triangle]);
         fetch(&mesh.twins()[triangle]);
-        fetch(&self.survey().triangles[triangle]);
+        fetch(&self.survey.triangles[triangle]);
     }
 
     /// Then, of the other triangle and the vertices.
@@ -26,7 +26,7 @@ impl LocalEnergy {
         self.fetch_beyond(mesh, previous(half));
         for half in [half, next(half), previous(half)] {
             let vertex = mesh.origin(half) as usize;
-            fetch(&self.survey().vertices[vertex]);
+            fetch(&self.survey.vertices[vertex]);
             fetch(&mesh.degrees()[vertex]);
         }
     }
@@ -41,14 +41,14 @@ impl LocalEnergy {
         self.fetch_beyond(mesh, next(twin));
         self.fetch_beyond(mesh, previous(twin));
         let vertex = mesh.origin(previous(twin)) as usize;
-        fetch(&self.survey().vertices[vertex]);
+        fetch(&self.survey.vertices[vertex]);
         fetch(&mesh.degrees()[vertex]);
     }
 
     /// The triangle on the other side of a half-edge, if there is one.
     #[inline(always)]
     fn fetch_beyond(&self, mesh: &Triangulation, half: u32) {
-        if let Some(triangle) = self.survey().triangles.get(mesh.twin(half) as usize / 3) {
+        if let Some(triangle) = self.survey.triangles.get(mesh.twin(half) as usize / 3) {
             fetch(triangle);
         }
     }

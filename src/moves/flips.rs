@@ -25,6 +25,16 @@ use smallvec::SmallVec;
 /// Attempts whose random numbers are made together.
 const BLOCK: usize = 64;
 
+/// So many attempts one after the other, by some rules.
+pub struct Round<'a> {
+    /// What they may do.
+    pub rules: &'a FlipRules,
+    /// How many there are.
+    pub attempts: u64,
+    /// What they go on from, and leave.
+    pub state: &'a mut FlipState,
+}
+
 /// One attempt's random numbers.
 #[derive(Clone, Copy, Default)]
 pub struct Draw {
@@ -142,6 +152,8 @@ impl Touched<'_, '_> {
 
 /// Flip an edge, on which contacts have a say: unless the energy, of which `difference` is known already, rises above the limit.
 /// Returns its change if the flip is made.
+// Apart, so that attempts without it stay short.
+#[inline(never)]
 fn flip_touched(
     mesh: &mut Triangulation,
     touched: &mut [Touched],
@@ -181,17 +193,16 @@ fn flip_touched(
     None
 }
 
-/// Try to flip so many edges. `local` is what [`LocalEnergy::fill`] made of the mesh; it is kept current. Returns how
+/// Make a round of attempts. `local` is what [`LocalEnergy::fill`] made of the mesh; it is kept current. Returns how
 /// many flips were made. Energies of contacts are those of `touched` only.
 pub fn attempt(
     mesh: &mut Triangulation,
     local: &mut LocalEnergy,
     terms: &[Term],
-    rules: &FlipRules,
-    attempts: u64,
-    state: &mut FlipState,
+    round: Round,
     touched: &mut [Touched],
 ) -> u64 {
+    let Round { rules, attempts, state } = round;
     let half_edges = 3 * mesh.triangles().len();
     let before = state.accepted;
     let mut draws = [Draw::default(); BLOCK];

@@ -3,11 +3,12 @@
 //! [`local`] computes the energy of any terms around a change, from the formulas that the evaluators use;
 //! [`flips`] are moves of the connectivity.
 
+mod elements;
 mod fetch;
 pub mod flips;
 mod hinges;
 pub mod local;
 pub mod records;
 
-pub use flips::Touched;
+pub use flips::{Round, Touched};
 pub use records::{FlipRules, FlipState};

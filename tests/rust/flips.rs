@@ -8,12 +8,12 @@ mod support;
 use openmm_helfrich::evaluator::{
     BorderEvaluator, CpuEvaluator, InstructionSet, ReferenceEvaluator,
 };
-use openmm_helfrich::membrane::Membrane;
+use openmm_helfrich::membrane::{Configuration, Membrane};
 use openmm_helfrich::mesh::numbering::breadth_first;
 use openmm_helfrich::mesh::triangulation::Turn;
 use openmm_helfrich::mesh::{NONE, Topology, Triangulation};
 use openmm_helfrich::moves::local::{Flipped, LocalEnergy};
-use openmm_helfrich::moves::{FlipRules, FlipState};
+use openmm_helfrich::moves::{FlipRules, FlipState, Round};
 use openmm_helfrich::potentials::{Contribution, Term};
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
@@ -185,10 +185,18 @@ fn flip_often((positions, triangles): &Mesh, terms: &[Term], flips: u64) {
     let mut state = seeded(5);
     let hot = FlipRules { temperature: 1e6, ..ANY };
     // That the surface is not inside out is settled before it is crumpled.
-    membrane.evaluate(terms, positions, None, &mut [], None).unwrap();
+    membrane.evaluate(terms, Configuration::new(positions, None), &mut [], None).unwrap();
     let mut made = 0;
     for round in 0.. {
-        made += membrane.flip(&terms[..1], positions, None, &hot, 3000, &mut state, None).unwrap();
+        made += membrane
+            .flip(
+                &terms[..1],
+                Configuration::new(positions, None),
+                Round { rules: &hot, attempts: 3000, state: &mut state },
+                None,
+                &mut [],
+            )
+            .unwrap();
         let mesh = corners(membrane.mesh());
         let valid = Triangulation::new(&Topology::new(&mesh, count).unwrap());
         assert_eq!(&valid, membrane.mesh());
@@ -196,7 +204,9 @@ fn flip_often((positions, triangles): &Mesh, terms: &[Term], flips: u64) {
         if round % 40 == 0 {
             let mut sums = vec![Contribution::default(); terms.len()];
             let mut forces = vec![0.0; positions.len()];
-            membrane.evaluate(terms, positions, None, &mut sums, Some(&mut forces)).unwrap();
+            membrane
+                .evaluate(terms, Configuration::new(positions, None), &mut sums, Some(&mut forces))
+                .unwrap();
             let topology = Arc::new(Topology::new(&mesh, count).unwrap());
             let (mut expected, mut exact) = (sums.clone(), vec![0.0; positions.len()]);
             let borrowed: Vec<_> = terms.iter().collect();
@@ -230,17 +240,17 @@ fn what_was_saved_goes_on_with_the_same_bits() {
         membrane
             .flip(
                 &terms,
-                &positions,
+                Configuration::new(&positions, None),
+                Round { rules: &FlipRules { temperature: 50.0, ..ANY }, attempts: 2000, state },
                 None,
-                &FlipRules { temperature: 50.0, ..ANY },
-                2000,
-                state,
-                None,
+                &mut [],
             )
             .unwrap();
         let mut sums = vec![Contribution::default(); terms.len()];
         let mut forces = vec![0.0; positions.len()];
-        membrane.evaluate(&terms, &positions, None, &mut sums, Some(&mut forces)).unwrap();
+        membrane
+            .evaluate(&terms, Configuration::new(&positions, None), &mut sums, Some(&mut forces))
+            .unwrap();
         (membrane.connectivity(), sums, forces)
     };
     let mut unbroken = Membrane::new(&triangles, count).unwrap();
@@ -268,7 +278,15 @@ fn a_demon_keeps_the_energy() {
     let before = total(&membrane) + state.demon_energy;
     for _ in 0..20 {
         let rules = FlipRules { demon: 1, ..ANY };
-        membrane.flip(&terms, &positions, None, &rules, 500, &mut state, None).unwrap();
+        membrane
+            .flip(
+                &terms,
+                Configuration::new(&positions, None),
+                Round { rules: &rules, attempts: 500, state: &mut state },
+                None,
+                &mut [],
+            )
+            .unwrap();
         assert!(state.demon_energy >= 0.0);
         let after = total(&membrane) + state.demon_energy;
         assert!((after - before).abs() < 1e-9 * before.abs(), "{after} {before}");
@@ -295,7 +313,15 @@ fn bounds_are_kept() {
     };
     let start = edges(membrane.mesh());
     for _ in 0..50 {
-        membrane.flip(&[term], &positions, None, &hot, 200, &mut state, None).unwrap();
+        membrane
+            .flip(
+                &[term],
+                Configuration::new(&positions, None),
+                Round { rules: &hot, attempts: 200, state: &mut state },
+                None,
+                &mut [],
+            )
+            .unwrap();
         assert!(membrane.mesh().degrees().iter().all(|degree| (4..=9).contains(degree)));
         for edge in edges(membrane.mesh()).difference(&start) {
             assert!((place(edge[0]) - place(edge[1])).norm() <= longest);
@@ -449,7 +475,15 @@ fn visits_are_boltzmann_on(
     let (rules, mut state) = (FlipRules { temperature, ..ANY }, seeded(seed));
     let mut visits = vec![0usize; states.len()];
     for _ in 0..looks {
-        membrane.flip(terms, positions, None, &rules, apart, &mut state, None).unwrap();
+        membrane
+            .flip(
+                terms,
+                Configuration::new(positions, None),
+                Round { rules: &rules, attempts: apart, state: &mut state },
+                None,
+                &mut [],
+            )
+            .unwrap();
         let mesh = membrane.mesh();
         visits[index[&key((0..mesh.triangles().len()).map(|t| mesh.particles_of(t)))]] += 1;
     }
@@ -557,7 +591,9 @@ fn the_change_of_forces_is_that_of_two_evaluations() {
     let hot = FlipRules { temperature: 1e6, ..ANY };
     let forces_of = |membrane: &mut Membrane, terms: &[Term], positions: &[f64]| {
         let mut forces = vec![0.0; positions.len()];
-        membrane.evaluate(terms, positions, None, &mut [], Some(&mut forces)).unwrap();
+        membrane
+            .evaluate(terms, Configuration::new(positions, None), &mut [], Some(&mut forces))
+            .unwrap();
         forces
     };
     for seed in 0..4 {
@@ -566,7 +602,13 @@ fn the_change_of_forces_is_that_of_two_evaluations() {
         let mut change = vec![0.0; positions.len()];
         let mut state = seeded(seed);
         let made = membrane
-            .flip(&terms, &positions, None, &hot, 100, &mut state, Some(&mut change))
+            .flip(
+                &terms,
+                Configuration::new(&positions, None),
+                Round { rules: &hot, attempts: 100, state: &mut state },
+                Some(&mut change),
+                &mut [],
+            )
             .unwrap();
         assert!(made > 0);
         let saved = membrane.connectivity();

@@ -12,9 +12,9 @@ mod support;
 use openmm_helfrich::dynamics::integrate::{Dynamics, Particles};
 use openmm_helfrich::dynamics::random::{Stream, normals};
 use openmm_helfrich::evaluator::ReferenceEvaluator;
-use openmm_helfrich::membrane::Membrane;
+use openmm_helfrich::membrane::{Configuration, Membrane};
 use openmm_helfrich::mesh::Topology;
-use openmm_helfrich::moves::{FlipRules, FlipState};
+use openmm_helfrich::moves::{FlipRules, FlipState, Round};
 use openmm_helfrich::potentials::{Contribution, Term};
 use std::sync::Arc;
 use support::{Mesh, random, spheroid};
@@ -150,13 +150,21 @@ fn dynamics_with_flips(mesh: &Mesh, steps: usize) -> Vec<Sample> {
     for step in 0..steps {
         if step % 5 == 0 {
             membrane
-                .flip(&terms, &positions, None, &rules, count as u64, &mut state, None)
+                .flip(
+                    &terms,
+                    Configuration::new(&positions, None),
+                    Round { rules: &rules, attempts: count as u64, state: &mut state },
+                    None,
+                    &mut [],
+                )
                 .unwrap();
         }
         forces.fill(0.0);
         let wanted = step % 10 == 0 && step > steps / 20;
         let energies = if wanted { &mut sums[..] } else { &mut [] };
-        membrane.evaluate(&terms, &positions, None, energies, Some(&mut forces)).unwrap();
+        membrane
+            .evaluate(&terms, Configuration::new(&positions, None), energies, Some(&mut forces))
+            .unwrap();
         if wanted {
             let energies: Vec<f64> = sums.iter().map(|sum| sum.energy).collect();
             samples.push(sample(&energies, membrane.mesh().degrees().iter().copied()));

@@ -5,9 +5,9 @@ mod support;
 
 use openmm_helfrich::error::Error;
 use openmm_helfrich::evaluator::{BorderEvaluator, ReferenceEvaluator};
-use openmm_helfrich::membrane::Membrane;
+use openmm_helfrich::membrane::{Configuration, Membrane};
 use openmm_helfrich::mesh::{Cell, Topology, Unfolding};
-use openmm_helfrich::moves::{FlipRules, FlipState};
+use openmm_helfrich::moves::{FlipRules, FlipState, Round};
 use openmm_helfrich::potentials::{Contribution, Term};
 use proptest::prelude::*;
 use std::collections::HashMap;
@@ -143,7 +143,9 @@ fn evaluated(
 ) -> (Vec<f64>, Vec<f64>) {
     let mut energies = vec![Contribution::default(); terms.len()];
     let mut forces = vec![0.0; positions.len()];
-    membrane.evaluate(terms, positions, cell, &mut energies, Some(&mut forces)).unwrap();
+    membrane
+        .evaluate(terms, Configuration::new(positions, cell), &mut energies, Some(&mut forces))
+        .unwrap();
     (energies.iter().map(|part| part.energy).collect(), forces)
 }
 
@@ -293,7 +295,13 @@ fn a_flip_changes_the_energy_by_what_it_says() {
                     demon: 1,
                 };
                 let made = membrane
-                    .flip(&terms, &positions, Some(&cell), &rules, 300, &mut state, None)
+                    .flip(
+                        &terms,
+                        Configuration::new(&positions, Some(&cell)),
+                        Round { rules: &rules, attempts: 300, state: &mut state },
+                        None,
+                        &mut [],
+                    )
                     .unwrap();
                 assert!(made > 10, "{made}");
                 let (after, forces) = evaluated(&mut membrane, &terms, &positions, Some(&cell));
@@ -360,12 +368,16 @@ fn long_edges_and_lost_particles_are_named() {
     let fine = evaluated(&mut here, &[term], &mesh.0, Some(&cell));
     let kept = mesh.0.clone();
     mesh.0[3 * 10 + 2] += 21.0;
-    let refused = here.evaluate(&[term], &mesh.0, Some(&cell), &mut [], None).unwrap_err();
+    let refused = here
+        .evaluate(&[term], Configuration::new(&mesh.0, Some(&cell)), &mut [], None)
+        .unwrap_err();
     let Error::LongEdge { edge, length, limit, .. } = &refused else { panic!("{refused}") };
     assert!(edge.contains(&10) && *limit == 20.0 && *length > 20.0, "{refused}");
     assert!(refused.to_string().contains("[40.0, 0.0, 0.0]"), "{refused}");
     mesh.0[3 * 10 + 2] = f64::NAN;
-    let refused = here.evaluate(&[term], &mesh.0, Some(&cell), &mut [], None).unwrap_err();
+    let refused = here
+        .evaluate(&[term], Configuration::new(&mesh.0, Some(&cell)), &mut [], None)
+        .unwrap_err();
     assert!(matches!(refused, Error::NonFinitePosition { particle: 10, .. }), "{refused}");
     assert_eq!(evaluated(&mut here, &[term], &kept, Some(&cell)), fine);
     // Two vertices around the box: one edge goes either way.
@@ -373,7 +385,11 @@ fn long_edges_and_lost_particles_are_named() {
     assert!(Membrane::new(&narrow.1, 14).is_err());
     // Three of them may be near enough.
     let narrow = sheet(&cell, 3, 7, &mut || 0.0);
-    assert!(membrane(&narrow).evaluate(&[term], &narrow.0, Some(&cell), &mut [], None).is_ok());
+    assert!(
+        membrane(&narrow)
+            .evaluate(&[term], Configuration::new(&narrow.0, Some(&cell)), &mut [], None)
+            .is_ok()
+    );
 }
 
 #[test]
@@ -381,8 +397,9 @@ fn what_spans_the_box_has_no_volume() {
     let cell = Cell::new(BOXES[0]).unwrap();
     let mesh = tube(&cell, 7, 9, &mut random(3));
     let term = Term::new("EnclosedVolumeForce", 0, &[1.0, 100.0]).unwrap();
-    let refused =
-        membrane(&mesh).evaluate(&[term], &mesh.0, Some(&cell), &mut [], None).unwrap_err();
+    let refused = membrane(&mesh)
+        .evaluate(&[term], Configuration::new(&mesh.0, Some(&cell)), &mut [], None)
+        .unwrap_err();
     assert!(matches!(refused, Error::Spanning { force: "EnclosedVolumeForce", .. }), "{refused}");
 }
 
@@ -399,8 +416,9 @@ fn a_triangle_without_area_across_a_face_is_named() {
         mesh.0[3 * third + k] = 0.5 * (a[k] + b[k] + shift);
     }
     let term = Term::new("SurfaceAreaForce", 0, &[1.0, 100.0]).unwrap();
-    let refused =
-        membrane(&mesh).evaluate(&[term], &mesh.0, Some(&cell), &mut [], None).unwrap_err();
+    let refused = membrane(&mesh)
+        .evaluate(&[term], Configuration::new(&mesh.0, Some(&cell)), &mut [], None)
+        .unwrap_err();
     let Error::DegenerateTriangle { corners, .. } = &refused else { panic!("{refused}") };
     assert!([0, 35, third as u32].iter().all(|v| corners.contains(v)), "{refused}");
 }
@@ -411,7 +429,7 @@ fn check_virial(mesh: &Mesh, terms: &[Term], vectors: Option<[[f64; 3]; 3]>) {
     let mut here = membrane(mesh);
     for term in terms {
         let term = [*term];
-        let found = here.virial(&term, &mesh.0, cell.as_ref()).unwrap();
+        let found = here.virial(&term, Configuration::new(&mesh.0, cell.as_ref())).unwrap();
         let scale = found.abs().max();
         assert!((found - found.transpose()).abs().max() <= 1e-10 * scale, "{found}");
         for (row, column) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)] {
@@ -456,7 +474,7 @@ fn without_a_box_the_virial_is_that_of_the_forces() {
     let mut here = membrane(&mesh);
     for term in all_terms(false) {
         let (_, forces) = evaluated(&mut here, &[term], &mesh.0, None);
-        let virial = here.virial(&[term], &mesh.0, None).unwrap();
+        let virial = here.virial(&[term], Configuration::new(&mesh.0, None)).unwrap();
         let scale = virial.abs().max();
         for row in 0..3 {
             for column in 0..3 {

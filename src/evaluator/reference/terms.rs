@@ -1,0 +1,82 @@
+//! What the terms make of the geometry: energies and partial derivatives.
+
+use super::ReferenceEvaluator;
+use crate::evaluator::passes::{fill, fill_pair};
+use crate::mesh::geometry::{
+    EdgePartials, TotalPartials, Totals, TrianglePartials, VertexPartials,
+};
+use crate::mesh::vertex_vectors::VertexVectors;
+use crate::potentials::{Contribution, Edges, Needs, Term, Triangles, Vertices};
+
+impl ReferenceEvaluator {
+    /// Let every term add its energy and its partial derivatives.
+    pub(super) fn potentials(
+        &mut self,
+        terms: &[&Term],
+        needs: Needs,
+        totals: &Totals,
+        contributions: &mut [Contribution],
+    ) -> TotalPartials {
+        let mut total_partials = TotalPartials::default();
+        if needs.contains(Needs::TRIANGLES) {
+            self.triangle_partials.fill(TrianglePartials::default());
+        }
+        if needs.contains(Needs::EDGES) {
+            self.edge_partials.fill(EdgePartials::default());
+        }
+        if needs.contains(Needs::VERTICES) {
+            self.vertex_partials.fill(VertexPartials::default());
+        }
+        if needs.contains(Needs::VECTORS) {
+            self.vector_partials.fill(VertexVectors::default());
+        }
+        for (&term, contribution) in terms.iter().zip(contributions) {
+            let (potential, needs) = (term.potential, term.potential.needs(term));
+            *contribution = Contribution::default();
+            if needs.contains(Needs::TOTALS) {
+                *contribution += potential.totals(term, totals, &mut total_partials);
+            }
+            if needs.contains(Needs::TRIANGLES) {
+                let triangles = &self.triangles;
+                *contribution +=
+                    fill(self.parallel, &mut self.triangle_partials, |first, chunk| {
+                        let geometry = &triangles[first..][..chunk.len()];
+                        let partials = chunk;
+                        potential.triangles(term, Triangles::Plain { first, geometry, partials })
+                    });
+            }
+            if needs.contains(Needs::EDGES) {
+                let edges = &self.edges;
+                *contribution += fill(self.parallel, &mut self.edge_partials, |first, chunk| {
+                    let geometry = &edges[first..][..chunk.len()];
+                    potential.edges(term, Edges::Plain { geometry, partials: chunk })
+                });
+            }
+            if needs.contains(Needs::VERTICES) {
+                *contribution += self.potential_of_vertices(term, needs);
+            }
+        }
+        total_partials
+    }
+
+    fn potential_of_vertices(&mut self, term: &Term, needs: Needs) -> Contribution {
+        let (vertices, all_vectors) = (&self.vertices, &self.vectors);
+        let wants_vectors = needs.contains(Needs::VECTORS);
+        let left_out = if term.potential.acts_at_borders() { &[] } else { &self.on_border[..] };
+        let beside: &mut [_] = if wants_vectors { &mut self.vector_partials } else { &mut [] };
+        fill_pair(self.parallel, &mut self.vertex_partials, beside, |first, scalars, vectors| {
+            let here = first..first + scalars.len();
+            let known: &[_] = if wants_vectors { &all_vectors[here.clone()] } else { &[] };
+            let run = Vertices::Plain {
+                first,
+                total: vertices.len(),
+                left_out: left_out.get(here.clone()).unwrap_or_default(),
+                scalars: &vertices[here],
+                vectors: known,
+                scalar_partials: scalars,
+                vector_partials: vectors,
+            };
+            term.potential.vertices(term, run)
+        })
+    }
+}

@@ -1,0 +1,67 @@
+//! What all forces have in common for Rust programs.
+
+use super::{c_text, check};
+use crate::c_api;
+use crate::error::{Error, Result};
+use crate::ffi::last_error;
+use crate::openmm::{OpenMM_Context, OpenMM_Force};
+use std::ffi::{c_char, c_double, c_int, c_void};
+use std::ptr::NonNull;
+
+/// A force that no System owns yet.
+pub(super) struct Owned(NonNull<c_api::Force>);
+
+/// The C function that reads a statistic of a class of movers.
+type GetStatistic =
+    unsafe extern "C" fn(*mut c_api::Force, *mut c_void, *const c_char, *mut c_double) -> c_int;
+
+impl Owned {
+    /// What a C function has made, or the message of why it has not.
+    ///
+    /// # Safety
+    /// `force` must be null, or a force that nobody owns.
+    pub unsafe fn new(force: *mut c_api::Force) -> Result<Self> {
+        NonNull::new(force).map(Self).ok_or_else(|| Error::Contract(last_error()))
+    }
+
+    pub fn as_ptr(&self) -> *mut c_api::Force {
+        self.0.as_ptr()
+    }
+
+    pub fn as_openmm(&self) -> *mut OpenMM_Force {
+        self.as_ptr().cast()
+    }
+
+    pub fn into_openmm(self) -> *mut OpenMM_Force {
+        let force = self.as_openmm();
+        std::mem::forget(self);
+        force
+    }
+}
+
+impl Drop for Owned {
+    fn drop(&mut self) {
+        // SAFETY: no System has taken it over.
+        unsafe { c_api::Helfrich_MembraneForce_destroy(self.as_ptr()) };
+    }
+}
+
+/// One of the statistics of a mover in a Context.
+///
+/// # Errors
+/// An unknown name, or a Context that the force does not belong to.
+///
+/// # Safety
+/// `get` must be of the force's class; `force` and `context` must be of OpenMM's C API, and alive.
+pub(super) unsafe fn statistic(
+    get: GetStatistic,
+    force: *mut OpenMM_Force,
+    context: *mut OpenMM_Context,
+    name: &str,
+) -> Result<f64> {
+    let name = c_text(name)?;
+    let mut value = f64::NAN;
+    // SAFETY: the caller's promise, and the name ends with a NUL.
+    check(unsafe { get(force.cast(), context.cast(), name.as_ptr(), &mut value) })?;
+    Ok(value)
+}

@@ -1,0 +1,120 @@
+//! Flips of a membrane, and of those that follow it.
+
+use super::{Configuration, Membrane};
+use crate::contact::is_contact;
+use crate::error::{Error, Result};
+use crate::moves::{Round, Touched, flips};
+use crate::potentials::Term;
+use smallvec::SmallVec;
+
+/// A membrane that has all triangles of another one among its own, and the terms of contacts on it: the other one's flips
+/// count its energy, and it makes them, too.
+pub struct Follower<'a, 't> {
+    /// The membrane.
+    pub membrane: &'a mut Membrane,
+    /// The place of the other one's first triangle.
+    pub first_triangle: usize,
+    /// Terms of contacts.
+    pub terms: &'a [Term<'t>],
+}
+
+impl Membrane {
+    /// Make a round of flips at the present positions, with the energy of some terms and of the followers. Returns how
+    /// many were made. If `force_change` (kJ/mol/nm, in the layout of the positions) is wanted, it gets by how much they
+    /// have changed the forces; it is left alone if there were none.
+    ///
+    /// # Errors
+    /// Rules that make no sense, a term as [`Self::evaluate`] refuses it, a mesh without geometry: nothing has changed
+    /// then. A GPU that was asked for and fails: the flips have been made.
+    pub fn flip(
+        &mut self,
+        terms: &[Term],
+        at: Configuration,
+        round: Round,
+        force_change: Option<&mut [f64]>,
+        followers: &mut [Follower],
+    ) -> Result<u64> {
+        let Configuration { positions, cell } = at;
+        if positions.len() != 3 * self.num_particles {
+            return Err(Error::Contract(format!(
+                "needs positions of {} particles",
+                self.num_particles
+            )));
+        }
+        for term in terms {
+            self.check(term)?;
+        }
+        self.remembered.clear();
+        self.before.clear();
+        let wants_forces = force_change.is_some();
+        if wants_forces {
+            self.before.resize(positions.len(), 0.0);
+        }
+        let mut before = wants_forces.then_some(self.before.as_mut_slice());
+        let mut placed = self.surface.place(at)?;
+        let (mesh, into) = (placed.present.mesh, before.as_deref_mut());
+        self.local.fill(mesh, terms, cell, |survey| placed.survey(terms, into, survey))?;
+
+        let mut touched: SmallVec<[Touched; 2]> = SmallVec::new();
+        if terms.iter().any(is_contact) {
+            let contacts = &mut self.contacts;
+            let into = before.as_deref_mut();
+            contacts.evaluate(mesh, cell, terms, positions, &mut [], into)?;
+            contacts.prepare_flips(mesh, cell, terms, positions)?;
+            touched.push(Touched { contacts, terms, mesh: None, first_half: 0 });
+        }
+        for Follower { membrane, first_triangle, terms } in &mut *followers {
+            let (contacts, mesh) = (&mut membrane.contacts, &mut membrane.surface.mesh);
+            if let Some(before) = &mut before {
+                contacts.evaluate(mesh, cell, terms, positions, &mut [], Some(before))?;
+            }
+            contacts.prepare_flips(mesh, cell, terms, positions)?;
+            let first_half = 3 * *first_triangle as u32;
+            touched.push(Touched { contacts, terms, mesh: Some(mesh), first_half });
+        }
+
+        let mesh = &mut self.surface.mesh;
+        let made = flips::attempt(mesh, &mut self.local, terms, round, &mut touched);
+        drop(touched);
+        if made > 0 {
+            self.surface.note_flips(made);
+            for follower in &mut *followers {
+                follower.membrane.surface.connectivity_changed();
+            }
+            if let Some(change) = force_change {
+                self.compare_forces(terms, at, change)?;
+                for Follower { membrane, terms, .. } in followers {
+                    let (contacts, mesh) = (&mut membrane.contacts, &membrane.surface.mesh);
+                    contacts.evaluate(mesh, cell, terms, positions, &mut [], Some(change))?;
+                }
+            }
+        }
+        Ok(made)
+    }
+
+    /// By how much forces differ from those before flips; what they are is remembered.
+    fn compare_forces(
+        &mut self,
+        terms: &[Term],
+        at: Configuration,
+        change: &mut [f64],
+    ) -> Result<()> {
+        let Configuration { positions, cell } = at;
+        let mut placed = self.surface.place(at)?;
+        let after = self.remembered.fill(terms, positions, cell, |forces| {
+            placed.evaluate(terms, &mut [], Some(&mut *forces))?;
+            self.contacts.evaluate(
+                placed.present.mesh,
+                cell,
+                terms,
+                positions,
+                &mut [],
+                Some(forces),
+            )
+        })?;
+        for ((change, after), before) in change.iter_mut().zip(after).zip(&self.before) {
+            *change = after - before;
+        }
+        Ok(())
+    }
+}

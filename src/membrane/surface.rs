@@ -1,0 +1,175 @@
+//! A surface with the evaluators of its geometry.
+
+use super::Configuration;
+use crate::error::{Error, Result};
+use crate::evaluator::{BorderEvaluator, ChosenEvaluator, Present, ReferenceEvaluator, Survey};
+use crate::mesh::cell::Image;
+use crate::mesh::numbering::breadth_first;
+use crate::mesh::orientation::is_inside_out;
+use crate::mesh::{Topology, Triangulation, Unfolding};
+use crate::potentials::{Contribution, Term};
+use nalgebra::Matrix3;
+use std::sync::Arc;
+
+/// The connectivity, and what evaluates any terms but contacts on it.
+pub(super) struct Surface {
+    pub mesh: Triangulation,
+    /// The vertices, so that neighbours on the surface are near each other.
+    pub order: Vec<u32>,
+    /// How many flips there have been since the order was made.
+    pub flips_of_order: u64,
+    /// Whether the surface has been looked at and is not inside out.
+    pub has_outside: bool,
+    pub evaluator: ChosenEvaluator,
+    borders: BorderEvaluator,
+    unfolding: Unfolding,
+}
+
+/// A surface at some positions, in one piece.
+pub(super) struct Placed<'a> {
+    pub present: Present<'a>,
+    positions: &'a [f64],
+    has_outside: &'a mut bool,
+    evaluator: &'a mut ChosenEvaluator,
+    borders: &'a mut BorderEvaluator,
+}
+
+impl Surface {
+    pub fn new(mesh: Triangulation) -> Self {
+        Self {
+            order: breadth_first(&mesh),
+            flips_of_order: 0,
+            has_outside: false,
+            mesh,
+            evaluator: ChosenEvaluator::new(),
+            borders: BorderEvaluator::default(),
+            unfolding: Unfolding::default(),
+        }
+    }
+
+    /// The triangles have changed, and with them all that is made of them.
+    pub fn connectivity_changed(&mut self) {
+        self.unfolding.connectivity_changed();
+        self.borders.connectivity_changed();
+        self.evaluator.connectivity_changed();
+    }
+
+    /// So many flips have been made.
+    pub fn note_flips(&mut self, made: u64) {
+        self.flips_of_order += made;
+        // By then every vertex has moved on by a few neighbours.
+        if self.flips_of_order > 2 * self.mesh.num_edges() as u64 {
+            (self.order, self.flips_of_order) = (breadth_first(&self.mesh), 0);
+        }
+        self.connectivity_changed();
+    }
+
+    /// Make ready for evaluations at some positions.
+    ///
+    /// # Errors
+    /// Those of [`Unfolding::unfold`].
+    pub fn place<'a>(&'a mut self, at: Configuration<'a>) -> Result<Placed<'a>> {
+        let (positions, has_new_images) = match at.cell {
+            None => (at.positions, self.mesh.set_images(Vec::new())),
+            Some(cell) => {
+                let found = self.unfolding.unfold(&mut self.mesh, at.positions, cell)?;
+                (found.positions, found.has_new_images)
+            }
+        };
+        if has_new_images {
+            self.evaluator.connectivity_changed();
+        }
+        Ok(Placed {
+            present: Present { mesh: &self.mesh, order: &self.order, cell: at.cell },
+            positions,
+            has_outside: &mut self.has_outside,
+            evaluator: &mut self.evaluator,
+            borders: &mut self.borders,
+        })
+    }
+}
+
+impl Placed<'_> {
+    /// Evaluate all terms but those of contacts. Contributions, which may be empty, are set; forces are added.
+    ///
+    /// # Errors
+    /// Those of [`ChosenEvaluator::evaluate`] and of [`BorderEvaluator::forward`].
+    pub fn evaluate(
+        &mut self,
+        terms: &[Term],
+        contributions: &mut [Contribution],
+        mut forces: Option<&mut [f64]>,
+    ) -> Result<()> {
+        let &mut Self { present, positions, .. } = self;
+        let Present { mesh, cell, .. } = present;
+        let on_borders = self.borders.forward(mesh, terms, positions, cell)?;
+        let into = forces.as_deref_mut();
+        self.evaluator.evaluate(present, terms, positions, contributions, into)?;
+        self.borders.add(mesh, positions, cell, on_borders, contributions, forces);
+        Ok(())
+    }
+
+    /// Note what all terms but those of contacts find of every element. Forces are added.
+    ///
+    /// # Errors
+    /// Those of [`Self::evaluate`].
+    pub fn survey(
+        &mut self,
+        terms: &[Term],
+        mut forces: Option<&mut [f64]>,
+        survey: &mut Survey,
+    ) -> Result<()> {
+        let &mut Self { present, positions, .. } = self;
+        let Present { mesh, cell, .. } = present;
+        let on_borders = self.borders.forward(mesh, terms, positions, cell)?;
+        let into = forces.as_deref_mut();
+        self.evaluator.survey(present, terms, positions, into, survey)?;
+        self.borders.add(mesh, positions, cell, on_borders, &mut [], forces);
+        Ok(())
+    }
+
+    /// What all terms but those of contacts give to the virial, by the readable evaluator.
+    ///
+    /// # Errors
+    /// Those of [`Self::evaluate`].
+    pub fn virial(&mut self, terms: &[Term]) -> Result<Matrix3<f64>> {
+        let (Present { mesh, cell, .. }, positions) = (self.present, self.positions);
+        let mut evaluator = ReferenceEvaluator::new(Arc::new(Topology::of(mesh)));
+        if let Some(cell) = cell {
+            evaluator.set_images(mesh.images(), cell);
+        }
+        let of_geometry = evaluator.virial(&terms.iter().collect::<Vec<_>>(), positions)?;
+        Ok(of_geometry + self.borders.virial(mesh, terms, positions, cell)?)
+    }
+
+    /// Refuse triangles that all run clockwise, as a slip in a mesh has them, before a volume below zero becomes a
+    /// pressure that blows the membrane up. That is settled by the first positions that a term asks about, for good:
+    /// a shape that turns inside out later, or crosses itself, follows the formula, whose volume has a sign. What spans a
+    /// periodic box has no volume.
+    ///
+    /// # Errors
+    /// Names the force.
+    pub fn look_for_outside(&mut self, terms: &[Term]) -> Result<()> {
+        let mesh = self.present.mesh;
+        if *self.has_outside && mesh.images().is_empty() {
+            return Ok(());
+        }
+        let Some(term) = terms.iter().find(|term| term.potential.needs_outside()) else {
+            return Ok(());
+        };
+        let force = term.potential.name();
+        let outer = |images: &[Image; 3]| *images != [[0; 3]; 3];
+        if let Some(triangle) = mesh.images().iter().position(outer) {
+            let particle = mesh.particles_of(triangle)[0];
+            return Err(Error::Spanning { force, particle });
+        }
+        match is_inside_out(mesh, self.positions) {
+            Some((true, totals)) => Err(Error::InsideOut { force, volume: totals.volume }),
+            found => {
+                // Of positions that are not finite the evaluator names the culprit.
+                *self.has_outside = found.is_some();
+                Ok(())
+            }
+        }
+    }
+}
