@@ -52,6 +52,9 @@ using namespace HelfrichPlugin;
 %ignore HelfrichPlugin::ParticleSurfaceForce::setParticles;
 %ignore HelfrichPlugin::MembraneForce::setParameterValue;
 %rename(_setElementValues) HelfrichPlugin::MembraneForce::setElementValues;
+%rename(_HelfrichForce) HelfrichPlugin::HelfrichForce;
+%nodefaultctor HelfrichPlugin::HelfrichForce;
+%nodefaultctor HelfrichPlugin::MonteCarloMover;
 %nodefaultctor HelfrichPlugin::TriangulatedForce;
 %nodefaultctor HelfrichPlugin::MembraneForce;
 
@@ -152,7 +155,11 @@ static PyObject* toDict(const Mover& mover, OpenMM::Context& context) {
 
 %template(_IntVector) std::vector<int>;
 %template(_DoubleVector) std::vector<double>;
+%include "openmm-helfrich/internal/HelfrichForce.h"
 %include "openmm-helfrich/TriangulatedForce.h"
+%include "openmm-helfrich/MonteCarloMover.h"
+%template(_TriangulatedMover) HelfrichPlugin::MonteCarloMover<HelfrichPlugin::TriangulatedForce>;
+%template(_Mover) HelfrichPlugin::MonteCarloMover<HelfrichPlugin::HelfrichForce>;
 %include "openmm-helfrich/MembraneForce.h"
 %include "OpenMMHelfrich.h"
 HELFRICH_FORCES(MEMBRANE_FORCE)

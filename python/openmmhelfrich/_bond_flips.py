@@ -7,8 +7,13 @@ import inspect
 
 from openmm import unit
 
-from ._arguments import own_what_is_cast
-from ._movers import accept_in_constructor, accept_in_setter, constant, whole_number
+from ._arguments import (
+    accept_in_constructor,
+    accept_in_setter,
+    give_method,
+    own_what_is_cast,
+)
+from ._movers import constant, whole_number
 from ._values import Scalar, capitalised, scalar, triangles
 
 __all__ = ["accept_arguments"]
@@ -42,7 +47,7 @@ def accept_arguments(force: type) -> None:
     accept_in_setter(
         force, "setEnsemble", functools.partial(constant, force, "ensemble", _ENSEMBLES)
     )
-    force.getStatistics = _get_statistics
+    give_method(force, "getStatistics", _get_statistics)
     own_what_is_cast(force)
 
 
@@ -85,7 +90,3 @@ def _get_statistics(self, context) -> dict:
     return statistics | {
         name: found[name] for name in ("acceptance", "time", "rate", "demonEnergy")
     }
-
-
-_get_statistics.__name__ = "getStatistics"
-_get_statistics.__qualname__ = f"{_NAME}.getStatistics"

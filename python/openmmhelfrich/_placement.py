@@ -9,9 +9,10 @@ from openmm import unit
 from .forces import MembraneForce, MonteCarloBondFlip
 from .mesh import Mesh
 
-__all__ = ["Placement"]
+__all__ = ["Placement", "groups_for"]
 
 _ENERGY = unit.kilojoule_per_mole
+_NUM_GROUPS = 32
 
 
 @dataclass(frozen=True)
@@ -54,3 +55,31 @@ class Placement:
             .value_in_unit(_ENERGY)
             for name, force in self.forces.items()
         }
+
+
+def groups_for(forces, system, wanted=None):
+    """A force group for each of the forces of a vesicle that is to be added to a System.
+
+    Parameters
+    ----------
+    forces : collection
+    system : openmm.System
+    wanted : sequence of int, optional
+        What `Vesicle.add_to` was given. Default: the lowest groups that no force uses.
+    """
+    count = len(forces)
+    if wanted is None:
+        used = {force.getForceGroup() for force in system.getForces()}
+        wanted = [group for group in range(_NUM_GROUPS) if group not in used][:count]
+        if len(wanted) < count:
+            raise ValueError(
+                f"Vesicle: the System's forces use {len(used)} of the {_NUM_GROUPS} force "
+                f"groups, and {count} are needed; pass force_groups to share some"
+            )
+    groups = [int(group) for group in wanted]
+    if len(groups) != count or not all(0 <= group < _NUM_GROUPS for group in groups):
+        raise ValueError(
+            f"Vesicle: force_groups needs {count} groups of 0 to {_NUM_GROUPS - 1}, "
+            f"got {list(wanted)}"
+        )
+    return groups

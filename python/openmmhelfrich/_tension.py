@@ -7,8 +7,14 @@ import inspect
 
 from openmm import unit
 
-from ._arguments import accept_copies, own_what_is_cast
-from ._movers import accept_in_constructor, accept_in_setter, constant, whole_number
+from ._arguments import (
+    accept_copies,
+    accept_in_constructor,
+    accept_in_setter,
+    give_method,
+    own_what_is_cast,
+)
+from ._movers import constant, whole_number
 from ._values import Scalar, capitalised, scalar
 
 __all__ = ["accept_arguments"]
@@ -45,7 +51,7 @@ def accept_arguments(force: type) -> None:
     for name in ("adaptiveMoves", "randomNumberSeed"):
         read = functools.partial(whole_number, _NAME, name)
         accept_in_setter(force, "set" + capitalised(name), read)
-    force.getStatistics = _get_statistics
+    give_method(force, "getStatistics", _get_statistics)
     accept_copies(force)
     own_what_is_cast(force)
 
@@ -69,7 +75,3 @@ def _get_statistics(self, context) -> dict:
     found = self._getStatistics(context)
     statistics = {name: int(found.pop(name)) for name in ("attempts", "accepted", "bodies")}
     return statistics | {"adapting": bool(found.pop("adapting"))} | found
-
-
-_get_statistics.__name__ = "getStatistics"
-_get_statistics.__qualname__ = f"{_NAME}.getStatistics"

@@ -9,6 +9,7 @@ import numpy as np
 import openmm
 from openmm import unit
 
+from ._mesh.geometry import edges_of
 from ._mesh.periodic import unfolded
 from ._numbers import whole_number
 from ._present import present_box, present_triangles
@@ -95,8 +96,7 @@ class _SurfaceReporter:
         vertices = np.asarray(positions)[self._particles]
         box = present_box(simulation.context, state, self._particles)
         if box is not None:
-            edges = np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
-            vertices, _, spanning = unfolded(vertices, edges, box)
+            vertices, _, spanning = unfolded(vertices, edges_of(triangles), box)
             if spanning.any() and not self._spans:
                 raise ValueError(
                     f"{type(self).__name__}: the surface spans the periodic box, so that it cannot "

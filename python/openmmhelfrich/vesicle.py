@@ -12,9 +12,10 @@ from openmm import app, unit
 
 from . import platforms
 from ._mesh.geometry import check_closed
-from ._placement import Placement
+from ._placement import Placement, groups_for
 from ._quantities import checked_field, checked_number
 from ._vesicle_flips import bath_of, checked_flips, mover_of
+from ._vesicle_times import TimeScales
 from .analysis import theory, triangle_areas
 from .forces import (
     BendingForce,
@@ -33,10 +34,9 @@ from .mesh import Mesh
 KBT = theory.BOLTZMANN * 300
 
 _ENERGY = unit.kilojoule_per_mole
-_NUM_GROUPS = 32
 
 
-class Vesicle:
+class Vesicle(TimeScales):
     """A fluid vesicle: bending, global area, global volume, and soft triangle heights.
 
     E = ½ κ Σ_i [J_i²/a_i − 2 C0 J_i + C0² a_i] + ½ kA (A − A0)²/A0 + ½ kV (V − V0)²/V0 + U_h
@@ -219,36 +219,6 @@ class Vesicle:
         """V0 over the volume of the sphere of area A0."""
         return self._volume / (4 / 3 * math.pi * self.radius**3)
 
-    @property
-    def tau_2(self):
-        """Period of the slowest mode, l = 2, without friction, ps: τ_2 = 2π/ω_2 (A30)."""
-        return theory.mode_period(
-            2, float(np.mean(self._rigidity)), self._mass, self._mesh.num_vertices, self.radius
-        )
-
-    @property
-    def tau_fastest(self):
-        """Period of the fastest mode that the mesh has, ps.
-
-        (A30) in the limit of large l at l = √N: τ_2 √24 / N.
-        """
-        return self.tau_2 * math.sqrt(24) / self._mesh.num_vertices
-
-    @property
-    def tau_heights(self):
-        """Time in which triangle heights relax, ps: τ_h = d √(m/ε)."""
-        return self._min_height * math.sqrt(self._mass / self._epsilon)
-
-    @property
-    def max_time_step(self):
-        """Largest time step with which the paper's runs last, ps: 0.1 √Ξ τ_fastest (Fig. 5).
-
-        It is a rule of thumb for the defaults of the other moduli, not a proof of stability. The
-        repulsion of the heights gets no softer with the rigidity: below 20 kBT take the value of 20
-        kBT. Brownian steps, which have no inertia, need to be some twenty times shorter.
-        """
-        return 0.1 * math.sqrt(self._softness) * self.tau_fastest
-
     def add_to(self, system, force_groups=None):
         """Add the particles and the forces to a System.
 
@@ -273,23 +243,9 @@ class Vesicle:
         ValueError
             Too few force groups are free, or `force_groups` is not one of 0 … 31 for each force.
         """
-        count = len(self._forces(0))
-        if force_groups is None:
-            used = {force.getForceGroup() for force in system.getForces()}
-            force_groups = [group for group in range(_NUM_GROUPS) if group not in used][:count]
-            if len(force_groups) < count:
-                raise ValueError(
-                    f"Vesicle: the System's forces use {len(used)} of the {_NUM_GROUPS} force "
-                    f"groups, and {count} are needed; pass force_groups to share some"
-                )
-        groups = [int(group) for group in force_groups]
-        if len(groups) != count or not all(0 <= group < _NUM_GROUPS for group in groups):
-            raise ValueError(
-                f"Vesicle: force_groups needs {count} groups of 0 to {_NUM_GROUPS - 1}, "
-                f"got {list(force_groups)}"
-            )
         offset = system.getNumParticles()
         forces = self._forces(offset)
+        groups = groups_for(forces, system, force_groups)
         for (name, force), group in zip(forces.items(), groups, strict=True):
             force.setName(name)
             force.setForceGroup(group)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Iterable
 
 import numpy as np
@@ -43,10 +44,10 @@ def virial(context, groups: int | Iterable[int] = -1) -> np.ndarray:
     -----
     It costs as much as some evaluations of the energy on one thread, on the processor.
     """
-    if not isinstance(groups, int):
+    if isinstance(groups, Iterable):
         groups = sum(1 << group for group in set(groups))
-    # OpenMM's C++ has the 32 groups in an int.
-    bits = (groups & 0xFFFFFFFF) - ((groups & 0x80000000) << 1)
+    # OpenMM's C++ has the 32 groups in an int, the last of which is its sign.
+    bits = ctypes.c_int32(groups).value
     surfaces = surfaces_of(context)
     if not surfaces:
         return np.zeros((3, 3))

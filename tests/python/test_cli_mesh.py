@@ -124,6 +124,29 @@ def test_info(ball):
     assert facts["heights, least to largest (nm)"] == pytest.approx([min(heights), max(heights)])
 
 
+def test_info_on_what_has_no_inside(tmp_path):
+    path = tmp_path / "flat.ply"
+    Mesh.disk(2, 10).write(path)
+    facts = json.loads(done("info", path, "--json"))
+    assert facts["edges of borders"] == [12]
+    assert "volume (nm³)" not in facts
+    Mesh.sheet(4, 4, 5, periodic=True).write(path)
+    facts = json.loads(done("info", path, "--json"))
+    assert facts["volume (nm³)"] is None
+    assert facts["box (nm)"][0] == [20, 0, 0]
+    # Across the faces of the box too.
+    assert facts["edges, least to largest (nm)"] == pytest.approx([5, 5])
+    assert "none" in done("info", path)
+
+
+@pytest.mark.parametrize("flat", [Mesh.disk(2, 10), Mesh.sheet(4, 4, 5, periodic=True)])
+def test_transform_of_what_has_no_inside(tmp_path, flat):
+    path = tmp_path / "flat.ply"
+    flat.write(path)
+    assert "reduced volume" not in done("transform", path, tmp_path / "out.ply", "--scale", 2)
+    assert Mesh.read(tmp_path / "out.ply") == flat.scaled(2)
+
+
 def test_info_as_text(ball):
     lines = done("info", ball).splitlines()
     assert lines[0] == str(ball)

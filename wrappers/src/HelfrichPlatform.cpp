@@ -1,11 +1,11 @@
 #include "HelfrichPlatform.h"
 #include "HelfrichKernels.h"
+#include "Movers.h"
 #include "PlatformChoice.h"
 
 #include <openmm/KernelFactory.h>
 #include <openmm/OpenMMException.h>
 #include <openmm/internal/ContextImpl.h>
-#include <openmm/internal/OSRngSeed.h>
 #include <openmm/kernels.h>
 
 #include <algorithm>
@@ -150,9 +150,8 @@ HelfrichTeam* HelfrichPlatform::PlatformData::getTeam() {
 }
 
 HelfrichStream& HelfrichPlatform::PlatformData::addStream(int seed) {
-    uint32_t key = (uint32_t) (seed == 0 ? osrngseed() : seed);
     // The second half of the key keeps two integrators of one seed apart.
-    streams.push_back({{key, (uint32_t) streams.size()}, 0});
+    streams.push_back({{toKey(seed), (uint32_t) streams.size()}, 0});
     return streams.back();
 }
 

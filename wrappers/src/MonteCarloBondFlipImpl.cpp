@@ -1,6 +1,7 @@
 #include "MonteCarloBondFlipImpl.h"
 
 #include "Integrators.h"
+#include "Movers.h"
 
 #include <openmm/CompoundIntegrator.h>
 #include <openmm/CustomCVForce.h>
@@ -11,7 +12,6 @@
 #include <openmm/QTBIntegrator.h>
 #include <openmm/System.h>
 #include <openmm/VerletIntegrator.h>
-#include <openmm/internal/OSRngSeed.h>
 #include <openmm/reference/ReferencePlatform.h>
 #include <openmm/reference/SimTKOpenMMRealType.h>
 
@@ -140,8 +140,7 @@ void MonteCarloBondFlipImpl::initialize(ContextImpl& context) {
     for (int particle : std::set<int>(corners.begin(), corners.end()))
         if (double mass = context.getSystem().getParticleMass(particle))
             inverseMasses.emplace_back(particle, 1 / mass);
-    int seed = owner.getRandomNumberSeed();
-    state.flips.key[0] = (uint32_t) (seed == 0 ? osrngseed() : seed);
+    state.flips.key[0] = toKey(owner.getRandomNumberSeed());
     state.flips.key[1] = KEY + findNumber(context.getSystem(), owner);
 }
 
@@ -171,14 +170,6 @@ double MonteCarloBondFlipImpl::getAnnounced(ContextImpl& context) {
     return *announced;
 }
 
-double MonteCarloBondFlipImpl::getThermalEnergy(ContextImpl& context) const {
-    double temperature = context.getParameter(MonteCarloBondFlip::Temperature());
-    if (!(temperature > 0 && std::isfinite(temperature)))
-        throw OpenMMException(owner.getTypeName() + ": the Context parameter " + MonteCarloBondFlip::Temperature() +
-                              " must be a finite number of K above zero, got " + std::to_string(temperature));
-    return BOLTZ * temperature;
-}
-
 void MonteCarloBondFlipImpl::updateContextState(ContextImpl& context, bool& forcesInvalid) {
     checkConnectivity(context);
     // To this the integrator may set the parameter back during the step.
@@ -196,7 +187,7 @@ void MonteCarloBondFlipImpl::updateContextState(ContextImpl& context, bool& forc
     if (attempts == 0)
         return;
     if (rules.demon == 0)
-        rules.temperature = getThermalEnergy(context);
+        rules.temperature = findThermalEnergy(owner.getTypeName(), context, MonteCarloBondFlip::Temperature());
     if (!inPlace)
         context.getPositions(positions);
     const vector<Vec3>& now =

@@ -97,8 +97,6 @@ private:
      * kicks.
      */
     void shareKick(OpenMM::ContextImpl& context, double stepSize);
-    /** kT of the bath, kJ/mol. */
-    double getThermalEnergy(OpenMM::ContextImpl& context) const;
 
     const MonteCarloBondFlip& owner;
     /** Where the forces are; null before they have been initialised. */

@@ -24,17 +24,12 @@ MonteCarloBondFlipProxy::MonteCarloBondFlipProxy() : SerializationProxy("Helfric
 
 void MonteCarloBondFlipProxy::serialize(const void* object, SerializationNode& node) const {
     const MonteCarloBondFlip& force = *static_cast<const MonteCarloBondFlip*>(object);
-    node.setIntProperty("version", VERSION)
-        .setIntProperty("forceGroup", force.getForceGroup())
-        .setStringProperty("name", force.getName())
-        .setDoubleProperty("temperature", force.getDefaultTemperature())
-        .setIntProperty("frequency", force.getFrequency())
-        .setDoubleProperty("attemptsPerEdge", force.getAttemptsPerEdge())
+    writeMover(force, node, VERSION);
+    node.setDoubleProperty("attemptsPerEdge", force.getAttemptsPerEdge())
         .setIntProperty("minDegree", force.getMinDegree())
         .setIntProperty("maxDegree", force.getMaxDegree())
         .setDoubleProperty("maxEdgeLength", force.getMaxEdgeLength())
-        .setStringProperty("ensemble", ENSEMBLES[force.getEnsemble()])
-        .setIntProperty("randomSeed", force.getRandomNumberSeed());
+        .setStringProperty("ensemble", ENSEMBLES[force.getEnsemble()]);
     writeTriangles(force, node);
 }
 
@@ -47,21 +42,13 @@ void* MonteCarloBondFlipProxy::deserialize(const SerializationNode& node) const 
                "maxDegree", "maxEdgeLength", "ensemble", "randomSeed"},
               {"Triangles"});
         const MonteCarloBondFlip defaults({}, 1.0);
-        force.reset(new MonteCarloBondFlip({}, number(NAME, node, "temperature"),
-                                           integerOr(NAME, node, "frequency", defaults.getFrequency()),
+        force.reset(new MonteCarloBondFlip({}, number(NAME, node, "temperature"), defaults.getFrequency(),
                                            numberOr(NAME, node, "attemptsPerEdge", defaults.getAttemptsPerEdge()),
                                            integerOr(NAME, node, "minDegree", defaults.getMinDegree()),
                                            integerOr(NAME, node, "maxDegree", defaults.getMaxDegree()),
                                            numberOr(NAME, node, "maxEdgeLength", defaults.getMaxEdgeLength())));
-        force->setRandomNumberSeed(integerOr(NAME, node, "randomSeed", defaults.getRandomNumberSeed()));
-        force->setForceGroup(integerOr(NAME, node, "forceGroup", defaults.getForceGroup()));
-        if (node.hasProperty("name"))
-            force->setName(text(NAME, node, "name"));
-        string ensemble = node.hasProperty("ensemble") ? text(NAME, node, "ensemble") : ENSEMBLES[0];
-        if (ensemble != ENSEMBLES[0] && ensemble != ENSEMBLES[1])
-            refuse(NAME, node, "ensemble", ENSEMBLES[0] + " or " + ENSEMBLES[1]);
-        force->setEnsemble(ensemble == ENSEMBLES[0] ? MonteCarloBondFlip::Canonical
-                                                    : MonteCarloBondFlip::Microcanonical);
+        readMover(node, *force);
+        force->setEnsemble(constantOr(NAME, node, "ensemble", ENSEMBLES, defaults.getEnsemble()));
         readTriangles(NAME, node, *force);
     });
     return static_cast<Force*>(force.release());

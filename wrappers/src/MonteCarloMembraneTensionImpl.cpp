@@ -3,11 +3,10 @@
 #include "Barostats.h"
 #include "HelfrichDynamics.h"
 #include "Integrators.h"
+#include "Movers.h"
 
 #include <openmm/System.h>
-#include <openmm/internal/OSRngSeed.h>
 #include <openmm/reference/ReferencePlatform.h>
-#include <openmm/reference/SimTKOpenMMRealType.h>
 
 #include <algorithm>
 #include <cmath>
@@ -88,8 +87,7 @@ void MonteCarloMembraneTensionImpl::initialize(ContextImpl& context) {
                               "together; choose another integrator");
     refuseBarostats(NAME, system);
     ScaledBodies::refuseConstraints(NAME, context, rigidMolecules);
-    int seed = owner.getRandomNumberSeed();
-    state.key[0] = (uint32_t) (seed == 0 ? osrngseed() : seed);
+    state.key[0] = toKey(owner.getRandomNumberSeed());
     state.key[1] = KEY + findNumber(system, owner);
     for (int i = 0; i < system.getNumParticles(); i++)
         hasVirtualSites = hasVirtualSites || system.isVirtualSite(i);
@@ -118,14 +116,6 @@ double MonteCarloMembraneTensionImpl::getFinite(ContextImpl& context, const stri
         throw OpenMMException(NAME + ": the Context parameter " + name + " must be finite, got " +
                               std::to_string(value));
     return value;
-}
-
-double MonteCarloMembraneTensionImpl::getThermalEnergy(ContextImpl& context) const {
-    double temperature = getFinite(context, MonteCarloMembraneTension::Temperature());
-    if (temperature <= 0)
-        throw OpenMMException(NAME + ": the Context parameter " + MonteCarloMembraneTension::Temperature() +
-                              " must be above zero, got " + std::to_string(temperature));
-    return BOLTZ * temperature;
 }
 
 double MonteCarloMembraneTensionImpl::getEnergy(ContextImpl& context) const {
@@ -201,7 +191,7 @@ MonteCarloMembraneTensionImpl::Move MonteCarloMembraneTensionImpl::choose(Contex
 }
 
 bool MonteCarloMembraneTensionImpl::attempt(ContextImpl& context, const Vec3 box[3], const Move& move, double chance) {
-    double thermalEnergy = getThermalEnergy(context);
+    double thermalEnergy = findThermalEnergy(NAME, context, MonteCarloMembraneTension::Temperature());
     // There is no box of no length, or less; the square root of a negative area is not a number.
     if (!(move.scale[0] > 0 && move.scale[1] > 0 && move.scale[2] > 0))
         return false;

@@ -74,8 +74,6 @@ private:
     void copyValues();
     /** A Context parameter, which must be finite. */
     double getFinite(OpenMM::ContextImpl& context, const std::string& name) const;
-    /** kT, kJ/mol. */
-    double getThermalEnergy(OpenMM::ContextImpl& context) const;
     /** The potential energy that integrators see, kJ/mol. */
     double getEnergy(OpenMM::ContextImpl& context) const;
     /** Choose a move by two random numbers in [0, 1). */

@@ -3,7 +3,6 @@
 #include "XmlElements.h"
 #include "openmm-helfrich/MonteCarloMembraneTension.h"
 
-#include <algorithm>
 #include <memory>
 
 using namespace HelfrichPlugin;
@@ -25,17 +24,12 @@ MonteCarloMembraneTensionProxy::MonteCarloMembraneTensionProxy() : Serialization
 
 void MonteCarloMembraneTensionProxy::serialize(const void* object, SerializationNode& node) const {
     const MonteCarloMembraneTension& force = *static_cast<const MonteCarloMembraneTension*>(object);
-    node.setIntProperty("version", VERSION)
-        .setIntProperty("forceGroup", force.getForceGroup())
-        .setStringProperty("name", force.getName())
-        .setDoubleProperty("temperature", force.getDefaultTemperature())
-        .setDoubleProperty("tension", force.getDefaultTension())
-        .setIntProperty("frequency", force.getFrequency())
+    writeMover(force, node, VERSION);
+    node.setDoubleProperty("tension", force.getDefaultTension())
         .setStringProperty("axes", AXES[force.getAxes()])
         .setDoubleProperty("pullingForce", force.getDefaultPullingForce())
         .setBoolProperty("scaleMoleculesAsRigid", force.getScaleMoleculesAsRigid())
-        .setIntProperty("adaptiveMoves", force.getAdaptiveMoves())
-        .setIntProperty("randomSeed", force.getRandomNumberSeed());
+        .setIntProperty("adaptiveMoves", force.getAdaptiveMoves());
 }
 
 void* MonteCarloMembraneTensionProxy::deserialize(const SerializationNode& node) const {
@@ -47,21 +41,13 @@ void* MonteCarloMembraneTensionProxy::deserialize(const SerializationNode& node)
                "scaleMoleculesAsRigid", "adaptiveMoves", "randomSeed"},
               {});
         force.reset(new MonteCarloMembraneTension(number(NAME, node, "temperature")));
+        readMover(node, *force);
         force->setDefaultTension(numberOr(NAME, node, "tension", force->getDefaultTension()));
-        force->setFrequency(integerOr(NAME, node, "frequency", force->getFrequency()));
-        string axes = node.hasProperty("axes") ? text(NAME, node, "axes") : AXES[force->getAxes()];
-        auto found = std::find(std::begin(AXES), std::end(AXES), axes);
-        if (found == std::end(AXES))
-            refuse(NAME, node, "axes", "XYIsotropic, XYIndependent, XYConstantArea or ZOnly");
-        force->setAxes((MonteCarloMembraneTension::Axes) (found - std::begin(AXES)));
+        force->setAxes(constantOr(NAME, node, "axes", AXES, force->getAxes()));
         force->setDefaultPullingForce(numberOr(NAME, node, "pullingForce", force->getDefaultPullingForce()));
         if (node.hasProperty("scaleMoleculesAsRigid"))
             force->setScaleMoleculesAsRigid(boolean(NAME, node, "scaleMoleculesAsRigid"));
         force->setAdaptiveMoves(integerOr(NAME, node, "adaptiveMoves", force->getAdaptiveMoves()));
-        force->setRandomNumberSeed(integerOr(NAME, node, "randomSeed", force->getRandomNumberSeed()));
-        force->setForceGroup(integerOr(NAME, node, "forceGroup", force->getForceGroup()));
-        if (node.hasProperty("name"))
-            force->setName(text(NAME, node, "name"));
     });
     return static_cast<Force*>(force.release());
 }

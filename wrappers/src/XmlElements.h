@@ -5,9 +5,11 @@
 
 #include <openmm/serialization/SerializationNode.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <climits>
 #include <cstdlib>
+#include <iterator>
 #include <set>
 #include <string>
 
@@ -122,6 +124,43 @@ void within(const std::string& force, const OpenMM::SerializationNode& node, Bod
         throw OpenMM::OpenMMException(message + " (in element <" + (node.getName().empty() ? "Force" : node.getName()) +
                                       ">)");
     }
+}
+
+/** The number of a constant, which XML names; one of a default may be left out. */
+template <class Constant, size_t count>
+Constant constantOr(const std::string& force, const OpenMM::SerializationNode& node, const std::string& property,
+                    const std::string (&names)[count], Constant value) {
+    if (!node.hasProperty(property))
+        return value;
+    auto found = std::find(std::begin(names), std::end(names), node.getStringProperty(property));
+    if (found == std::end(names)) {
+        std::string known = names[0];
+        for (size_t i = 1; i < count; i++)
+            known += (i + 1 < count ? ", " : " or ") + names[i];
+        refuse(force, node, property, known);
+    }
+    return (Constant) (found - std::begin(names));
+}
+
+/** What all MonteCarloMovers have; the temperature must be there, with what makes a mover. */
+template <class Mover>
+void writeMover(const Mover& mover, OpenMM::SerializationNode& node, int version) {
+    node.setIntProperty("version", version)
+        .setIntProperty("forceGroup", mover.getForceGroup())
+        .setStringProperty("name", mover.getName())
+        .setDoubleProperty("temperature", mover.getDefaultTemperature())
+        .setIntProperty("frequency", mover.getFrequency())
+        .setIntProperty("randomSeed", mover.getRandomNumberSeed());
+}
+
+template <class Mover>
+void readMover(const OpenMM::SerializationNode& node, Mover& mover) {
+    const std::string& force = mover.getTypeName();
+    mover.setForceGroup(integerOr(force, node, "forceGroup", mover.getForceGroup()));
+    if (node.hasProperty("name"))
+        mover.setName(text(force, node, "name"));
+    mover.setFrequency(integerOr(force, node, "frequency", mover.getFrequency()));
+    mover.setRandomNumberSeed(integerOr(force, node, "randomSeed", mover.getRandomNumberSeed()));
 }
 
 inline void writeTriangles(const TriangulatedForce& force, OpenMM::SerializationNode& node) {

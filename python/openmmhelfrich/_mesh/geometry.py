@@ -9,7 +9,7 @@ Equation numbers are those of doi:10.1103/PhysRevE.108.015301.
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import coo_array
+from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
 from ..errors import MeshError
@@ -18,6 +18,7 @@ __all__ = [
     "border_loops",
     "check_closed",
     "component_count",
+    "edge_graph",
     "edges_of",
     "reduced_volume",
     "surface_area",
@@ -85,6 +86,11 @@ def check_closed(loops: list[np.ndarray], subject: str) -> None:
 
 def component_count(num_vertices: int, edges: np.ndarray) -> int:
     """The number of connected components."""
-    ones = np.ones(len(edges), dtype=np.int8)
-    graph = coo_array((ones, (edges[:, 0], edges[:, 1])), shape=(num_vertices, num_vertices))
+    graph = edge_graph(num_vertices, edges)
     return int(connected_components(graph, directed=False, return_labels=False))
+
+
+def edge_graph(num_vertices: int, edges: np.ndarray) -> csr_array:
+    """Which vertices are connected, as scipy.sparse.csgraph has it, each edge in one direction."""
+    ones = np.ones(len(edges), dtype=np.int8)
+    return csr_array((ones, (edges[:, 0], edges[:, 1])), shape=(num_vertices, num_vertices))

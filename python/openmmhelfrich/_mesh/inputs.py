@@ -9,7 +9,15 @@ import numpy as np
 from .._units import length_array
 from ..errors import MeshError
 
-__all__ = ["box_array", "integer", "not_negative", "numbers", "triangle_array", "vertex_array"]
+__all__ = [
+    "box_array",
+    "integer",
+    "not_negative",
+    "numbers",
+    "positive",
+    "triangle_array",
+    "vertex_array",
+]
 
 # A box leans over by half of its length and a rounding error.
 _ROUNDED = 1 + 1e-6
@@ -93,3 +101,9 @@ def not_negative(value, where: str, name: str) -> float:
     if number.shape != () or not (np.isfinite(number) and number >= 0):
         raise MeshError(f"{where}: {name} must be one finite number, 0 or more, got {value!r}")
     return float(number)
+
+
+def positive(value: float, where: str, name: str) -> None:
+    """Refuse a finite length that is not above 0."""
+    if not value > 0:
+        raise MeshError(f"{where}: {name} must be above 0 nm, got {value}")

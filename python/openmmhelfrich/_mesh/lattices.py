@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..errors import MeshError
-from .inputs import integer
+from .inputs import integer, positive
 
 __all__ = ["disk", "schwarz_p", "sheet", "torus", "tube"]
 
@@ -115,12 +115,6 @@ def schwarz_p(n, size: float):
     return np.array(vertices), np.concatenate(triangles), size * np.eye(3)
 
 
-def positive(value: float, where: str, name: str) -> None:
-    """Refuse a length that is not above 0."""
-    if not (value > 0 and np.isfinite(value)):
-        raise MeshError(f"{where}: {name} must be above 0 nm, got {value}")
-
-
 def _rows(nx: int, ny: int) -> tuple[np.ndarray, np.ndarray]:
     """Row and column of each vertex, row by row."""
     return np.divmod(np.arange(nx * ny), nx)
@@ -128,8 +122,7 @@ def _rows(nx: int, ny: int) -> tuple[np.ndarray, np.ndarray]:
 
 def _strips(nx: int, ny: int, close_x: bool, close_y: bool) -> np.ndarray:
     """Triangles between rows that are shifted to and fro, counter-clockwise seen from z."""
-    row, column = np.divmod(np.arange((nx if close_x else nx - 1) * (ny if close_y else ny - 1)),
-                            nx if close_x else nx - 1)  # fmt: skip
+    row, column = _rows(nx if close_x else nx - 1, ny if close_y else ny - 1)
 
     def vertex(i, j):
         return (row + j) % ny * nx + (column + i) % nx
@@ -153,12 +146,7 @@ def _hexagon(n: int):
     triangles : ndarray of int
         Shape (6 n², 3), counter-clockwise.
     """
-    ring, sextant, step = (
-        [np.zeros(1, dtype=int)],
-        [np.zeros(1, dtype=int)],
-        [np.zeros(1, dtype=int)],
-    )
-    triangles = []
+    ring, sextant, step, triangles = [[0]], [[0]], [[0]], []
 
     def vertex(ring, sextant, step):
         start = 1 + 3 * ring * (ring - 1)

@@ -8,8 +8,9 @@ take a box of None for positions that are what they are.
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import coo_array
 from scipy.sparse.csgraph import breadth_first_order, connected_components
+
+from .geometry import edge_graph
 
 __all__ = ["corner_positions", "cut", "half_width", "nearest", "unfolded", "wrapped"]
 
@@ -79,8 +80,7 @@ def unfolded(
         Along which of a, b and c each part comes back to itself, shape (num_parts, 3).
     """
     count = len(vertices)
-    ones = np.ones(len(edges), dtype=np.int8)
-    graph = coo_array((ones, (edges[:, 0], edges[:, 1])), shape=(count, count)).tocsr()
+    graph = edge_graph(count, edges)
     num_parts, part = connected_components(graph, directed=False)
     result = vertices.copy()
     depth = np.zeros(count, dtype=np.intp)

@@ -28,18 +28,15 @@ def positions_in(source):
     if hasattr(source, "vertices") and hasattr(source, "triangles"):
         box = getattr(source, "box", None)
         return source.vertices if box is None else unfolded(source.vertices, source.edges, box)[0]
-    if isinstance(source, openmm.app.Simulation):
-        source = source.context
-    if isinstance(source, openmm.Context):
-        source = source.getState(getPositions=True)
-    if isinstance(source, openmm.State):
-        try:
-            return source.getPositions(asNumpy=True)
-        except (openmm.OpenMMException, TypeError):
-            raise ValueError(
-                "vertices: the State has no positions; take it with getState(getPositions=True)"
-            ) from None
-    return source
+    state = _state_of(source, getPositions=True)
+    if state is None:
+        return source
+    try:
+        return state.getPositions(asNumpy=True)
+    except (openmm.OpenMMException, TypeError):
+        raise ValueError(
+            "vertices: the State has no positions; take it with getState(getPositions=True)"
+        ) from None
 
 
 def box_of(box, *sources):
@@ -49,27 +46,26 @@ def box_of(box, *sources):
 
     Raises
     ------
-    TypeError
-        A Quantity that is no length.
     ValueError
-        Vectors that are not three, or not of OpenMM's reduced form.
+        Vectors that are not three lengths each, or not of OpenMM's reduced form.
     """
-    if box is None:
-        boxes = (getattr(source, "box", None) for source in sources)
-        box = next((box for box in boxes if box is not None), None)
-        return box if box is None else _present_box(sources[0], box)
-    return box_array(box, "analysis")
+    if box is not None:
+        return box_array(box, "analysis")
+    boxes = (getattr(source, "box", None) for source in sources)
+    box = next((box for box in boxes if box is not None), None)
+    state = None if box is None else _state_of(sources[0])
+    if state is None:
+        return box
+    return state.getPeriodicBoxVectors(asNumpy=True).value_in_unit(unit.nanometer)
 
 
-def _present_box(source, box):
-    """The box, nm, of an object of OpenMM; of anything else the one that is given."""
+def _state_of(source, **wanted):
+    """A State, or that of a Context or Simulation, with what is wanted; of anything else None."""
     if isinstance(source, openmm.app.Simulation):
         source = source.context
     if isinstance(source, openmm.Context):
-        source = source.getState()
-    if isinstance(source, openmm.State):
-        return source.getPeriodicBoxVectors(asNumpy=True).value_in_unit(unit.nanometer)
-    return box
+        source = source.getState(**wanted)
+    return source if isinstance(source, openmm.State) else None
 
 
 def over_frames(work, vertices, triangles=None, cost=None):

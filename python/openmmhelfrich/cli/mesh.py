@@ -9,6 +9,8 @@ from pathlib import Path
 
 import click
 
+from ..errors import MeshError
+
 __all__ = ["mesh"]
 
 _INPUT = click.Path(path_type=Path, dir_okay=False)
@@ -41,8 +43,6 @@ def _reading_options(command):
 @contextlib.contextmanager
 def _tidy_errors() -> Iterator[None]:
     """Errors of meshes as one line, without a traceback; those of files are `main`'s."""
-    from ..errors import MeshError
-
     try:
         yield
     except MeshError as reason:
@@ -202,14 +202,9 @@ def _facts(given, softness: float) -> dict:
 
     import numpy as np
 
-    a, b = (given.vertices[column] for column in given.edges.T)
-    edges = np.linalg.norm(a - b, axis=1)
-    corners = given.vertices[given.triangles]
-    double = np.linalg.norm(
-        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1
-    )
-    sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
-    heights = double[:, np.newaxis] / sides
+    from ..analysis import edge_lengths, triangle_heights
+
+    edges, heights = edge_lengths(given, given), triangle_heights(given, given)
     degrees, counts = np.unique(given.degrees, return_counts=True)
     return {
         "vertices": given.num_vertices,
@@ -221,6 +216,7 @@ def _facts(given, softness: float) -> dict:
         },
         "area (nm²)": given.area,
         **_closure(given),
+        **({} if given.box is None else {"box (nm)": given.box.tolist()}),
         "radius of that area (nm)": math.sqrt(given.area / (4 * math.pi)),
         "centre (nm)": given.vertices.mean(axis=0).tolist(),
         "extent (nm)": np.ptp(given.vertices, axis=0).tolist(),
@@ -231,17 +227,22 @@ def _facts(given, softness: float) -> dict:
 
 
 def _closure(given) -> dict[str, object]:
-    """What it encloses, or how many edges its borders have."""
+    """What it encloses, None if it spans its periodic box; or how many edges its borders have."""
     if given.border_loops:
         return {"edges of borders": [len(border) for border in given.border_loops]}
-    return {"volume (nm³)": given.volume, "reduced volume": given.reduced_volume}
+    try:
+        return {"volume (nm³)": given.volume, "reduced volume": given.reduced_volume}
+    except MeshError:
+        return {"volume (nm³)": None, "reduced volume": None}
 
 
 def _text(value) -> str:
     if isinstance(value, dict):
         return ", ".join(f"{count} of {degree}" for degree, count in value.items())
     if isinstance(value, list):
-        return "  ".join(f"{number:.6g}" for number in value)
+        return "  ".join(_text(one) if isinstance(one, list) else f"{one:.6g}" for one in value)
+    if value is None:
+        return "none"
     return str(value) if isinstance(value, int) else f"{value:.9g}"
 
 
@@ -249,7 +250,8 @@ def _write(made, output: Path, force: bool) -> None:
     if output.exists() and not force:
         raise click.ClickException(f"{output} is there already; overwrite it with --force")
     made.write(output)
+    reduced = _closure(made).get("reduced volume")
     click.echo(
         f"wrote {output}: {made.num_vertices} vertices, {made.num_triangles} triangles, "
-        f"area {made.area:.8g} nm², reduced volume {made.reduced_volume:.4f}"
+        f"area {made.area:.8g} nm²" + ("" if reduced is None else f", reduced volume {reduced:.4f}")
     )

@@ -1,12 +1,12 @@
 #ifndef HELFRICH_MONTE_CARLO_BOND_FLIP_H_
 #define HELFRICH_MONTE_CARLO_BOND_FLIP_H_
 
+#include "MonteCarloMover.h"
 #include "TriangulatedForce.h"
 #include "internal/UpdatableImpl.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <string>
 #include <vector>
@@ -58,7 +58,7 @@ namespace HelfrichPlugin {
  * is taken for the present one as long as time or number of steps go on; a State from the beginning of the very step in
  * which bonds have flipped is therefore not refused. If both are set anew in the Context, ask for the energy before.
  */
-class MonteCarloBondFlip : public TriangulatedForce {
+class MonteCarloBondFlip : public MonteCarloMover<TriangulatedForce> {
 public:
     /**
      * Who pays for flips.
@@ -92,9 +92,7 @@ public:
      */
     MonteCarloBondFlip(const std::vector<int>& triangles, double temperature, int frequency = 10,
                        double attemptsPerEdge = 0.1, int minDegree = 3, int maxDegree = 10, double maxEdgeLength = 0)
-        : TriangulatedForce("MonteCarloBondFlip", triangles), ensemble(Canonical), randomNumberSeed(0) {
-        setDefaultTemperature(temperature);
-        setFrequency(frequency);
+        : MonteCarloMover(temperature, frequency, "MonteCarloBondFlip", triangles), ensemble(Canonical) {
         setAttemptsPerEdge(attemptsPerEdge);
         setMinDegree(minDegree);
         setMaxDegree(maxDegree);
@@ -102,35 +100,6 @@ public:
         if (maxDegree < minDegree)
             fail("maxDegree must not be below minDegree, got " + std::to_string(maxDegree) + " and " +
                  std::to_string(minDegree));
-    }
-    /**
-     * Get the default temperature, K.
-     */
-    double getDefaultTemperature() const {
-        return temperature;
-    }
-    /**
-     * Set the default temperature, K, above zero, of Contexts that are made from now on; in others it is the parameter
-     * Temperature().
-     */
-    void setDefaultTemperature(double temperature) {
-        if (!(temperature > 0 && std::isfinite(temperature)))
-            fail("temperature must be a finite number of K above zero, got " + text(temperature));
-        this->temperature = temperature;
-    }
-    /**
-     * Get every how many time steps flips are tried.
-     */
-    int getFrequency() const {
-        return frequency;
-    }
-    /**
-     * Set every how many time steps flips are tried; 0 for never.
-     */
-    void setFrequency(int frequency) {
-        if (frequency < 0)
-            fail("frequency must be a number of steps, or 0 for never, got " + std::to_string(frequency));
-        this->frequency = frequency;
     }
     /**
      * Get how many flips are tried each time, for each edge.
@@ -203,19 +172,6 @@ public:
         this->ensemble = ensemble;
     }
     /**
-     * Get the seed of the random numbers.
-     */
-    int getRandomNumberSeed() const {
-        return randomNumberSeed;
-    }
-    /**
-     * Set the seed of the random numbers, for Contexts that are made from now on. The same seed gives the same flips,
-     * on any number of threads. With 0, the default, each Context gets a seed of its own.
-     */
-    void setRandomNumberSeed(int seed) {
-        randomNumberSeed = seed;
-    }
-    /**
      * Copy frequency, attemptsPerEdge, the bounds and the ensemble of this object to a Context. The temperature is a
      * parameter of the Context; changed triangles are refused (use Context::reinitialize()).
      *
@@ -256,16 +212,9 @@ public:
     }
 
 private:
-    static std::string text(double value) {
-        char buffer[32];
-        std::snprintf(buffer, sizeof(buffer), "%g", value);
-        return buffer;
-    }
-
-    double temperature, attemptsPerEdge, maxEdgeLength;
-    int frequency, minDegree, maxDegree;
+    double attemptsPerEdge, maxEdgeLength;
+    int minDegree, maxDegree;
     Ensemble ensemble;
-    int randomNumberSeed;
 };
 
 } // namespace HelfrichPlugin

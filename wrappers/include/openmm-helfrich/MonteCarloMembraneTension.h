@@ -1,15 +1,14 @@
 #ifndef HELFRICH_MONTE_CARLO_MEMBRANE_TENSION_H_
 #define HELFRICH_MONTE_CARLO_MEMBRANE_TENSION_H_
 
+#include "MonteCarloMover.h"
 #include "internal/ConnectivityImpl.h"
-#include "internal/Core.h"
+#include "internal/HelfrichForce.h"
 #include "internal/UpdatableImpl.h"
 
 #include <openmm/Context.h>
-#include <openmm/Force.h>
 
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <string>
 
@@ -69,7 +68,7 @@ namespace HelfrichPlugin {
  * OpenMM's barostats are refused by themselves where a membrane spans the box, unless they scale every particle
  * (setScaleMoleculesAsRigid(False)) or never act (frequency 0).
  */
-class MonteCarloMembraneTension : public OpenMM::Force {
+class MonteCarloMembraneTension : public MonteCarloMover<HelfrichForce> {
 public:
     /**
      * Which edges of the box change.
@@ -122,28 +121,11 @@ public:
      */
     explicit MonteCarloMembraneTension(double temperature, double tension = 0, int frequency = 25,
                                        Axes axes = XYIsotropic, double pullingForce = 0)
-        : scaleMoleculesAsRigid(true), adaptiveMoves(1000), randomNumberSeed(0) {
-        setName("MonteCarloMembraneTension");
-        setDefaultTemperature(temperature);
+        : MonteCarloMover(temperature, frequency, "MonteCarloMembraneTension"), scaleMoleculesAsRigid(true),
+          adaptiveMoves(1000) {
         setDefaultTension(tension);
-        setFrequency(frequency);
         setAxes(axes);
         setDefaultPullingForce(pullingForce);
-    }
-    /**
-     * Get the default temperature, K.
-     */
-    double getDefaultTemperature() const {
-        return temperature;
-    }
-    /**
-     * Set the default temperature, K, above zero, of Contexts that are made from now on; in others it is the parameter
-     * Temperature().
-     */
-    void setDefaultTemperature(double temperature) {
-        if (!(temperature > 0 && std::isfinite(temperature)))
-            fail("temperature must be a finite number of K above zero, got " + text(temperature));
-        this->temperature = temperature;
     }
     /**
      * Get the default tension, kJ/mol/nm^2.
@@ -174,20 +156,6 @@ public:
         if (!std::isfinite(pullingForce))
             fail("pullingForce must be a finite number of kJ/mol/nm, got " + text(pullingForce));
         this->pullingForce = pullingForce;
-    }
-    /**
-     * Get every how many time steps a move is tried.
-     */
-    int getFrequency() const {
-        return frequency;
-    }
-    /**
-     * Set every how many time steps a move is tried; 0 for never.
-     */
-    void setFrequency(int frequency) {
-        if (frequency < 0)
-            fail("frequency must be a number of steps, or 0 for never, got " + std::to_string(frequency));
-        this->frequency = frequency;
     }
     /**
      * Get which edges of the box change.
@@ -229,19 +197,6 @@ public:
         if (moves < 0)
             fail("adaptiveMoves must be a number of moves, got " + std::to_string(moves));
         adaptiveMoves = moves;
-    }
-    /**
-     * Get the seed of the random numbers.
-     */
-    int getRandomNumberSeed() const {
-        return randomNumberSeed;
-    }
-    /**
-     * Set the seed of the random numbers, for Contexts that are made from now on. The same seed gives the same moves,
-     * on any number of threads. With 0, the default, each Context gets a seed of its own.
-     */
-    void setRandomNumberSeed(int seed) {
-        randomNumberSeed = seed;
     }
     /**
      * Copy frequency and adaptiveMoves of this object to a Context. Temperature, tension and pulling force are
@@ -291,36 +246,12 @@ public:
         return false;
     }
 
-protected:
-    OpenMM::ForceImpl* createImpl() const;
-
 private:
-    [[noreturn]] void fail(const std::string& message) const {
-        throw OpenMM::OpenMMException("MonteCarloMembraneTension: " + message);
-    }
-    static std::string text(double value) {
-        char buffer[32];
-        std::snprintf(buffer, sizeof(buffer), "%g", value);
-        return buffer;
-    }
-
-    double temperature, tension, pullingForce;
-    int frequency;
+    double tension, pullingForce;
     Axes axes;
     bool scaleMoleculesAsRigid;
-    int adaptiveMoves, randomNumberSeed;
+    int adaptiveMoves;
 };
-
-#ifndef SWIG
-
-inline OpenMM::ForceImpl* MonteCarloMembraneTension::createImpl() const {
-    void* impl = Helfrich_createImpl(static_cast<const OpenMM::Force*>(this));
-    if (impl == nullptr)
-        throw OpenMM::OpenMMException(lastError());
-    return static_cast<OpenMM::ForceImpl*>(impl);
-}
-
-#endif /*SWIG*/
 
 } // namespace HelfrichPlugin
 

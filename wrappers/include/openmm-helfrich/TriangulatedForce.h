@@ -2,10 +2,9 @@
 #define HELFRICH_TRIANGULATED_FORCE_H_
 
 #include "internal/ConnectivityImpl.h"
-#include "internal/Core.h"
+#include "internal/HelfrichForce.h"
 
 #include <openmm/Context.h>
-#include <openmm/Force.h>
 
 #include <string>
 #include <vector>
@@ -19,7 +18,7 @@ namespace HelfrichPlugin {
  * (MonteCarloBondFlip) and setTrianglesInContext() change which particles are connected in a Context, for all forces on
  * the same triangles at once; triangles keep their numbers.
  */
-class TriangulatedForce : public OpenMM::Force {
+class TriangulatedForce : public HelfrichForce {
 public:
     /**
      * Add a triangle.
@@ -104,12 +103,6 @@ public:
      * @return the nine elements, row by row
      */
     std::vector<double> getVirial(OpenMM::Context& context, int groups = -1) const;
-    /**
-     * Get the name of the class, as messages and XML have it.
-     */
-    const std::string& getTypeName() const {
-        return type;
-    }
 
 protected:
     /**
@@ -117,13 +110,10 @@ protected:
      * @param triangles  the particle indices of the corners, three for each triangle
      */
     TriangulatedForce(const std::string& type, const std::vector<int>& triangles);
-    OpenMM::ForceImpl* createImpl() const;
-    [[noreturn]] void fail(const std::string& message) const;
 
 private:
     ConnectivityImpl& getConnectivityImpl(OpenMM::Context& context) const;
 
-    std::string type;
     std::vector<int> triangles;
 };
 
@@ -133,13 +123,9 @@ private:
  */
 #ifndef SWIG
 
-inline TriangulatedForce::TriangulatedForce(const std::string& type, const std::vector<int>& triangles) : type(type) {
-    setName(type);
+inline TriangulatedForce::TriangulatedForce(const std::string& type, const std::vector<int>& triangles)
+    : HelfrichForce(type) {
     addTriangles(triangles);
-}
-
-inline void TriangulatedForce::fail(const std::string& message) const {
-    throw OpenMM::OpenMMException(type + ": " + message);
 }
 
 inline int TriangulatedForce::addTriangle(int particle1, int particle2, int particle3) {
@@ -185,13 +171,6 @@ inline void TriangulatedForce::restoreConnectivity(OpenMM::Context& context, con
 
 inline std::vector<double> TriangulatedForce::getVirial(OpenMM::Context& context, int groups) const {
     return getConnectivityImpl(context).getVirial(getContextImpl(context), groups);
-}
-
-inline OpenMM::ForceImpl* TriangulatedForce::createImpl() const {
-    void* impl = Helfrich_createImpl(static_cast<const OpenMM::Force*>(this));
-    if (impl == nullptr)
-        throw OpenMM::OpenMMException(lastError());
-    return static_cast<OpenMM::ForceImpl*>(impl);
 }
 
 #endif /*SWIG*/

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial import ConvexHull
 
 from ..errors import MeshError
-from .inputs import integer
+from .inputs import integer, positive
 
 __all__ = ["icosphere", "random_sphere"]
 
@@ -47,7 +47,7 @@ def icosphere(n, radius: float) -> tuple[np.ndarray, np.ndarray]:
     """
     where = "Mesh.icosphere"
     n = integer(n, where, "n", 1)
-    _check_radius(radius, where)
+    positive(radius, where, "radius")
     golden = (1 + np.sqrt(5)) / 2
     corners = np.array([(0.0, s, t * golden) for s in (1, -1) for t in (1, -1)])
     corners = np.concatenate([np.roll(corners, shift, axis=1) for shift in range(3)])
@@ -166,7 +166,7 @@ def random_sphere(num_vertices, radius: float, seed) -> tuple[np.ndarray, np.nda
             f"{where}: no triangulation of the sphere has 13 vertices, all of degree 5 to 7; "
             "take 12, or 14 and more"
         )
-    _check_radius(radius, where)
+    positive(radius, where, "radius")
     random = np.random.default_rng(integer(seed, where, "seed", 0))
     for _ in range(_ATTEMPTS):
         points = _jittered_lattice(num_vertices, random)
@@ -231,8 +231,3 @@ def _outward(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
 
 def _project(vectors: np.ndarray) -> np.ndarray:
     return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
-
-
-def _check_radius(radius: float, where: str) -> None:
-    if not radius > 0:
-        raise MeshError(f"{where}: radius must be above 0 nm, got {radius}")

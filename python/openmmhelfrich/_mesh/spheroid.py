@@ -1,0 +1,73 @@
+"""Spheres flattened or stretched to a reduced volume: what `Mesh.oblate` and `prolate` compute."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.optimize import brentq
+
+from ..errors import MeshError
+from .geometry import reduced_volume, surface_area, volume_enclosed
+from .inputs import numbers
+
+__all__ = ["spheroid"]
+
+
+def spheroid(
+    vertices: np.ndarray, triangles: np.ndarray, target, prolate: bool, where: str
+) -> np.ndarray:
+    """Vertices stretched along z, or flattened, to a reduced volume at unchanged area.
+
+    x' = c + s (x − c), y likewise, z' = c + s t (z − c): c is the mean of the vertices, t solves
+    v(t) = target with the area and the volume of the triangles, s restores the area.
+
+    Parameters
+    ----------
+    vertices, triangles : ndarray
+        The mesh, close to a sphere.
+    target : float
+        The reduced volume wanted.
+    prolate : bool
+        Whether to look for t > 1, a cigar, or t < 1, a disk.
+    where : str
+        The name of the method, for the message of an error.
+
+    Returns
+    -------
+    ndarray
+        New vertices, shape (num_vertices, 3), nm.
+
+    Raises
+    ------
+    MeshError
+        If the target is not a number between 0 and the reduced volume of the mesh itself.
+    """
+    target = numbers(target, where, "reduced_volume")
+    if target.shape != ():
+        raise MeshError(f"{where}: reduced_volume must be one number, got {target}")
+    centre = vertices.mean(axis=0)
+    centred = vertices - centre
+
+    def stretched(log_aspect: float) -> np.ndarray:
+        return centred * np.array([1.0, 1.0, np.exp(log_aspect)])
+
+    def excess(log_aspect: float) -> float:
+        shape = stretched(log_aspect)
+        area, volume = surface_area(shape[triangles]), volume_enclosed(shape, triangles)
+        return reduced_volume(area, volume) - target
+
+    largest = excess(0.0) + target
+    if not 0 < target <= largest:
+        raise MeshError(
+            f"{where}: reduced_volume must be above 0 and at most {largest:.6g}, that of the mesh "
+            f"itself, got {target}; start from a mesh that is closer to a sphere"
+        )
+    if target == largest:
+        return vertices.copy()
+    # v falls steadily with |log t| on either side of the sphere, so doubling finds a bracket.
+    bound = 0.5 if prolate else -0.5
+    while excess(bound) > 0:
+        bound *= 2
+    log_aspect = brentq(excess, 0.0, bound, xtol=1e-15, rtol=4 * np.finfo(float).eps)
+    shape = stretched(log_aspect)
+    wanted = surface_area(centred[triangles])
+    return centre + shape * np.sqrt(wanted / surface_area(shape[triangles]))
