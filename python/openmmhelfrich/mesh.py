@@ -727,6 +727,11 @@ class Mesh:
         -------
         float
             Energy, kJ/mol.
+
+        Raises
+        ------
+        MeshError
+            If the mesh has a box and the force is one on triangles that does not use it.
         """
         return on_openmm.energy(self._vertices, force, self._box)
 
