@@ -227,3 +227,21 @@ def test_positions_that_are_too_far_away_are_named():
     # A million boxes are fine.
     context.setPositions(mesh.vertices + 1e6 * mesh.box[1])
     context.getState(energy=True)
+
+
+def test_what_needs_a_centre_refuses_what_has_none():
+    sheet, whole = MESHES["sheet"](), ball()
+    frames = np.stack([whole.vertices] * 2)
+    for measure in (
+        lambda v, t: analysis.solid_angles(v, t),
+        lambda v, t: analysis.mode_amplitudes(v, t, lmax=2),
+        lambda v, t: analysis.gyration_tensor(v),
+        lambda v, t: analysis.density_modes(v, 2),
+    ):
+        with pytest.raises(ValueError, match="spans its periodic box, and so has no centre"):
+            measure(sheet, sheet)
+        assert np.isfinite(measure(whole, whole)).all()
+    for measure in (analysis.solid_angles, lambda v, t: analysis.mode_amplitudes(v, t, lmax=2)):
+        with pytest.raises(ValueError, match="pass mesh.triangles"):
+            measure(frames, whole)
+        assert np.isfinite(measure(frames, whole.triangles)).all()
