@@ -282,8 +282,8 @@ class VTKHDFReporter(_SurfaceReporter):
     doi:10.1103/PhysRevE.108.015301), 1/nm; ``area``, a third of the triangles around, nm²;
     ``neighbours``, how many there are; and ``component``, the number of their connected surface,
     from 0. Triangles carry ``area``, nm², and ``component``. A surface that spans its periodic box
-    is cut at the faces of the box, see `analysis.SurfaceSeries`. Coordinates are in nm, times in ps. It
-    takes VTK 9.3, ParaView 5.12 or newer ones to read them.
+    is cut at the faces of the box, where vertices are there once for each image. Coordinates are in
+    nm, times in ps. It takes VTK 9.3, ParaView 5.12 or newer ones to read them.
 
     Every frame is on disk when it has been written, and the file is closed in between: ParaView may
     look at it during the run. A kill in the middle of a frame leaves ``<file>.journal``, from which

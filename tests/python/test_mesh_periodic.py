@@ -242,6 +242,6 @@ def test_what_needs_a_centre_refuses_what_has_none():
             measure(sheet, sheet)
         assert np.isfinite(measure(whole, whole)).all()
     for measure in (analysis.solid_angles, lambda v, t: analysis.mode_amplitudes(v, t, lmax=2)):
-        with pytest.raises(ValueError, match="pass mesh.triangles"):
+        with pytest.raises(ValueError, match=r"pass mesh\.triangles"):
             measure(frames, whole)
         assert np.isfinite(measure(frames, whole.triangles)).all()

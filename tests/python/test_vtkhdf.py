@@ -464,6 +464,13 @@ class TestPeriodicBoxes:
         boxes = analysis.Trajectory(path).boxes()
         np.testing.assert_allclose(boxes, [mesh.box for mesh in meshes], rtol=1e-6)
         assert len(analysis.Trajectory(path, start=1, stride=2).boxes()) == 2
+        with (tmp_path / "a.dcd").open("wb") as stream:
+            dcd = app.DCDFile(stream, start.topology(), 0.001)
+            for mesh in meshes:
+                box = [openmm.Vec3(*vector) for vector in mesh.box]
+                dcd.writeModel(mesh.vertices * openmm.unit.nanometer, periodicBoxVectors=box)
+        in_dcd = analysis.Trajectory(tmp_path / "a.dcd").boxes()
+        np.testing.assert_allclose(in_dcd, boxes, rtol=1e-5, atol=1e-4)
         expected = [analysis.shape(mesh, mesh).area for mesh in meshes]
         for found in (
             analysis.shape(path, start).area,

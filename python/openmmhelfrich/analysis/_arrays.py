@@ -93,9 +93,7 @@ def in_boxes(work, box):
     def each(frames, faces, first):
         if first + len(frames) > len(box):
             raise ValueError(f"box: there are those of {len(box)} frames, but more frames")
-        parts = [
-            work(frame[np.newaxis], faces, box[first + k]) for k, frame in enumerate(frames)
-        ]
+        parts = [work(frame[np.newaxis], faces, box[first + k]) for k, frame in enumerate(frames)]
         return _joined(parts)
 
     return each

@@ -78,9 +78,9 @@ def mean_curvature(vertices, triangles, scheme="Julicher", *, box=None):
     scheme : str or int
         A name of the table, or a constant of `BendingForce`.
     box : array_like or Quantity, optional
-        Periodic box, shape (3, 3), or (num_frames, 3, 3) if each frame has its own, nm: triangles have corners that are nearest images. Default:
-        that of a `Mesh` among the other arguments, if it has one, or the boxes of the
-        trajectory then.
+        Periodic box, shape (3, 3), or (num_frames, 3, 3) if each frame has its own, nm: triangles
+        have corners that are nearest images. Default: that of a `Mesh` among the other arguments,
+        if it has one; with a trajectory then the boxes in its file, if there are any.
 
     Returns
     -------
@@ -128,7 +128,9 @@ def vertex_quantities(vertices, triangles, *, box=None) -> VertexQuantities:
             raise ValueError(f"triangles: vertex {unused[0]} belongs to no triangle")
         return _quantities(frames, faces, num_vertices, box)
 
-    return VertexQuantities(*over_frames(in_boxes(work, box), vertices, triangles, lambda n, t: 60 * t))
+    return VertexQuantities(
+        *over_frames(in_boxes(work, box), vertices, triangles, lambda n, t: 60 * t)
+    )
 
 
 def _quantities(frames, faces, num_vertices, box):

@@ -16,9 +16,9 @@ def triangle_areas(vertices, triangles, *, box=None):
     triangles : array_like of int or Mesh
         Shape (num_triangles, 3), or (num_frames, num_triangles, 3) if each frame has its own.
     box : array_like or Quantity, optional
-        Periodic box, shape (3, 3), or (num_frames, 3, 3) if each frame has its own, nm: triangles have corners that are nearest images. Default:
-        that of a `Mesh` among the other arguments, if it has one, or the boxes of the
-        trajectory then.
+        Periodic box, shape (3, 3), or (num_frames, 3, 3) if each frame has its own, nm: triangles
+        have corners that are nearest images. Default: that of a `Mesh` among the other arguments,
+        if it has one; with a trajectory then the boxes in its file, if there are any.
 
     Returns
     -------

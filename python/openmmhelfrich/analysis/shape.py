@@ -44,9 +44,9 @@ def shape(vertices, triangles, *, box=None) -> Shape:
         Shape (num_triangles, 3), or (num_frames, num_triangles, 3) if each frame has its own;
         counter-clockwise seen from outside.
     box : array_like or Quantity, optional
-        Periodic box, shape (3, 3), or (num_frames, 3, 3) if each frame has its own, nm: each connected part is put together by nearest images.
-        Default: that of a `Mesh` among the other arguments, if it has one, or the boxes of the
-        trajectory then.
+        Periodic box, shape (3, 3), or (num_frames, 3, 3) if each frame has its own, nm: each
+        connected part is put together by nearest images. Default: that of a `Mesh` among the other
+        arguments, if it has one; with a trajectory then the boxes in its file, if there are any.
 
     Returns
     -------

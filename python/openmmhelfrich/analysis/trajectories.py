@@ -175,7 +175,8 @@ class Trajectory:
         if self.suffix == ".xtc":
             found = self._rows(3)
         elif self.suffix == ".dcd":
-            found = _vectors(self._rows(1) * _ANGSTROM, self._rows(2))
+            lengths, angles = self._rows(1), self._rows(2)
+            found = None if lengths is None else _vectors(lengths * _ANGSTROM, angles)
         else:
             with _mdtraj_formats().PDBTrajectoryFile(str(self.path)) as file:
                 if file.unitcell_lengths is None:
@@ -183,6 +184,8 @@ class Trajectory:
                 lengths = np.array([file.unitcell_lengths]) * _ANGSTROM
                 found = _vectors(lengths, np.array([file.unitcell_angles]))
                 found = np.repeat(found, self._num_stored(), axis=0)
+        if found is None:
+            return None
         found = found[self.start : self.stop : self.stride].astype(float)
         return found if found.any(axis=2).all() else None
 
@@ -192,16 +195,16 @@ class Trajectory:
             raise ValueError(f"Trajectory: {self.path} has no {what}; XTC files have them")
         return self._rows(number)[self.start : self.stop : self.stride]
 
-    def _rows(self, number: int) -> np.ndarray:
-        """What MDTraj returns at this place for each frame of an XTC or DCD file."""
+    def _rows(self, number: int) -> np.ndarray | None:
+        """What MDTraj returns at this place for each frame of an XTC or DCD file, if anything."""
         found = []
         try:
             with self._opened() as file:
-                while len(part := file.read(n_frames=256)[number]):
-                    found.append(part)
+                while len((part := file.read(n_frames=256))[0]):
+                    found.append(part[number])
         except (OSError, RuntimeError) as reason:
             raise ValueError(f"Trajectory: {self.path} cannot be read: {reason}") from None
-        return np.concatenate(found)
+        return None if found[0] is None else np.concatenate(found)
 
     def triangles(self, num_triangles=None) -> np.ndarray | None:
         """The triangles of each frame, from the file ``<name>.triangles`` beside this one.

@@ -60,8 +60,8 @@ def write_vtkhdf(path, vertices, triangles=None, times=None, steps=None, *, box=
         Steps of the simulation, shape (num_frames,), with defaults as for `times`.
     box : array_like or Quantity, optional
         Periodic box, shape (3, 3), or (num_frames, 3, 3) if each frame has its own, nm. Default:
-        that of a `Mesh` among the other arguments, if it has one, or the boxes of the trajectory
-        then.
+        that of a `Mesh` among the other arguments, if it has one; with a trajectory then the boxes
+        in its file, if there are any.
 
     Returns
     -------
