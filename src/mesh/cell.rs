@@ -86,9 +86,10 @@ impl Cell {
 
     /// Whether a position is so many boxes away that the numbers of its image do not fit.
     pub fn is_too_far(&self, position: &Vec3) -> bool {
-        self.vectors.iter().enumerate().any(|(axis, vector)| {
-            position[axis].abs() >= vector[axis] * MOST_BOXES
-        })
+        self.vectors
+            .iter()
+            .enumerate()
+            .any(|(axis, vector)| position[axis].abs() >= vector[axis] * MOST_BOXES)
     }
 
     #[inline]

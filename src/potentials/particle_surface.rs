@@ -113,7 +113,8 @@ pub fn pair(term: &Term, radius: f64, arms: &Arms) -> Pair {
     let gap = far - radius;
     if gap < distance {
         // Within the radius the energy is no number, nor where rounding has made the gap.
-        let ratio = if gap > TOUCHING * distance { (distance / gap).powi(2) } else { f64::INFINITY };
+        let ratio =
+            if gap > TOUCHING * distance { (distance / gap).powi(2) } else { f64::INFINITY };
         let (contribution, slope) = core(distance, epsilon, ratio, gap * gap);
         let slope = 2.0 * gap * slope;
         pair.contribution = contribution;

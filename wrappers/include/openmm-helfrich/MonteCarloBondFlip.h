@@ -32,10 +32,10 @@ namespace HelfrichPlugin {
  * See G. Gompper and D. M. Kroll, doi:10.1088/0953-8984/9/42/001, and on the viscosity that the rate of flips sets
  * H. Noguchi and G. Gompper, doi:10.1103/PhysRevE.72.011901.
  *
- * In a periodic box every edge must stay shorter than half of the least width of the box, or the simulation stops with an
- * error. Flips make edges of up to 0.8 of that half, unless maxEdgeLength says otherwise, and leave the rest to the
- * motion of vertices. Eight vertices around the box are enough for that; with six, at the softness 0.33 and above, let flips
- * be frequent (attemptsPerEdge 1), so that edges that have grown are flipped in time.
+ * In a periodic box every edge must stay shorter than half of the least width of the box, or the simulation stops with
+ * an error. Flips make edges of up to 0.8 of that half, unless maxEdgeLength says otherwise, and leave the rest to the
+ * motion of vertices. Eight vertices around the box are enough for that; with six, at the softness 0.33 and above, let
+ * flips be frequent (attemptsPerEdge 1), so that edges that have grown are flipped in time.
  *
  * Without a thermostat, choose the ensemble Microcanonical: a demon (M. Creutz, doi:10.1103/PhysRevLett.50.1411), whose
  * energy is never below zero, pays for flips and takes what they set free, so that the energy of the System and the
