@@ -61,6 +61,10 @@ pub enum Error {
     #[error("particle {particle} is at ({}, {}, {}) nm, which is not finite: the simulation has blown up; use a smaller time step or a better relaxed start", .position[0], .position[1], .position[2])]
     NonFinitePosition { particle: u32, position: [f64; 3] },
 
+    /// A position whose image cannot be counted.
+    #[error("particle {particle} is at ({}, {}, {}) nm, which is more than a billion periodic boxes away: the simulation has blown up, or positions were never wrapped; use a smaller time step, or start from positions in the box", .position[0], .position[1], .position[2])]
+    FarPosition { particle: u32, position: [f64; 3] },
+
     /// A triangle has no area and therefore no normal.
     #[error("triangle {triangle} ({}, {}, {}) has no area, so its normal and the energy's gradient are undefined; keep its corners from falling on one line (TriangleHeightForce, or a smaller time step)", .corners[0], .corners[1], .corners[2])]
     DegenerateTriangle { triangle: usize, corners: [u32; 3] },
@@ -102,6 +106,12 @@ pub enum Error {
         "the energy of {force} is not finite: a vertex or particle lies on a triangle that it should keep away from, or a triangle cuts a particle; start from positions that do not touch, or use a smaller time step"
     )]
     Touching { force: &'static str },
+
+    /// A particle is in one place with a triangle that keeps it away.
+    #[error(
+        "particle {particle} touches triangle {triangle} ({}, {}, {}), which should keep it away, or is cut by it; start from positions that do not touch, or use a smaller time step", .corners[0], .corners[1], .corners[2]
+    )]
+    TouchingParticle { force: &'static str, particle: u32, triangle: usize, corners: [u32; 3] },
 
     /// A scalar outside its domain.
     #[error("{parameter} must be {domain}, got {value}")]
@@ -162,7 +172,8 @@ impl Error {
             Self::InsideOut { force, .. }
             | Self::Border { force, .. }
             | Self::Spanning { force, .. }
-            | Self::Touching { force } => Some(force),
+            | Self::Touching { force }
+            | Self::TouchingParticle { force, .. } => Some(force),
             _ => None,
         }
     }

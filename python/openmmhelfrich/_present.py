@@ -89,12 +89,14 @@ def present_triangles(context, corners: np.ndarray) -> np.ndarray:
         if rows is None:
             present = corners.copy()
             rows = {tuple(row): place for place, row in enumerate(corners.tolist())}
-        places = [rows.get(tuple(row), -1) for row in initial.tolist()]
-        if min(places) < 0:
+        places = np.array([rows.get(tuple(row), -1) for row in initial.tolist()])
+        # A force of contacts may have the triangles of other surfaces too.
+        lost = (places < 0) & np.isin(initial, corners).any(axis=1)
+        if lost.any():
             does = "flips bonds" if flips else "acts, which have been changed"
             raise ValueError(
                 f"the triangles are not those on which {force.getName()} {does}: its triangle "
-                f"{places.index(min(places))} is not among them; give the mesh that the forces have"
+                f"{np.flatnonzero(lost)[0]} is not among them; give the mesh that the forces have"
             )
-        present[places] = now
+        present[places[places >= 0]] = now[places >= 0]
     return present

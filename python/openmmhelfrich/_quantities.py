@@ -7,7 +7,20 @@ import math
 import numpy as np
 from openmm import unit
 
-__all__ = ["checked_field", "checked_number"]
+from .errors import MeshError
+
+__all__ = ["checked_field", "checked_number", "encloses"]
+
+
+def encloses(mesh, needed):
+    """Whether a mesh encloses a volume; a MeshError says why not, if it is needed."""
+    try:
+        return mesh.volume is not None
+    except MeshError as reason:
+        if not needed:
+            return False
+        said = str(reason).removeprefix("Mesh.volume")
+        raise MeshError(f"Vesicle: mesh{said}; volume_modulus=0 leaves the volume out") from None
 
 
 def checked_field(name, value, dimension, mesh, negative=False):

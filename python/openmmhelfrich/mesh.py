@@ -289,6 +289,11 @@ class Mesh(Generators, Measures, Transformations):
         -------
         float
             Energy, kJ/mol.
+
+        Raises
+        ------
+        MeshError
+            If the mesh has a box and the force is one on triangles that does not use it.
         """
         return on_openmm.energy(self._vertices, force, self._box)
 

@@ -358,8 +358,9 @@ class VTKHDFReporter(_SurfaceReporter):
     they are. Vertices carry ``mean_curvature``, H = C1 + C2 by Jülicher's scheme (B13,
     doi:10.1103/PhysRevE.108.015301), 1/nm; ``area``, a third of the triangles around, nm²;
     ``neighbours``, how many there are; and ``component``, the number of their connected surface,
-    from 0. Triangles carry ``area``, nm², and ``component``. Coordinates are in nm, times in ps. It
-    takes VTK 9.3, ParaView 5.12 or newer ones to read them.
+    from 0. Triangles carry ``area``, nm², and ``component``. A surface that spans its periodic box
+    is cut at the faces of the box, where vertices are there once for each image. Coordinates are in
+    nm, times in ps. It takes VTK 9.3, ParaView 5.12 or newer ones to read them.
 
     Every frame is on disk when it has been written, and the file is closed in between: ParaView may
     look at it during the run. A kill in the middle of a frame leaves ``<file>.journal``, from which
@@ -385,13 +386,15 @@ class VTKHDFReporter(_SurfaceReporter):
         Without h5py.
     ValueError
         A number out of range, or another suffix; at the first report, a file that is none of this
-        reporter or has other numbers of vertices or triangles, or a surface that spans its box.
+        reporter or has other numbers of vertices or triangles.
 
     Examples
     --------
     >>> simulation.reporters.append(VTKHDFReporter("vesicle.vtkhdf", 500, vesicle.mesh))
     >>> simulation.step(100_000)
     """
+
+    _spans = True
 
     def __init__(self, file, reportInterval, triangles, *, offset=0, append=False):
         super().__init__(file, reportInterval, triangles, offset, append)
@@ -408,7 +411,7 @@ class VTKHDFReporter(_SurfaceReporter):
 
     def _write(self, simulation, state, time, vertices, triangles, box):
         step = int(simulation.currentStep)
-        self._series.add([SurfaceFrame(step, time, vertices, triangles)])
+        self._series.add([SurfaceFrame(step, time, vertices, triangles, box)])
 
 
 def _group_names(system):

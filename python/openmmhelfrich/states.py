@@ -15,7 +15,7 @@ from . import _blocks, _writing
 from ._present import surfaces_of
 from .forces import MonteCarloMembraneTension
 
-__all__ = ["load_state", "save_state"]
+__all__ = ["load_state", "save_state", "tensions_of"]
 
 _KIND = "state"
 #: Newest versions of the blocks of a file.
@@ -72,7 +72,7 @@ def save_state(context, path) -> None:
     blocks["clock"] = _blocks.Block(clock)
     for number, force in enumerate(surfaces_of(context)):
         blocks[f"connectivity/{number}"] = _blocks.Block(force._saveConnectivity(context))
-    for number, force in enumerate(_tensions_of(context)):
+    for number, force in enumerate(tensions_of(context)):
         blocks[f"tension/{number}"] = _blocks.Block(force._saveState(context))
     _writing.write_whole(path, _blocks.pack(_KIND, blocks))
 
@@ -111,7 +111,7 @@ def load_state(context, path) -> None:
     parameters = {key: float.fromhex(text) for key, text in values["parameters"].items()}
     surfaces = surfaces_of(context)
     connectivity = _in_order(values, "connectivity")
-    tensions, movers = _in_order(values, "tension"), _tensions_of(context)
+    tensions, movers = _in_order(values, "tension"), tensions_of(context)
     if tensions and len(tensions) != len(movers):
         raise ValueError(
             f"load_state: {name} has {len(tensions)} MonteCarloMembraneTension, but the Context "
@@ -149,7 +149,7 @@ def _restore(context, surfaces: list, connectivity: list[bytes]) -> None:
         raise
 
 
-def _tensions_of(context) -> list[MonteCarloMembraneTension]:
+def tensions_of(context) -> list[MonteCarloMembraneTension]:
     """What changes the box of a Context, in its order."""
     cls = MonteCarloMembraneTension
     return [cls.cast(force) for force in context.getSystem().getForces() if cls.isinstance(force)]

@@ -11,16 +11,17 @@ import openmm
 from openmm import app, unit
 
 from . import platforms
-from ._mesh.geometry import check_closed
 from ._placement import Placement, groups_for
-from ._quantities import checked_field, checked_number
+from ._quantities import checked_field, checked_number, encloses
 from ._vesicle_flips import bath_of, checked_flips, mover_of
 from ._vesicle_times import TimeScales
 from .analysis import theory, triangle_areas
 from .forces import (
     BendingForce,
     DihedralForce,
+    EdgeTensionForce,
     EnclosedVolumeForce,
+    GaussianCurvatureForce,
     MonteCarloBondFlip,
     PlaquetteAreaForce,
     SurfaceAreaForce,
@@ -51,7 +52,8 @@ class Vesicle(TimeScales):
     Parameters
     ----------
     mesh : Mesh
-        The vertices become particles in their order, at their places; a System gets its box.
+        The vertices become particles in their order, at their places; a System gets its box. With
+        kV = 0 it may have borders, or span its box; then there is no term of the volume.
     rigidity : float, array_like or Quantity
         Bending rigidity κ, kJ/mol, of the membrane or, with shape (num_vertices,), of each vertex.
         Default 20 kBT at 300 K.
@@ -88,6 +90,10 @@ class Vesicle(TimeScales):
     min_triangle_area : float or Quantity
         Area below which a `TriangleAreaRepulsionForce` of strength ε repels, nm². Default 0:
         without.
+    edge_tension : float or Quantity
+        Energy γ per length of borders of an `EdgeTensionForce`, kJ/mol/nm. Default 0: without.
+    gaussian_modulus : float or Quantity
+        Modulus κ_G of a `GaussianCurvatureForce`, kJ/mol; it acts at borders. Default 0: without.
     flips : float or mapping, optional
         Make the membrane fluid: attempts to flip a bond for each edge and time step (0.01 is a good
         start), or the arguments of a `MonteCarloBondFlip` after the triangles by their names, with
@@ -100,7 +106,9 @@ class Vesicle(TimeScales):
         Something else than a number, or a Quantity of another dimension.
     ValueError
         A number that is NaN, infinite, negative, or zero where only positive ones make sense;
-        both `volume` and `reduced_volume`.
+        both `volume` and `reduced_volume`, or one of them for a mesh without a volume.
+    MeshError
+        A mesh without a volume, if kV is not 0.
 
     Examples
     --------
@@ -135,16 +143,20 @@ class Vesicle(TimeScales):
         triangle_area_modulus=0.0,
         plaquette_stiffness=0.0,
         min_triangle_area=0.0,
+        edge_tension=0.0,
+        gaussian_modulus=0.0,
         flips=None,
     ):
         nm = unit.nanometer
         if not isinstance(mesh, Mesh):
             raise TypeError(f"Vesicle: mesh needs a Mesh, got {type(mesh).__name__}")
-        check_closed(mesh.border_loops, "Vesicle: mesh")
         self._mesh = mesh
         self._rigidity = checked_field("rigidity", rigidity, _ENERGY, mesh)
         self._area_modulus = checked_number("area_modulus", area_modulus, _ENERGY / nm**2)
         self._volume_modulus = checked_number("volume_modulus", volume_modulus, _ENERGY / nm**3)
+        self._encloses = encloses(mesh, needed=self._volume_modulus > 0)
+        if not self._encloses and not (volume is None and reduced_volume is None):
+            raise ValueError("Vesicle: the mesh encloses no volume; give no volume to keep it at")
         self._softness = checked_number("softness", softness, unit.dimensionless)
         self._epsilon = checked_number("epsilon", epsilon, _ENERGY)
         self._mass = checked_number("mass", mass, unit.dalton, zero=False)
@@ -162,16 +174,25 @@ class Vesicle(TimeScales):
             "plaquette_stiffness", plaquette_stiffness, _ENERGY
         )
         self._min_triangle_area = checked_number("min_triangle_area", min_triangle_area, nm**2)
+        self._edge_tension = checked_number(
+            "edge_tension", edge_tension, _ENERGY / nm, negative=True
+        )
+        self._gaussian_modulus = checked_number(
+            "gaussian_modulus", gaussian_modulus, _ENERGY, negative=True
+        )
         self._min_height = mesh.min_height(self._softness)
         self._area = checked_number("area", mesh.area if area is None else area, nm**2, zero=False)
-        if reduced_volume is None:
+        if not self._encloses:
+            self._volume = None
+        elif reduced_volume is None:
             volume = mesh.volume if volume is None else volume
         elif volume is None:
             ratio = checked_number("reduced_volume", reduced_volume, unit.dimensionless, zero=False)
             volume = ratio * 4 / 3 * math.pi * self.radius**3
         else:
             raise ValueError("Vesicle: give either volume or reduced_volume, not both")
-        self._volume = checked_number("volume", volume, nm**3, zero=False)
+        if self._encloses:
+            self._volume = checked_number("volume", volume, nm**3, zero=False)
         self._flips = None if flips is None else checked_flips(flips)
         self._placement = None
         # The forces refuse a scheme or form that does not exist: now, not when they are used.
@@ -184,7 +205,7 @@ class Vesicle(TimeScales):
             f"Vesicle({self._mesh.num_vertices} vertices, rigidity={np.mean(self._rigidity):.6g}, "
             f"area_modulus={self._area_modulus:.6g}, volume_modulus={self._volume_modulus:.6g}, "
             f"softness={self._softness:.6g}, epsilon={self._epsilon:.6g}, mass={self._mass:.6g}, "
-            f"area={self._area:.6g}, volume={self._volume:.6g})"
+            f"area={self._area:.6g}" + (f", volume={self._volume:.6g})" if self._encloses else ")")
         )
 
     mesh = property(lambda self: self._mesh, doc="The Mesh with which the vesicle starts.")
@@ -207,7 +228,7 @@ class Vesicle(TimeScales):
         doc="Arguments of the `MonteCarloBondFlip` by name, or None.",
     )
     area = property(lambda self: self._area, doc="Target area A0, nm².")
-    volume = property(lambda self: self._volume, doc="Target volume V0, nm³.")
+    volume = property(lambda self: self._volume, doc="Target volume V0, nm³, or None.")
 
     @property
     def radius(self):
@@ -216,15 +237,18 @@ class Vesicle(TimeScales):
 
     @property
     def reduced_volume(self):
-        """V0 over the volume of the sphere of area A0."""
+        """V0 over the volume of the sphere of area A0, or None."""
+        if self._volume is None:
+            return None
         return self._volume / (4 / 3 * math.pi * self.radius**3)
 
     def add_to(self, system, force_groups=None):
         """Add the particles and the forces to a System.
 
         The particles follow those which the System has, so several vesicles can share one. Each
-        force gets a force group of its own and a name: "area", "volume", "bending", "heights", and
-        "dihedrals", "triangle_areas", "plaquettes", "triangle_repulsion" if they are switched on.
+        force gets a force group of its own and a name: "area", "volume" where there is one,
+        "bending", "heights", and "dihedrals", "triangle_areas", "plaquettes", "triangle_repulsion",
+        "edge_tension", "gaussian_curvature" if they are switched on.
 
         Parameters
         ----------
@@ -339,12 +363,11 @@ class Vesicle(TimeScales):
             mesh, self._rigidity, self._spontaneous_curvature, self._scheme, **at
         )
         bending.setUnsignedSpontaneousCurvature(self._unsigned)
-        forces = {
-            "area": SurfaceAreaForce(mesh, self._area_modulus, self._area, **at),
-            "volume": EnclosedVolumeForce(mesh, self._volume_modulus, self._volume, **at),
-            "bending": bending,
-            "heights": TriangleHeightForce(mesh, self._min_height, self._epsilon, **at),
-        }
+        forces = {"area": SurfaceAreaForce(mesh, self._area_modulus, self._area, **at)}
+        if self._encloses:
+            forces["volume"] = EnclosedVolumeForce(mesh, self._volume_modulus, self._volume, **at)
+        forces["bending"] = bending
+        forces["heights"] = TriangleHeightForce(mesh, self._min_height, self._epsilon, **at)
         if self._dihedral_stiffness > 0:
             forces["dihedrals"] = DihedralForce(
                 mesh, self._dihedral_stiffness, self._dihedral_form, **at
@@ -360,5 +383,11 @@ class Vesicle(TimeScales):
         if self._min_triangle_area > 0:
             forces["triangle_repulsion"] = TriangleAreaRepulsionForce(
                 mesh, self._min_triangle_area, self._epsilon, **at
+            )
+        if self._edge_tension != 0:
+            forces["edge_tension"] = EdgeTensionForce(mesh, self._edge_tension, **at)
+        if self._gaussian_modulus != 0:
+            forces["gaussian_curvature"] = GaussianCurvatureForce(
+                mesh, self._gaussian_modulus, **at
             )
         return forces

@@ -128,7 +128,7 @@ impl ParticleContacts {
     /// Add the energy of a term, and forces (kJ/mol/nm) to those of all particles.
     ///
     /// # Errors
-    /// A position that is not finite, a box that is too small.
+    /// A position that is not finite, a box that is too small, a particle that touches a triangle.
     pub fn evaluate(
         &mut self,
         (mesh, cell): (&Triangulation, Option<&Cell>),
@@ -168,6 +168,16 @@ impl ParticleContacts {
         let touches = || used.iter().flat_map(|found| &found.touches);
         for touch in touches() {
             *contribution += touch.pair.contribution;
+        }
+        let touching = |touch: &&Touch| !touch.pair.contribution.energy.is_finite();
+        if !contribution.energy.is_finite()
+            && lost.is_none()
+            && let Some(&Touch { place, triangle, .. }) = touches().find(touching)
+        {
+            let (particle, triangle) = (term.particles[place as usize], triangle as usize);
+            let corners = mesh.particles_of(triangle);
+            let force = term.potential.name();
+            return Err(Error::TouchingParticle { force, particle, triangle, corners });
         }
         if let Some(forces) = forces.filter(|_| lost.is_none()) {
             for Touch { place, triangle, pair } in touches() {

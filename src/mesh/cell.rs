@@ -13,6 +13,10 @@ pub struct Cell {
     half_width: f64,
 }
 
+/// How many boxes away positions may be; an [`Image`] has room for twice as many, of which leaning vectors and the ways
+/// from one vertex to the next need some.
+const MOST_BOXES: f64 = 1e9;
+
 /// How many times each of the box vectors.
 pub type Image = [i32; 3];
 
@@ -78,6 +82,14 @@ impl Cell {
     #[inline]
     pub fn wrap(&self, position: &Vec3) -> Image {
         self.image(position, |x| -x.floor())
+    }
+
+    /// Whether a position is so many boxes away that the numbers of its image do not fit.
+    pub fn is_too_far(&self, position: &Vec3) -> bool {
+        self.vectors
+            .iter()
+            .enumerate()
+            .any(|(axis, vector)| position[axis].abs() >= vector[axis] * MOST_BOXES)
     }
 
     #[inline]

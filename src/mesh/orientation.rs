@@ -158,6 +158,9 @@ fn in_one_piece(
             let (edge, length) =
                 ([trio[k], trio[(k + 1) % 3]], (place[(k + 1) % 3] - place[k]).norm());
             if length >= cell.half_width() {
+                if let Some(particle) = edge.into_iter().find(|v| cell.is_too_far(&at(*v))) {
+                    return Err(Error::FarPosition { particle, position: at(particle).into() });
+                }
                 let (limit, vectors) = (cell.half_width(), cell.vectors().map(<[f64; 3]>::from));
                 return Err(Error::LongEdge { edge, length, limit, vectors: Box::new(vectors) });
             }

@@ -237,6 +237,9 @@ fn too_long(edge: [u32; 2], length: f64, positions: &[f64], cell: &Cell) -> Erro
         if !position.iter().all(|x| x.is_finite()) {
             return Error::NonFinitePosition { particle, position };
         }
+        if cell.is_too_far(&position.into()) {
+            return Error::FarPosition { particle, position };
+        }
     }
     let vectors = cell.vectors().map(<[f64; 3]>::from);
     Error::LongEdge { edge, length, limit: cell.half_width(), vectors: Box::new(vectors) }

@@ -18,6 +18,10 @@ use crate::potentials::{Needs, Term};
 /// Below twice this area, nm², a triangle has none.
 const SMALLEST_AREA: f64 = 1e-140;
 
+/// Of half of the width of a periodic box, what new edges have for themselves; an edge as long as that half ends the
+/// run, and the rest is for vertices to move before the edge flips again.
+const SHARE_OF_HALF_WIDTH: f64 = 0.8;
+
 /// Energies of all elements of a mesh, and the geometry that they come from.
 #[derive(Default)]
 pub struct LocalEnergy {
@@ -101,10 +105,11 @@ impl LocalEnergy {
 
     /// The length, nm, that new edges must stay below: that of the rules, or what a periodic box allows; 0 for any.
     pub fn longest(&self, max_edge_length: f64) -> f64 {
-        // The next evaluation may measure the edge between other images, and round differently.
-        match self.cell.as_ref().map(|cell| cell.half_width() * (1.0 - 1e-9)) {
-            Some(limit) if max_edge_length == 0.0 || limit < max_edge_length => limit,
-            _ => max_edge_length,
+        match self.cell.as_ref().map(Cell::half_width) {
+            Some(half) if max_edge_length == 0.0 => SHARE_OF_HALF_WIDTH * half,
+            // The next evaluation may measure the edge between other images, and round differently.
+            Some(half) => max_edge_length.min(half * (1.0 - 1e-9)),
+            None => max_edge_length,
         }
     }
 

@@ -31,6 +31,9 @@ pub const RADIUS: usize = 3;
 /// Beyond so many D from a particle's rim there is no attraction.
 const TAIL: f64 = 3.0;
 
+/// Below so many D a gap is none: on a triangle rounding leaves some.
+const TOUCHING: f64 = 1e-9;
+
 impl Potential for ParticleSurface {
     fn name(&self) -> &'static str {
         NAME
@@ -109,8 +112,9 @@ pub fn pair(term: &Term, radius: f64, arms: &Arms) -> Pair {
     let far = nearest.squared.sqrt();
     let gap = far - radius;
     if gap < distance {
-        // Within the radius the energy is no number.
-        let ratio = if gap > 0.0 { (distance / gap).powi(2) } else { f64::INFINITY };
+        // Within the radius the energy is no number, nor where rounding has made the gap.
+        let ratio =
+            if gap > TOUCHING * distance { (distance / gap).powi(2) } else { f64::INFINITY };
         let (contribution, slope) = core(distance, epsilon, ratio, gap * gap);
         let slope = 2.0 * gap * slope;
         pair.contribution = contribution;

@@ -9,7 +9,14 @@ import numpy as np
 import openmm
 import pytest
 from click.testing import CliRunner
-from openmmhelfrich import BendingForce, Mesh, Vesicle, config
+from openmmhelfrich import (
+    BendingForce,
+    GaussianCurvatureForce,
+    Mesh,
+    MonteCarloMembraneTension,
+    Vesicle,
+    config,
+)
 from openmmhelfrich.analysis import theory
 from openmmhelfrich.cli import main
 from openmmhelfrich.config.document import Document
@@ -192,6 +199,7 @@ class TestWhatIsBuilt:
 
 
 # What replaces a line of TWO (or nothing: what is added at its end), and the message.
+SOURCES = "file, icosphere, random, sheet, tube, disk"
 MISTAKES = [
     ("rigidity = 40", "rigidty = 40", "vesicle[1].rigidty: there is no such key in [[vesicle]]; "
      "did you mean rigidity?"),
@@ -212,8 +220,8 @@ MISTAKES = [
     ("random = 40", "random = 13", "vesicle[0].mesh.random: Mesh.random_sphere: no triangulation"),
     ("random = 40", "random = 40.0", "vesicle[0].mesh.random: expected an integer, got 40.0"),
     ("random = 40", "random = 40\nicosphere = 3",
-     "vesicle[0].mesh.random: a mesh needs one of file, icosphere, random; got icosphere and"),
-    ("random = 40", "", "vesicle[0].mesh: a mesh needs one of file, icosphere, random; got none"),
+     f"vesicle[0].mesh.random: a mesh needs one of {SOURCES}; got icosphere and"),
+    ("random = 40", "", f"vesicle[0].mesh: a mesh needs one of {SOURCES}; got none"),
     ("radius = 30", "", "vesicle[0].mesh.random: a sphere needs a radius"),
     ("radius = 30", "radius = 0", "vesicle[0].mesh.radius: must be above 0, got 0"),
     ("deform = { l = 2, m = -1, amplitude = 0.1 }", "deform = { l = 2, m = -3, amplitude = 0.1 }",
@@ -410,6 +418,145 @@ class TestRun:
         assert "own: 1 membrane(s), 42 vertices, platform Helfrich, seed 9" in result.output
 
 
+SHEET = """simulation.duration = 40
+simulation.seed = 3
+simulation.platform = "Reference"
+integrator = { time_step = 0.5, friction = 0.01 }
+output = { interval = 4, frames = "ply", text = ["curvatures"] }
+
+[tension]
+tension = 0.01
+frequency = 3
+
+[[vesicle]]
+volume_modulus = 0
+softness = 0.33
+flips = 0.02
+mesh = { sheet = [8, 9], spacing = 50, periodic = true }
+"""
+DISK = """simulation.duration = 4
+integrator.time_step = 0.1
+output = { interval = 2, frames = "vtk" }
+box.vectors = [300, 250, 200]
+
+[[vesicle]]
+volume_modulus = 0
+edge_tension = 3
+gaussian_modulus = "-10 kT"
+mesh = { disk = 5, radius = 60 }
+"""
+
+
+class TestAnySurface:
+    def test_a_sheet_as_by_hand(self, write):
+        cfg = config.read(write(SHEET))
+        mesh = Mesh.sheet(8, 9, 50, periodic=True)
+        assert cfg.meshes == (mesh,)
+        by_hand = openmm.System()
+        Vesicle(mesh, volume_modulus=0, softness=0.33).add_to(by_hand)
+        system = cfg.system()
+        for one in (system, by_hand):
+            box = one.getDefaultPeriodicBoxVectors()
+            assert np.array_equal([[x._value for x in vector] for vector in box], mesh.box)
+        shaken = mesh.vertices + np.random.default_rng(1).normal(size=mesh.vertices.shape)
+        assert state(system, shaken)[0] == state(by_hand, shaken)[0] > 0
+        assert list(cfg.terms) == ["area", "bending", "heights"]
+        (mover,) = (f for f in system.getForces() if MonteCarloMembraneTension.isinstance(f))
+        mover = MonteCarloMembraneTension.cast(mover)
+        assert mover.getDefaultTension() == 0.01
+        assert mover.getFrequency() == 3
+        assert mover.getAxes() == MonteCarloMembraneTension.XYIsotropic
+        vectors = cfg.topology().getPeriodicBoxVectors()
+        assert np.array_equal([[x._value for x in vector] for vector in vectors], mesh.box)
+
+    def test_a_disk_as_by_hand(self, write, tmp_path):
+        cfg = config.read(write(DISK))
+        mesh = Mesh.disk(5, 60)
+        expected = -10 * cfg.kT
+        assert cfg.energies(cfg.simulation("Reference").context) == pytest.approx(
+            {
+                "area": 0,
+                "bending": 0,
+                "heights": 0,
+                "edge_tension": 3 * 30 * 2 * 60 * np.sin(np.pi / 30),
+                "gaussian_curvature": mesh.energy(GaussianCurvatureForce(mesh, expected)),
+            },
+            abs=1e-9,
+        )
+        result = invoke("run", write(DISK), "--out", tmp_path / "out")
+        assert result.exit_code == 0, result.output
+        with (tmp_path / "out" / "own.csv").open() as file:
+            row = next(csv.DictReader(file))
+        assert float(row["area 0 (nm^2)"]) == pytest.approx(mesh.area)
+        assert not any(name.startswith("volume") for name in row)
+        # It begins across faces of the box, and is drawn whole.
+        drawn = Mesh.read(tmp_path / "out" / "frames" / "own_0_000000.vtk")
+        assert drawn.num_vertices == mesh.num_vertices
+        assert drawn.area == pytest.approx(mesh.area)
+        result = invoke("info", write(DISK), "--no-measure")
+        assert "nm², 1 border(s)" in result.output
+        result = invoke("info", write(SHEET), "--no-measure")
+        assert "nm², spans the periodic box" in result.output
+
+    def test_a_run_goes_on_with_its_box(self, write, tmp_path):
+        path = write(SHEET)
+        whole = Run(path, tmp_path / "whole")
+        assert whole.advance(80)
+        whole.close()
+        parts = Run(path, tmp_path / "parts")
+        parts.advance(37)
+        parts.save()
+        parts.close()
+        parts = Run(path, tmp_path / "parts", resume=True)
+        assert parts.advance(80)
+        parts.close()
+        assert not np.array_equal(parts.frame.box, parts.cfg.box)
+        assert np.array_equal(parts.frame.box, whole.frame.box)
+        assert np.array_equal(parts.frame.positions, whole.frame.positions)
+        last = Mesh.read(tmp_path / "parts" / "frames" / "own_0_000010.ply")
+        assert np.array_equal(last.box, whole.frame.box)
+        with (tmp_path / "parts" / "own.csv").open() as file:
+            *_, row = csv.DictReader(file)
+        assert float(row["area 0 (nm^2)"]) == pytest.approx(last.area)
+
+    def test_a_file_keeps_its_box(self, write, tmp_path):
+        Mesh.sheet(8, 9, 50, periodic=True).write(tmp_path / "sheet.ply")
+        text = SHEET.replace("sheet = [8, 9], spacing = 50, periodic = true", 'file = "sheet.ply"')
+        assert config.read(write(text)).meshes == config.read(write(SHEET)).meshes
+
+    def test_the_box_of_the_file_comes_first(self, write):
+        height = "box.vectors = [[400, 0, 0], [25, 389.7114317029974, 0], [0, 0, 999]]\n"
+        assert config.read(write(height + SHEET)).box[2, 2] == 999
+
+    @pytest.mark.parametrize(
+        ("old", "new", "message"),
+        [
+            ("volume_modulus = 0\n", "", r"11: key vesicle\[0\]: .*spans.*volume_modulus=0"),
+            (", periodic = true", "", r"7: key tension: it acts on a periodic box; add \[box\]"),
+            ("spacing = 50, ", "", r"mesh.sheet: a sheet needs a spacing, nm"),
+            ("spacing = 50", "spacing = 50, radius = 2", "only a icosphere or random or tube or"),
+            ("[8, 9]", "[8, 9, 1]", r"mesh.sheet: expected two integers"),
+            ("[8, 9]", "[8, 1]", r"mesh.sheet: must be 2 or more, got 1"),
+            ("[tension]", "[box]\nvectors = 3\n[tension]", r"box.vectors: expected \[x, y, z\]"),
+            ("[tension]", "[box]\nvectors = [9, 0, 9]\n[tension]", "box.vectors: box must have"),
+            ("[tension]", "[box]\nvectors = [90, 90, 90]\n[tension]", "must be shorter than 45"),
+            ("tension = 0.01", 'axes = "x"', "tension.axes: there is no 'x'"),
+            ("softness", "volume = 3\nsoftness", r"encloses no volume; give no volume"),
+        ],
+    )
+    def test_mistakes(self, write, old, new, message):
+        with pytest.raises(ConfigError, match=message):
+            config.read(write(SHEET.replace(old, new, 1)))
+
+    def test_boxes_of_meshes_must_agree(self, write):
+        other = """[[vesicle]]
+volume_modulus = 0
+mesh = { sheet = [8, 10], spacing = 50, periodic = true, translate = [0, 0, 99] }
+"""
+        with pytest.raises(ConfigError, match=r"vesicle\[1\]\.mesh: its box is not that of the"):
+            config.read(write(SHEET + other))
+
+
 class TestDocuments:
     def test_example(self, tmp_path):
         path = ROOT / "examples" / "vesicle.toml"
@@ -419,10 +566,23 @@ class TestDocuments:
         result = invoke("run", path, "--steps", 20, "--out", tmp_path / "out")
         assert result.exit_code == 0, result.output
 
-    def test_smallest_file_in_the_text(self, write):
+    def test_example_of_a_sheet(self, tmp_path):
+        path = ROOT / "examples" / "sheet.toml"
+        cfg = config.read(path)
+        assert [mesh.genus for mesh in cfg.meshes] == [1, 0]
+        assert all((mesh.box == cfg.box).all() for mesh in cfg.meshes)
+        result = invoke("run", path, "--steps", 2000, "--out", tmp_path / "out")
+        assert result.exit_code == 0, result.output
+        frames = sorted((tmp_path / "out" / "frames").glob("sheet_sheet_*.ply"))
+        first, last = (Mesh.read(frames[k]).box for k in (0, -1))
+        assert (first == cfg.box).all()
+        assert first[0, 0] != last[0, 0] and first[2, 2] == last[2, 2]
+
+    def test_files_in_the_text(self, write):
         text = (ROOT / "docs" / "config.md").read_text(encoding="utf-8")
-        smallest = text.partition("```toml\n")[2].partition("```")[0]
+        smallest, sheet = (part.partition("```")[0] for part in text.split("```toml\n")[1:])
         assert config.read(write(smallest)).num_particles == 1002
+        assert config.read(write(sheet)).num_particles == 24 * 28
 
     def test_table_of_keys(self):
         def shown(default):

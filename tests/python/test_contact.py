@@ -272,13 +272,20 @@ def test_bad_values_are_refused(membrane):
         evaluate(platforms.REFERENCE, three, membrane.positions)
 
 
-def test_what_touches_is_an_error(membrane):
+@pytest.mark.parametrize("radius", [0, 0.1])
+@pytest.mark.parametrize("weights", [(1, 1, 1), (1, 0, 0), (0, 1, 1), (3, 2, 1)])
+def test_what_touches_is_an_error(membrane, radius, weights):
     positions = membrane.positions.copy()
     bead = membrane.foreign[0]
-    positions[bead] = positions[membrane.triangles[5]].mean(axis=0)
-    force = helfrich.ParticleSurfaceForce(membrane.triangles, [bead], 1.0, 1.0, radius=0.1)
+    corners = membrane.triangles[5]
+    # Rounding leaves a little distance.
+    positions[bead] = np.average(positions[corners], axis=0, weights=weights)
+    force = helfrich.ParticleSurfaceForce(membrane.triangles, [bead], 1.0, 1.0, radius=radius)
     again = copy.copy(force)
-    with pytest.raises(mm.OpenMMException, match=r"ParticleSurfaceForce: .*lies on a triangle"):
+    told = rf"ParticleSurfaceForce: particle {bead} touches triangle \d+ \("
+    if weights == (3, 2, 1) and radius == 0:
+        told = rf"particle {bead} touches triangle 5 \({', '.join(map(str, corners))}\)"
+    with pytest.raises(mm.OpenMMException, match=told):
         evaluate(platforms.REFERENCE, force, positions)
     positions[bead, 1] = np.nan
     with pytest.raises(Exception, match=f"particle {bead} .*not finite|NaN"):

@@ -181,3 +181,67 @@ def test_a_context_gives_the_box_back():
         assert Mesh.from_context(context, force) == mesh
     bending = helfrich.BendingForce(Mesh.icosphere(2, 1.0), 5.0)
     assert not bending.usesPeriodicBoundaryConditions()
+
+
+class TestForcesWithoutTheBox:
+    @pytest.mark.parametrize("make", [MESHES["ball"], MESHES["sheet"]])
+    @pytest.mark.parametrize("plain", [False, True], ids=["force", "of a System"])
+    def test_their_energy_is_refused(self, make, plain):
+        mesh = make()
+        force = helfrich.BendingForce(mesh.triangles, 7.0)
+        if plain:
+            system = openmm.System()
+            system.addForce(force)
+            force = system.getForce(0)
+        told = r"Mesh\.energy: .*BendingForce\(mesh, …\).*setUsesPeriodicBoundaryConditions"
+        with pytest.raises(MeshError, match=told):
+            mesh.energy(force)
+
+    def test_others_may_leave_it(self):
+        mesh = MESHES["sheet"]()
+        force = helfrich.BendingForce(mesh.triangles, 7.0)
+        force.setUsesPeriodicBoundaryConditions(True)
+        assert mesh.energy(force) == mesh.energy(helfrich.BendingForce(mesh, 7.0))
+        outside = openmm.CustomExternalForce("1")
+        outside.addParticle(0)
+        assert mesh.energy(outside) == 1
+
+
+def test_positions_that_are_too_far_away_are_named():
+    mesh = Mesh.sheet(6, 6, 10.0, periodic=True)
+    vertices = mesh.vertices.copy()
+    vertices[7, 1] += 3e10 * mesh.box[1, 1]
+    told = r"particle 7 is at \(.*e?\d+.*\) nm, .* more than a billion periodic boxes away"
+    with pytest.raises(MeshError, match=told):
+        Mesh(vertices, mesh.triangles, mesh.box)
+    system = openmm.System()
+    system.setDefaultPeriodicBoxVectors(*mesh.box)
+    for _ in range(mesh.num_vertices):
+        system.addParticle(1)
+    system.addForce(helfrich.BendingForce(mesh, 1.0))
+    platform = openmm.Platform.getPlatformByName("Reference")
+    context = openmm.Context(system, openmm.VerletIntegrator(1e-3), platform)
+    context.setPositions(vertices)
+    with pytest.raises(openmm.OpenMMException, match=f"BendingForce: {told}"):
+        context.getState(energy=True)
+    # A million boxes are fine.
+    context.setPositions(mesh.vertices + 1e6 * mesh.box[1])
+    context.getState(energy=True)
+
+
+def test_what_needs_a_centre_refuses_what_has_none():
+    sheet, whole = MESHES["sheet"](), ball()
+    frames = np.stack([whole.vertices] * 2)
+    for measure in (
+        lambda v, t: analysis.solid_angles(v, t),
+        lambda v, t: analysis.mode_amplitudes(v, t, lmax=2),
+        lambda v, t: analysis.gyration_tensor(v),
+        lambda v, t: analysis.density_modes(v, 2),
+    ):
+        with pytest.raises(ValueError, match="spans its periodic box, and so has no centre"):
+            measure(sheet, sheet)
+        assert np.isfinite(measure(whole, whole)).all()
+    for measure in (analysis.solid_angles, lambda v, t: analysis.mode_amplitudes(v, t, lmax=2)):
+        with pytest.raises(ValueError, match=r"pass mesh\.triangles"):
+            measure(frames, whole)
+        assert np.isfinite(measure(frames, whole.triangles)).all()

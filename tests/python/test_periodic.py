@@ -391,3 +391,55 @@ def test_flips_leave_edges_alone_that_would_be_as_long_as_the_box_allows():
     statistics = flips.getStatistics(context)
     assert statistics["accepted"] == 0
     assert statistics["refused"]["length"] > 0
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_a_small_fluid_sheet_lasts(seed):
+    """Vertices have room to stretch the edges that flips make."""
+    mesh = helfrich.Mesh.sheet(6, 6, 100.0, periodic=True)
+    kT = 2.494
+    flips = helfrich.MonteCarloBondFlip(mesh, 300.0, 10, 1.0)
+    flips.setRandomNumberSeed(seed)
+    system = system_of(
+        helfrich.BendingForce(mesh, 20 * kT),
+        helfrich.SurfaceAreaForce(mesh, 1.3, 1.02 * mesh.area),
+        helfrich.TriangleHeightForce(mesh, mesh.min_height(0.33), 4 * kT),
+        flips,
+        particles=mesh.num_vertices,
+    )
+    system.setDefaultPeriodicBoxVectors(*mesh.box)
+    for particle in range(mesh.num_vertices):
+        system.setParticleMass(particle, 50)
+    integrator = mm.LangevinMiddleIntegrator(300, 0.002, 0.5)
+    integrator.setRandomNumberSeed(seed)
+    context = mm.Context(system, integrator, mm.Platform.getPlatformByName("Helfrich"))
+    context.setPositions(mesh.vertices)
+    context.setVelocitiesToTemperature(300, seed)
+    integrator.step(10_000)
+    statistics = flips.getStatistics(context)
+    assert statistics["accepted"] > 1000
+    assert statistics["refused"]["length"] > 100
+
+
+def test_the_longest_edge_that_flips_make_can_be_chosen():
+    """The other diagonals of this sheet have two thirds of half of the width."""
+    mesh = helfrich.Mesh.sheet(6, 6, 10.0, periodic=True)
+    half = np.min(np.diag(mesh.box)[:2]) / 2
+    diagonal = np.sqrt(3) * 10
+    made = {}
+    for longest in (0.0, diagonal * 1.001, diagonal * 0.999):
+        flips = helfrich.MonteCarloBondFlip(mesh, 300.0, 1, 1.0, maxEdgeLength=longest)
+        flips.setRandomNumberSeed(1)
+        # Diagonals of diagonals would leave triangles flat.
+        heights = helfrich.TriangleHeightForce(mesh, 4.2, 1000.0)
+        system = system_of(heights, flips, particles=mesh.num_vertices)
+        system.setDefaultPeriodicBoxVectors(*mesh.box)
+        integrator = mm.VerletIntegrator(1e-6)
+        context = mm.Context(system, integrator, mm.Platform.getPlatformByName("Reference"))
+        context.setPositions(mesh.vertices)
+        integrator.step(1)
+        made[longest] = flips.getStatistics(context)["accepted"]
+        now = helfrich.Mesh.from_context(context, flips)
+        assert helfrich.analysis.edge_lengths(now, now).max() < 0.8 * half
+    first, second, third = made.values()
+    assert first >= second > 0 == third

@@ -390,3 +390,97 @@ class TestReporter:
         simulation.reporters.append(VTKHDFReporter(path, 10, MESH, append=True))
         with pytest.raises(ValueError, match="not 132 and 260; give another file"):
             simulation.step(10)
+
+
+class TestPeriodicBoxes:
+    """Surfaces in a box that changes: what spans it is cut at its faces."""
+
+    def frames(self):
+        random = np.random.default_rng(4)
+        sheet = helfrich.Mesh.sheet(8, 7, 10.0, periodic=True)
+        ball = helfrich.Mesh.icosphere(2, 15.0).translated((0, 0, 25))
+        triangles = np.vstack([sheet.triangles, ball.triangles + sheet.num_vertices])
+        found = []
+        for factor in (1, 1.02, 1.02, 0.97):
+            vertices = np.vstack([sheet.vertices, ball.vertices]) * factor
+            vertices += random.normal(0, 0.5, vertices.shape) + 20 * random.normal(size=3)
+            vertices[3] += 2 * factor * sheet.box[1]
+            found.append(helfrich.Mesh(vertices, triangles, factor * sheet.box))
+        return found
+
+    def check(self, path, meshes):
+        check_layout(path)
+        steps = read(path)
+        assert len({len(step.points) for step in steps}) > 1
+        assert len(steps) == len(meshes)
+        for step, mesh in zip(steps, meshes, strict=True):
+            points, triangles = mesh.unfolded()
+            np.testing.assert_allclose(step.points, points, rtol=0, atol=1e-9)
+            assert np.array_equal(step.triangles, triangles)
+            areas = analysis.triangle_areas(mesh, mesh)
+            assert step.cell_data["area"] == pytest.approx(areas, rel=1e-6)
+            assert analysis.triangle_areas(points, triangles) == pytest.approx(areas)
+            # The vertices of a triangle's corners are those that their values belong to.
+            curvature = analysis.mean_curvature(mesh, mesh)[mesh.triangles]
+            here = step.point_data["mean_curvature"][step.triangles]
+            assert here == pytest.approx(curvature, rel=1e-5, abs=1e-7)
+            assert step.point_data["neighbours"][step.triangles].ravel() == pytest.approx(
+                mesh.degrees[mesh.triangles].ravel()
+            )
+            assert step.cell_data["component"].tolist() == [0] * 112 + [1] * 80
+
+    def test_frames_are_cut_at_the_box(self, tmp_path):
+        meshes = self.frames()
+        path = tmp_path / "a.vtkhdf"
+        vertices, boxes = (np.stack([getattr(m, n) for m in meshes]) for n in ("vertices", "box"))
+        assert analysis.write_vtkhdf(path, vertices, meshes[0].triangles, box=boxes) == 4
+        self.check(path, meshes)
+        series = SurfaceSeries(path)
+        for kept in (3, 2, 1):
+            series.cut(kept)
+            check_layout(path)
+        series.add(
+            SurfaceFrame(k, k, m.vertices, m.triangles, m.box)
+            for k, m in enumerate(meshes)
+            if k > 0
+        )
+        self.check(path, meshes)
+
+    def test_a_mesh_has_its_own_box(self, tmp_path):
+        mesh = self.frames()[0]
+        analysis.write_vtkhdf(tmp_path / "a.vtkhdf", mesh, mesh)
+        (step,) = read(tmp_path / "a.vtkhdf")
+        assert np.array_equal(step.triangles, mesh.unfolded()[1])
+
+    def test_a_trajectory_has_boxes_of_its_frames(self, tmp_path):
+        pytest.importorskip("mdtraj")
+        meshes = self.frames()
+        start = meshes[0]
+        path = tmp_path / "a.xtc"
+        file = app.XTCFile(str(path), start.topology(), 0.001)
+        for mesh in meshes:
+            box = [openmm.Vec3(*vector) for vector in mesh.box]
+            file.writeModel(mesh.vertices, periodicBoxVectors=box)
+        boxes = analysis.Trajectory(path).boxes()
+        np.testing.assert_allclose(boxes, [mesh.box for mesh in meshes], rtol=1e-6)
+        assert len(analysis.Trajectory(path, start=1, stride=2).boxes()) == 2
+        with (tmp_path / "a.dcd").open("wb") as stream:
+            dcd = app.DCDFile(stream, start.topology(), 0.001)
+            for mesh in meshes:
+                box = [openmm.Vec3(*vector) for vector in mesh.box]
+                dcd.writeModel(mesh.vertices * openmm.unit.nanometer, periodicBoxVectors=box)
+        in_dcd = analysis.Trajectory(tmp_path / "a.dcd").boxes()
+        np.testing.assert_allclose(in_dcd, boxes, rtol=1e-5, atol=1e-4)
+        expected = [analysis.shape(mesh, mesh).area for mesh in meshes]
+        for found in (
+            analysis.shape(path, start).area,
+            analysis.shape(path, start.triangles, box=boxes).area,
+            analysis.triangle_areas(analysis.Trajectory(path), start).sum(axis=1),
+        ):
+            np.testing.assert_allclose(found, expected, rtol=1e-3)
+        with pytest.raises(ValueError, match="those of 2 frames"):
+            analysis.triangle_areas(analysis.Trajectory(path), start.triangles, box=boxes[:2])
+        analysis.write_vtkhdf(tmp_path / "a.vtkhdf", path, start)
+        assert [len(step.points) for step in read(tmp_path / "a.vtkhdf")] == [
+            len(mesh.unfolded()[0]) for mesh in meshes
+        ]

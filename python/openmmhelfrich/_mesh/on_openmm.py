@@ -9,6 +9,8 @@ import copy
 
 import numpy as np
 
+from ..errors import MeshError
+
 __all__ = ["energy", "present", "topology"]
 
 
@@ -34,6 +36,8 @@ def energy(vertices: np.ndarray, force, box: np.ndarray | None) -> float:
     import openmm
     from openmm import unit
 
+    if box is not None:
+        _check_periodic(force)
     system = openmm.System()
     for _ in range(len(vertices)):
         system.addParticle(1.0)
@@ -45,6 +49,20 @@ def energy(vertices: np.ndarray, force, box: np.ndarray | None) -> float:
     context.setPositions(vertices)
     state = context.getState(getEnergy=True)
     return state.getPotentialEnergy().value_in_unit(unit.kilojoule_per_mole)
+
+
+def _check_periodic(force) -> None:
+    """Refuse a membrane force that takes edges across faces of the box for long ones."""
+    from ..forces import MembraneForce
+
+    for cls in MembraneForce.__subclasses__():
+        if cls.isinstance(force) and not cls.cast(force).usesPeriodicBoundaryConditions():
+            name = cls.__name__
+            raise MeshError(
+                f"Mesh.energy: the mesh has a periodic box, but the {name} does not use it; make "
+                f"it of the mesh, {name}(mesh, …), in place of mesh.triangles, or call its "
+                "setUsesPeriodicBoundaryConditions(True)"
+            )
 
 
 def present(context, force) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:

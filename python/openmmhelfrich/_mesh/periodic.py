@@ -12,7 +12,7 @@ from scipy.sparse.csgraph import breadth_first_order, connected_components
 
 from .geometry import edge_graph
 
-__all__ = ["corner_positions", "cut", "half_width", "nearest", "unfolded", "wrapped"]
+__all__ = ["corner_positions", "cut", "cut_images", "half_width", "nearest", "unfolded", "wrapped"]
 
 
 def half_width(box: np.ndarray) -> float:
@@ -101,9 +101,25 @@ def unfolded(
 
 
 def cut(vertices: np.ndarray, triangles: np.ndarray, edges: np.ndarray, box: np.ndarray):
+    """The positions and triangles of `cut_images`."""
+    return cut_images(vertices, triangles, edges, box)[:2]
+
+
+def cut_images(
+    vertices: np.ndarray, triangles: np.ndarray, edges: np.ndarray, box: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Whole triangles, and vertices once for each of their images that triangles need.
 
     Where a part spans the box, its triangles are those with their middles inside of the box.
+
+    Returns
+    -------
+    vertices : ndarray
+        Shape (num_images, 3), nm, in the order of the vertices.
+    triangles : ndarray of int
+        Shape (num_triangles, 3), in the order of the triangles.
+    owners : ndarray of int
+        The vertex of each image, shape (num_images,).
     """
     places, part, spanning = unfolded(vertices, edges, box)
     corners = corner_positions(places, triangles, box)
@@ -113,7 +129,8 @@ def cut(vertices: np.ndarray, triangles: np.ndarray, edges: np.ndarray, box: np.
     steps = _steps(corners - places[triangles], box)
     names = np.column_stack([triangles.reshape(-1), steps.reshape(-1, 3)])
     images, number = np.unique(names, axis=0, return_inverse=True)
-    return places[images[:, 0]] + images[:, 1:] @ box, number.reshape(-1, 3)
+    owners = images[:, 0]
+    return places[owners] + images[:, 1:] @ box, number.reshape(-1, 3), owners
 
 
 def _steps(shifts: np.ndarray, box: np.ndarray) -> np.ndarray:

@@ -39,24 +39,78 @@ def positions_in(source):
         ) from None
 
 
-def box_of(box, *sources):
-    """The periodic box of an argument, nm, or else that of a Mesh among others, or None.
+def box_of(box, vertices, triangles=None):
+    """The periodic box of an argument, nm, or else that of a Mesh among vertices and triangles.
 
-    With positions of a State, Context or Simulation it is the box that these have now.
+    With positions of a State, Context or Simulation it is the box that these have now, with those
+    of a trajectory that of each frame, if the file has boxes.
+
+    Returns
+    -------
+    ndarray or None
+        Shape (3, 3), or (num_frames, 3, 3) where it changes; None for no box.
 
     Raises
     ------
     ValueError
-        Vectors that are not three lengths each, or not of OpenMM's reduced form.
+        Vectors that are not three, or not of OpenMM's reduced form; boxes of another number of
+        frames.
     """
-    if box is not None:
+    if box is None:
+        boxes = (getattr(source, "box", None) for source in (vertices, triangles))
+        box = next((box for box in boxes if box is not None), None)
+        return box if box is None else _present_box(vertices, box)
+    if np.ndim(getattr(box, "_value", box)) != 3:
         return box_array(box, "analysis")
-    boxes = (getattr(source, "box", None) for source in sources)
-    box = next((box for box in boxes if box is not None), None)
-    state = None if box is None else _state_of(sources[0])
-    if state is None:
-        return box
-    return state.getPeriodicBoxVectors(asNumpy=True).value_in_unit(unit.nanometer)
+    if unit.is_quantity(box):
+        box = box.value_in_unit(unit.nanometer)
+    if len(box) == 0:
+        raise ValueError("box: there are those of no frames")
+    if np.ndim(getattr(vertices, "_value", vertices)) == 3 and len(vertices) != len(box):
+        raise ValueError(f"box: there are those of {len(box)} frames, but {len(vertices)} frames")
+    boxes = np.stack([box_array(each, "analysis") for each in box])
+    return boxes[0] if (boxes == boxes[0]).all() else boxes
+
+
+def in_boxes(work, box):
+    """A function for `over_frames`, of one that takes frames, triangles and the box of the frames.
+
+    Parameters
+    ----------
+    work : callable
+        work(frames, faces, box), with a box of shape (3, 3) or None.
+    box : ndarray or None
+        What `box_of` returns.
+    """
+    if box is None or box.ndim == 2:
+        return lambda frames, faces, first: work(frames, faces, box)
+
+    def each(frames, faces, first):
+        if first + len(frames) > len(box):
+            raise ValueError(f"box: there are those of {len(box)} frames, but more frames")
+        parts = [work(frame[np.newaxis], faces, box[first + k]) for k, frame in enumerate(frames)]
+        return _joined(parts)
+
+    return each
+
+
+def check_whole(where: str, vertices, triangles=None) -> None:
+    """Refuse a surface whose positions are in pieces, for what has no use for its box.
+
+    Raises
+    ------
+    ValueError
+        A Mesh that spans its periodic box; triangles of a Mesh that has one, with positions of
+        something else.
+    """
+    if getattr(vertices, "box", None) is not None:
+        if unfolded(vertices.vertices, vertices.edges, vertices.box)[2].any():
+            raise ValueError(f"{where}: the surface spans its periodic box, and so has no centre")
+    elif getattr(triangles, "box", None) is not None:
+        raise ValueError(
+            f"{where}: the mesh of the triangles has a periodic box, which the positions are not "
+            "unfolded in; if its surface is whole in them, pass mesh.triangles"
+        )
 
 
 def _state_of(source, **wanted):
@@ -66,6 +120,21 @@ def _state_of(source, **wanted):
     if isinstance(source, openmm.Context):
         source = source.getState(**wanted)
     return source if isinstance(source, openmm.State) else None
+
+
+def _present_box(source, box):
+    """The box, nm, of an object of OpenMM, or boxes of a trajectory; of anything else `box`."""
+    state = _state_of(source)
+    if state is not None:
+        return state.getPeriodicBoxVectors(asNumpy=True).value_in_unit(unit.nanometer)
+    from .trajectories import Trajectory
+
+    if isinstance(source, (str, os.PathLike)):
+        source = Trajectory(source)
+    if isinstance(source, Trajectory):
+        boxes = source.boxes()
+        return box if boxes is None else box_of(boxes, source)
+    return box
 
 
 def over_frames(work, vertices, triangles=None, cost=None):
@@ -124,11 +193,17 @@ def over_frames(work, vertices, triangles=None, cost=None):
         raise ValueError(
             f"triangles: there are those of {len(triangles)} frames, but {first} frames"
         )
+    joined = _joined(parts)
+    if not single:
+        return joined
+    return tuple(column[0] for column in joined) if isinstance(joined, tuple) else joined[0]
+
+
+def _joined(parts):
+    """Results of some frames after another, arrays or tuples of arrays."""
     if not isinstance(parts[0], tuple):
-        joined = np.concatenate(parts)
-        return joined[0] if single else joined
-    joined = tuple(np.concatenate(column) for column in zip(*parts, strict=True))
-    return tuple(column[0] for column in joined) if single else joined
+        return np.concatenate(parts)
+    return tuple(np.concatenate(column) for column in zip(*parts, strict=True))
 
 
 def _refuse_triangles_of_the_start(trajectory, faces: np.ndarray) -> None:
@@ -157,9 +232,7 @@ def _with_own_triangles(work, triangles, num_vertices: int):
             work(frame[np.newaxis], triangles_of(triangles[first + k], num_vertices), first + k)
             for k, frame in enumerate(frames)
         ]
-        if not isinstance(parts[0], tuple):
-            return np.concatenate(parts)
-        return tuple(np.concatenate(column) for column in zip(*parts, strict=True))
+        return _joined(parts)
 
     return each, None, triangles.shape[1]
 

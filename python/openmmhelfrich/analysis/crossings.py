@@ -71,6 +71,8 @@ def crossings(vertices, triangles=None, *, box=None):
     frames, _ = frames_of(source)
     if len(frames) != 1:
         raise ValueError(f"vertices: crossings takes one frame, got {len(frames)}")
+    if box is not None and box.ndim == 3:
+        raise ValueError(f"box: crossings takes one frame, got boxes of {len(box)}")
     faces = triangles_of(triangles, frames.shape[1])
     corners = corner_positions(frames[0], faces, box)
     sides, owners = _sides(faces)

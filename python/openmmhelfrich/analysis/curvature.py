@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .._mesh.periodic import corner_positions, nearest
-from ._arrays import box_of, dot, gather_sum, over_frames
+from ._arrays import box_of, dot, gather_sum, in_boxes, over_frames
 from .elements import edges_of
 
 SCHEMES = (
@@ -78,8 +78,9 @@ def mean_curvature(vertices, triangles, scheme="Julicher", *, box=None):
     scheme : str or int
         A name of the table, or a constant of `BendingForce`.
     box : array_like or Quantity, optional
-        Periodic box, shape (3, 3), nm: triangles have corners that are nearest images. Default:
-        that of a `Mesh` among the other arguments, if it has one.
+        Periodic box, shape (3, 3), or (num_frames, 3, 3) if each frame has its own, nm: triangles
+        have corners that are nearest images. Default: that of a `Mesh` among the other arguments,
+        if it has one; with a trajectory then the boxes in its file, if there are any.
 
     Returns
     -------
@@ -120,14 +121,16 @@ def vertex_quantities(vertices, triangles, *, box=None) -> VertexQuantities:
     """
     box = box_of(box, vertices, triangles)
 
-    def work(frames, faces, first):
+    def work(frames, faces, box):
         num_vertices = frames.shape[1]
         unused = np.setdiff1d(np.arange(num_vertices), faces)
         if len(unused):
             raise ValueError(f"triangles: vertex {unused[0]} belongs to no triangle")
         return _quantities(frames, faces, num_vertices, box)
 
-    return VertexQuantities(*over_frames(work, vertices, triangles, lambda n, t: 60 * t))
+    return VertexQuantities(
+        *over_frames(in_boxes(work, box), vertices, triangles, lambda n, t: 60 * t)
+    )
 
 
 def _quantities(frames, faces, num_vertices, box):

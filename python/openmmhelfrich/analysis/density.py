@@ -3,7 +3,7 @@
 import numpy as np
 
 from .._numbers import whole_number
-from ._arrays import over_frames
+from ._arrays import check_whole, over_frames
 from .harmonics import harmonics_of
 from .statistics import Spectrum, spectrum
 
@@ -35,9 +35,10 @@ def density_modes(vertices, lmax):
     TypeError
         A Quantity that is no length.
     ValueError
-        A wrong shape, a coordinate that is not finite, a vertex at the centre, or an lmax that is
-        no whole number of 0 or more.
+        A wrong shape, a coordinate that is not finite, a vertex at the centre, an lmax that is no
+        whole number of 0 or more, or a Mesh that spans its periodic box.
     """
+    check_whole("density_modes", vertices)
     lmax = whole_number(lmax, "density_modes", "lmax", 0)
 
     def work(frames, faces, first):

@@ -3,7 +3,7 @@
 import numpy as np
 
 from .._mesh.periodic import corner_positions, nearest
-from ._arrays import box_of, over_frames
+from ._arrays import box_of, in_boxes, over_frames
 
 
 def triangle_areas(vertices, triangles, *, box=None):
@@ -16,8 +16,9 @@ def triangle_areas(vertices, triangles, *, box=None):
     triangles : array_like of int or Mesh
         Shape (num_triangles, 3), or (num_frames, num_triangles, 3) if each frame has its own.
     box : array_like or Quantity, optional
-        Periodic box, shape (3, 3), nm: triangles have corners that are nearest images. Default:
-        that of a `Mesh` among the other arguments, if it has one.
+        Periodic box, shape (3, 3), or (num_frames, 3, 3) if each frame has its own, nm: triangles
+        have corners that are nearest images. Default: that of a `Mesh` among the other arguments,
+        if it has one; with a trajectory then the boxes in its file, if there are any.
 
     Returns
     -------
@@ -33,11 +34,11 @@ def triangle_areas(vertices, triangles, *, box=None):
     """
     box = box_of(box, vertices, triangles)
 
-    def work(frames, faces, first):
+    def work(frames, faces, box):
         a, b, c = np.moveaxis(corner_positions(frames, faces, box), 2, 0)
         return np.linalg.norm(np.cross(b - a, c - a), axis=-1) / 2
 
-    return over_frames(work, vertices, triangles, lambda n, t: 15 * t)
+    return over_frames(in_boxes(work, box), vertices, triangles, lambda n, t: 15 * t)
 
 
 def triangle_heights(vertices, triangles, *, box=None):
@@ -61,13 +62,13 @@ def triangle_heights(vertices, triangles, *, box=None):
     """
     box = box_of(box, vertices, triangles)
 
-    def work(frames, faces, first):
+    def work(frames, faces, box):
         corners = corner_positions(frames, faces, box)
         sides = [corners[:, :, (k + 1) % 3] - corners[:, :, k] for k in range(3)]
         doubled = np.linalg.norm(np.cross(sides[0], sides[1]), axis=-1)
         return np.stack([doubled / np.linalg.norm(side, axis=-1) for side in sides], axis=-1)
 
-    return over_frames(work, vertices, triangles, lambda n, t: 20 * t)
+    return over_frames(in_boxes(work, box), vertices, triangles, lambda n, t: 20 * t)
 
 
 def edge_lengths(vertices, triangles, *, box=None):
@@ -91,14 +92,14 @@ def edge_lengths(vertices, triangles, *, box=None):
     """
     box = box_of(box, vertices, triangles)
 
-    def work(frames, faces, first):
+    def work(frames, faces, box):
         start, end, _, _ = edges_of(faces)
         low, high = np.minimum(start, end), np.maximum(start, end)
         order = np.lexsort((high, low))
         along = nearest(frames[:, high[order]] - frames[:, low[order]], box)
         return np.linalg.norm(along, axis=-1)
 
-    return over_frames(work, vertices, triangles, lambda n, t: 12 * t)
+    return over_frames(in_boxes(work, box), vertices, triangles, lambda n, t: 12 * t)
 
 
 def edges_of(faces):

@@ -3,7 +3,7 @@
 import numpy as np
 
 from .._numbers import whole_number
-from ._arrays import dot, over_frames
+from ._arrays import check_whole, dot, over_frames
 from .elements import edges_of
 from .harmonics import harmonics_of
 from .solid_angles import triangle_solid_angles, vertex_solid_angles
@@ -108,6 +108,7 @@ def mode_amplitudes(vertices, triangles, lmax, quadrature="fit", centre=None):
     to 15, because two errors cancel: flat triangles cut off about as much of the crests as the mesh
     softens short waves. Say which quadrature a spectrum was measured with.
     """
+    check_whole("mode_amplitudes", vertices, triangles)
     lmax = whole_number(lmax, "mode_amplitudes", "lmax", 0)
     if quadrature not in _QUADRATURES:
         raise ValueError(f"quadrature: need one of {tuple(_QUADRATURES)}, got {quadrature!r}")

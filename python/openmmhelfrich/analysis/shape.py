@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .._mesh.periodic import corner_positions, unfolded
-from ._arrays import box_of, dot, over_frames
+from ._arrays import box_of, check_whole, dot, in_boxes, over_frames
 from .elements import edges_of
 
 
@@ -44,8 +44,9 @@ def shape(vertices, triangles, *, box=None) -> Shape:
         Shape (num_triangles, 3), or (num_frames, num_triangles, 3) if each frame has its own;
         counter-clockwise seen from outside.
     box : array_like or Quantity, optional
-        Periodic box, shape (3, 3), nm: each connected part is put together by nearest images.
-        Default: that of a `Mesh` among the other arguments, if it has one.
+        Periodic box, shape (3, 3), or (num_frames, 3, 3) if each frame has its own, nm: each
+        connected part is put together by nearest images. Default: that of a `Mesh` among the other
+        arguments, if it has one; with a trajectory then the boxes in its file, if there are any.
 
     Returns
     -------
@@ -62,7 +63,7 @@ def shape(vertices, triangles, *, box=None) -> Shape:
     """
     box = box_of(box, vertices, triangles)
 
-    def work(frames, faces, first):
+    def work(frames, faces, box):
         start, end, _, right = edges_of(faces)
         has_border = bool((right < 0).any())
         spans = np.zeros(len(frames), dtype=bool)
@@ -93,7 +94,7 @@ def shape(vertices, triangles, *, box=None) -> Shape:
             (asphericity**2 + 0.75 * acylindricity**2) / square**2,
         )
 
-    return Shape(*over_frames(work, vertices, triangles, lambda n, t: 20 * t))
+    return Shape(*over_frames(in_boxes(work, box), vertices, triangles, lambda n, t: 20 * t))
 
 
 def gyration_tensor(vertices):
@@ -114,8 +115,9 @@ def gyration_tensor(vertices):
     TypeError
         A Quantity that is no length.
     ValueError
-        A wrong shape, or a coordinate that is not finite.
+        A wrong shape, a coordinate that is not finite, or a Mesh that spans its periodic box.
     """
+    check_whole("gyration_tensor", vertices)
 
     def work(frames, faces, first):
         return _tensor(frames - frames.mean(axis=1, keepdims=True))

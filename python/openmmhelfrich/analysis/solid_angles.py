@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ._arrays import dot, gather_sum, over_frames
+from ._arrays import check_whole, dot, gather_sum, over_frames
 
 
 def solid_angles(vertices, triangles):
@@ -33,8 +33,9 @@ def solid_angles(vertices, triangles):
         A Quantity that is no length, or indices that are no integers.
     ValueError
         A wrong shape, an index out of range, a coordinate that is not finite, or a vertex at the
-        origin.
+        origin; a Mesh that spans its periodic box, or one that has a box beside other positions.
     """
+    check_whole("solid_angles", vertices, triangles)
 
     def work(frames, faces, first):
         if not frames.any(axis=2).all():

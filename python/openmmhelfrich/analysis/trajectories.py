@@ -166,18 +166,45 @@ class Trajectory:
         """The step of the simulation of each frame, shape (num_frames,); errors as for `times`."""
         return self._column(2, "steps").astype(np.int64)
 
+    def boxes(self) -> np.ndarray | None:
+        """The periodic box of each frame, nm, shape (num_frames, 3, 3).
+
+        None if the file has none, or has boxes of no size, as XTC files without a box do. All
+        functions of this package that take `box=` take it.
+        """
+        if self.suffix == ".xtc":
+            found = self._rows(3)
+        elif self.suffix == ".dcd":
+            lengths, angles = self._rows(1), self._rows(2)
+            found = None if lengths is None else _vectors(lengths * _ANGSTROM, angles)
+        else:
+            with _mdtraj_formats().PDBTrajectoryFile(str(self.path)) as file:
+                if file.unitcell_lengths is None:
+                    return None
+                lengths = np.array([file.unitcell_lengths]) * _ANGSTROM
+                found = _vectors(lengths, np.array([file.unitcell_angles]))
+                found = np.repeat(found, self._num_stored(), axis=0)
+        if found is None:
+            return None
+        found = found[self.start : self.stop : self.stride].astype(float)
+        return found if found.any(axis=2).all() else None
+
     def _column(self, number: int, what: str) -> np.ndarray:
         """What MDTraj returns at this place for each of the chosen frames of an XTC file."""
         if self.suffix != ".xtc":
             raise ValueError(f"Trajectory: {self.path} has no {what}; XTC files have them")
+        return self._rows(number)[self.start : self.stop : self.stride]
+
+    def _rows(self, number: int) -> np.ndarray | None:
+        """What MDTraj returns at this place for each frame of an XTC or DCD file, if anything."""
         found = []
         try:
             with self._opened() as file:
-                while len(part := file.read(n_frames=256)[number]):
-                    found.append(part)
+                while len((part := file.read(n_frames=256))[0]):
+                    found.append(part[number])
         except (OSError, RuntimeError) as reason:
             raise ValueError(f"Trajectory: {self.path} cannot be read: {reason}") from None
-        return np.concatenate(found)[self.start : self.stop : self.stride]
+        return None if found[0] is None else np.concatenate(found)
 
     def triangles(self, num_triangles=None) -> np.ndarray | None:
         """The triangles of each frame, from the file ``<name>.triangles`` beside this one.
@@ -280,6 +307,13 @@ class Trajectory:
         formats = _mdtraj_formats()
         kinds = {".xtc": formats.XTCTrajectoryFile, ".dcd": formats.DCDTrajectoryFile}
         return kinds[self.suffix](str(self.path))
+
+
+def _vectors(lengths: np.ndarray, angles: np.ndarray) -> np.ndarray:
+    """Box vectors, shape (num_frames, 3, 3), of lengths and angles in degrees."""
+    from mdtraj.utils import lengths_and_angles_to_box_vectors
+
+    return np.stack(lengths_and_angles_to_box_vectors(*lengths.T, *angles.T), axis=1)
 
 
 def _mdtraj_formats():

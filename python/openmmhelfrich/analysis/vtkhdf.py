@@ -15,8 +15,9 @@ from typing import NamedTuple
 import numpy as np
 
 from .._journal import JournaledFile
+from .._mesh.periodic import cut_images
 from .._writing import naming
-from ._arrays import over_frames, triangles_of
+from ._arrays import box_of, in_boxes, over_frames, triangles_of
 from .curvature import vertex_quantities
 from .elements import edges_of, triangle_areas
 from .tables import import_h5py
@@ -31,13 +32,14 @@ _UNUSED = ("Vertices", "Lines", "Strips")
 _POLYGONS = 2
 _POINT_DATA = {"mean_curvature": "<f4", "area": "<f4", "neighbours": "<i4"}
 _CELL_DATA = {"area": "<f4"}
+_COMPONENT = {"component": "<i4"}
 # Rows of one chunk of a dataset, at least.
 _CHUNK = 256
 # Frames that are added at a time.
 _BATCH = 64
 
 
-def write_vtkhdf(path, vertices, triangles=None, times=None, steps=None) -> int:
+def write_vtkhdf(path, vertices, triangles=None, times=None, steps=None, *, box=None) -> int:
     """Write surfaces over time as VTKHDF, which ParaView opens: a finished run, or any frames.
 
     `SurfaceSeries` says what is in the file.
@@ -50,12 +52,16 @@ def write_vtkhdf(path, vertices, triangles=None, times=None, steps=None) -> int:
         Shape (num_vertices, 3) for one frame or (num_frames, num_vertices, 3), nm.
     triangles : array_like of int or Mesh, optional
         Shape (num_triangles, 3), or (num_frames, num_triangles, 3) if each frame has its own;
-        counter-clockwise seen from outside, closed surfaces that all vertices belong to. Default:
-        those of ``<name>.triangles`` beside a trajectory.
+        counter-clockwise seen from outside, surfaces that all vertices belong to. Default: those of
+        ``<name>.triangles`` beside a trajectory.
     times : array_like, optional
         ps, ascending, shape (num_frames,). Default: those of an XTC file, or else 0, 1, 2, …
     steps : array_like of int, optional
         Steps of the simulation, shape (num_frames,), with defaults as for `times`.
+    box : array_like or Quantity, optional
+        Periodic box, shape (3, 3), or (num_frames, 3, 3) if each frame has its own, nm. Default:
+        that of a `Mesh` among the other arguments, if it has one; with a trajectory then the boxes
+        in its file, if there are any.
 
     Returns
     -------
@@ -88,20 +94,21 @@ def write_vtkhdf(path, vertices, triangles=None, times=None, steps=None) -> int:
             steps = vertices.steps() if steps is None else steps
     if triangles is None:
         raise ValueError("write_vtkhdf: need triangles; there is no file of them to take")
+    box = box_of(box, vertices, triangles)
     fresh = path.with_name(f".{path.name}.{os.getpid()}.new")
     series, batch = SurfaceSeries(fresh), []
     stamps = _Stamps(times, steps)
 
-    def collect(frames, faces, first):
-        for number, frame in enumerate(frames, start=first):
-            batch.append(SurfaceFrame(*stamps.at(number), frame, faces))
+    def collect(frames, faces, box):
+        for frame in frames:
+            batch.append(SurfaceFrame(*stamps.next(), frame, faces, box))
             if len(batch) == _BATCH:
                 series.add(batch)
                 batch.clear()
         return np.zeros(len(frames))
 
     try:
-        count = np.size(over_frames(collect, vertices, triangles))
+        count = np.size(over_frames(in_boxes(collect, box), vertices, triangles))
         series.add(batch)
         stamps.check(count)
         with naming(path):
@@ -119,9 +126,12 @@ class _Stamps:
         self._steps = None if steps is None else np.asarray(steps).ravel()
         if self._times is not None and not (np.diff(self._times) > 0).all():
             raise ValueError("write_vtkhdf: the times of the frames do not ascend")
+        self._number = 0
 
-    def at(self, number: int) -> tuple[int, float]:
-        """Step and time of a frame."""
+    def next(self) -> tuple[int, float]:
+        """Step and time of the next frame."""
+        number = self._number
+        self._number += 1
         self.check(number + 1, more=True)
         step = number if self._steps is None else int(self._steps[number])
         return step, float(number if self._times is None else self._times[number])
@@ -147,6 +157,8 @@ class SurfaceFrame(NamedTuple):
     """Shape (num_vertices, 3), nm."""
     triangles: np.ndarray
     """Shape (num_triangles, 3), counter-clockwise seen from outside."""
+    box: np.ndarray | None = None
+    """The periodic box, shape (3, 3), nm, if the surface lives in one."""
 
 
 class SurfaceSeries:
@@ -156,7 +168,10 @@ class SurfaceSeries:
     third of the triangles around, nm²; ``neighbours``, how many there are; ``component``, the
     number of the connected surface that they belong to, from 0. Triangles carry ``area``, nm², and
     ``component``. Coordinates are in nm in double precision, values in single precision, times in
-    ps. Triangles are stored anew only where they have changed. The group ``/openmm-helfrich`` has
+    ps. Triangles are stored anew only where they have changed. Of a surface in a periodic box, each
+    connected part is in one piece; one that spans the box is cut at its faces, where a vertex with
+    triangles on both sides is there once for each of its images (`Mesh.unfolded`), with the same
+    values. The group ``/openmm-helfrich`` has
     the ``step`` of the simulation of each frame.
 
     The file is closed between additions, so that ParaView can look at it during a run. A kill at
@@ -246,26 +261,25 @@ class SurfaceSeries:
         return self._h5py.File(raw, mode)
 
     def _lay_out(self, file, frame: SurfaceFrame) -> None:
-        """Everything but frames; what is the same in all frames is stored once."""
+        """Everything but frames."""
         num_vertices, num_triangles = len(frame.vertices), len(frame.triangles)
-        kind = components(frame.triangles, num_vertices)
         root = file.create_group("VTKHDF")
         root.attrs["Version"] = np.array([2, 0], dtype=np.int64)
         # VTK reads a string of fixed length only.
         root.attrs.create("Type", np.bytes_("PolyData"))
-        root["NumberOfPoints"] = np.array([num_vertices], dtype=np.int64)
+        _growing(root, "NumberOfPoints", "<i8")
         _growing(root, "Points", "<f8", num_vertices, (3,))
-        for name in _UNUSED:
-            _cells(root, name, 0)
-            root[f"{name}/Connectivity"] = np.empty(0, dtype=np.int32)
-        _cells(root, "Polygons", num_triangles)
-        _growing(root, "Polygons/Connectivity", "<i4", 3 * num_triangles)
-        for name, dtype in _POINT_DATA.items():
+        for name in (*_UNUSED, "Polygons"):
+            rows = 3 * num_triangles if name == "Polygons" else 1
+            for size in ("NumberOfCells", "NumberOfConnectivityIds"):
+                _growing(root, f"{name}/{size}", "<i8")
+            # Of one type, which VTK before 9.7 insists on.
+            _growing(root, f"{name}/Offsets", "<i4", rows // 3 + 1)
+            _growing(root, f"{name}/Connectivity", "<i4", rows)
+        for name, dtype in (_POINT_DATA | _COMPONENT).items():
             _growing(root, f"PointData/{name}", dtype, num_vertices)
-        for name, dtype in _CELL_DATA.items():
+        for name, dtype in (_CELL_DATA | _COMPONENT).items():
             _growing(root, f"CellData/{name}", dtype, num_triangles)
-        root["PointData/component"] = kind.astype(np.int32)
-        root["CellData/component"] = kind[frame.triangles[:, 0]].astype(np.int32)
         steps = root.create_group("Steps")
         steps.attrs["NSteps"] = np.int64(0)
         _growing(steps, "Values", "<f8")
@@ -273,18 +287,19 @@ class SurfaceSeries:
             _growing(steps, name, "<i8")
         for name in ("CellOffsets", "ConnectivityIdOffsets"):
             _growing(steps, name, "<i8", shape=(4,))
-        for name in (*_POINT_DATA, "component"):
+        for name in (*_POINT_DATA, *_COMPONENT):
             _growing(steps, f"PointDataOffsets/{name}", "<i8")
-        for name in (*_CELL_DATA, "component"):
+        for name in (*_CELL_DATA, *_COMPONENT):
             _growing(steps, f"CellDataOffsets/{name}", "<i8")
         ours = file.create_group(_OURS)
         ours.attrs["units"] = "nm, ps"
+        ours.attrs["vertices"] = num_vertices
+        ours.attrs["triangles"] = num_triangles
         _growing(ours, "step", "<i8")
 
     def _append(self, file, frame: SurfaceFrame) -> None:
         root, steps = file["VTKHDF"], file["VTKHDF/Steps"]
-        number = int(steps.attrs["NSteps"])
-        num_vertices, num_triangles = self._sizes(root)
+        num_vertices, num_triangles = self._sizes(file)
         if (len(frame.vertices), len(frame.triangles)) != (num_vertices, num_triangles):
             raise ValueError(
                 f"{self.path}: its frames have {num_vertices} vertices and {num_triangles} "
@@ -292,47 +307,75 @@ class SurfaceSeries:
                 "file"
             )
         corners = triangles_of(frame.triangles, num_vertices)
-        found = vertex_quantities(frame.vertices, corners)
-        _extend(root["Points"], frame.vertices)
-        _extend(root["PointData/mean_curvature"], found.mean_curvature())
-        _extend(root["PointData/area"], found.barycentric_area)
-        ends = np.concatenate(edges_of(corners)[:2])
-        neighbours = np.bincount(ends, minlength=num_vertices)
-        _extend(root["PointData/neighbours"], neighbours)
-        _extend(root["CellData/area"], triangle_areas(frame.vertices, corners))
-        connectivity = root["Polygons/Connectivity"]
-        last = np.array(connectivity[-3 * num_triangles :])
-        if not np.array_equal(last, corners.ravel()):
-            _extend(connectivity, corners.ravel())
-        begin = [0, 0, 0, 0]
-        begin[_POLYGONS] = len(connectivity) - 3 * num_triangles
+        start, end = edges_of(corners)[:2]
+        found = vertex_quantities(frame.vertices, corners, box=frame.box)
+        kind = components(corners, num_vertices)
+        points, polygons, owners = frame.vertices, corners, slice(None)
+        if frame.box is not None:
+            edges = np.column_stack([start, end])
+            points, polygons, owners = cut_images(points, corners, edges, frame.box)
+        neighbours = np.bincount(np.concatenate([start, end]), minlength=num_vertices)
+        part = self._part_of(root, len(points), num_triangles)
+        cells, ids = [0, 0, 0, 0], [0, 0, 0, 0]
+        cells[_POLYGONS] = part * num_triangles
+        ids[_POLYGONS] = _extend_if_new(root["Polygons/Connectivity"], polygons.ravel())
+        point_data = {
+            "mean_curvature": found.mean_curvature()[owners],
+            "area": found.barycentric_area[owners],
+            "neighbours": neighbours[owners],
+        }
+        areas = triangle_areas(frame.vertices, corners, box=frame.box)
+        of_points = _extend_if_new(root["PointData/component"], kind[owners])
+        of_cells = _extend_if_new(root["CellData/component"], kind[corners[:, 0]])
         rows = {
             "Values": frame.time,
             "NumberOfParts": 1,
-            "PartOffsets": 0,
-            "PointOffsets": number * num_vertices,
-            "CellOffsets": [0, 0, 0, 0],
-            "ConnectivityIdOffsets": begin,
-            "PointDataOffsets/component": 0,
-            "CellDataOffsets/component": 0,
+            "PartOffsets": part,
+            "PointOffsets": _extend(root["Points"], points),
+            "CellOffsets": cells,
+            "ConnectivityIdOffsets": ids,
+            "PointDataOffsets/component": of_points,
+            "CellDataOffsets/component": of_cells,
+            "CellDataOffsets/area": _extend(root["CellData/area"], areas),
         }
-        rows |= {f"PointDataOffsets/{name}": number * num_vertices for name in _POINT_DATA}
-        rows |= {f"CellDataOffsets/{name}": number * num_triangles for name in _CELL_DATA}
+        for name, values in point_data.items():
+            rows[f"PointDataOffsets/{name}"] = _extend(root[f"PointData/{name}"], values)
         for name, row in rows.items():
             _extend(steps[name], [row])
         _extend(file[f"{_OURS}/step"], [frame.step])
-        steps.attrs["NSteps"] = np.int64(number + 1)
+        steps.attrs["NSteps"] = np.int64(steps.attrs["NSteps"] + 1)
+
+    @staticmethod
+    def _part_of(root, num_points: int, num_triangles: int) -> int:
+        """The place of the sizes of a frame: the last ones, or new ones if they differ."""
+        sizes = root["NumberOfPoints"]
+        if len(sizes) == 0 or sizes[-1] != num_points:
+            _extend(sizes, [num_points])
+            for name in (*_UNUSED, "Polygons"):
+                count = num_triangles if name == "Polygons" else 0
+                _extend(root[f"{name}/NumberOfCells"], [count])
+                _extend(root[f"{name}/NumberOfConnectivityIds"], [3 * count])
+                _extend(root[f"{name}/Offsets"], np.arange(0, 3 * count + 1, 3))
+        return len(sizes) - 1
 
     def _resize(self, file, num_frames: int) -> None:
         root, steps = file["VTKHDF"], file["VTKHDF/Steps"]
-        num_vertices, num_triangles = self._sizes(root)
-        used = steps["ConnectivityIdOffsets"][num_frames - 1, _POLYGONS] + 3 * num_triangles
+        num_triangles = self._sizes(file)[1]
+        last = num_frames - 1
+        part = int(steps["PartOffsets"][last])
+        num_points = int(root["NumberOfPoints"][part])
+        used = steps["ConnectivityIdOffsets"][last, _POLYGONS] + 3 * num_triangles
         root["Polygons/Connectivity"].resize(used, axis=0)
-        root["Points"].resize(num_frames * num_vertices, axis=0)
-        for name in _POINT_DATA:
-            root[f"PointData/{name}"].resize(num_frames * num_vertices, axis=0)
-        for name in _CELL_DATA:
-            root[f"CellData/{name}"].resize(num_frames * num_triangles, axis=0)
+        root["Points"].resize(steps["PointOffsets"][last] + num_points, axis=0)
+        for kind, size in (("PointData", num_points), ("CellData", num_triangles)):
+            for name, values in root[kind].items():
+                values.resize(steps[f"{kind}Offsets/{name}"][last] + size, axis=0)
+        root["NumberOfPoints"].resize(part + 1, axis=0)
+        for name in (*_UNUSED, "Polygons"):
+            count = num_triangles if name == "Polygons" else 0
+            root[f"{name}/NumberOfCells"].resize(part + 1, axis=0)
+            root[f"{name}/NumberOfConnectivityIds"].resize(part + 1, axis=0)
+            root[f"{name}/Offsets"].resize((part + 1) * (count + 1), axis=0)
 
         def shorten(name, found):
             if isinstance(found, self._h5py.Dataset):
@@ -342,9 +385,12 @@ class SurfaceSeries:
         file[f"{_OURS}/step"].resize(num_frames, axis=0)
         steps.attrs["NSteps"] = np.int64(num_frames)
 
-    @staticmethod
-    def _sizes(root) -> tuple[int, int]:
-        return int(root["NumberOfPoints"][0]), int(root["Polygons/NumberOfCells"][0])
+    def _sizes(self, file) -> tuple[int, int]:
+        """The numbers of vertices and triangles, images not counted."""
+        ours = file[_OURS]
+        if "vertices" not in ours.attrs:
+            raise ValueError(f"{self.path} was begun by an older version; give another file")
+        return int(ours.attrs["vertices"]), int(ours.attrs["triangles"])
 
 
 def components(triangles: np.ndarray, num_vertices: int) -> np.ndarray:
@@ -377,15 +423,17 @@ def _growing(group, name: str, dtype: str, rows: int = 1, shape: tuple[int, ...]
     group.create_dataset(name, (0, *shape), dtype, maxshape=(None, *shape), chunks=chunk)
 
 
-def _cells(root, name: str, count: int) -> None:
-    """The sizes of one kind of cells, all triangles."""
-    root[f"{name}/NumberOfCells"] = np.array([count], dtype=np.int64)
-    root[f"{name}/NumberOfConnectivityIds"] = np.array([3 * count], dtype=np.int64)
-    # Of the type that the connectivity has, which VTK before 9.7 insists on.
-    root[f"{name}/Offsets"] = np.arange(0, 3 * count + 1, 3, dtype=np.int32)
+def _extend(dataset, rows) -> int:
+    """Add rows; returns where they begin."""
+    begin = len(dataset)
+    dataset.resize(begin + len(rows), axis=0)
+    dataset[begin:] = rows
+    return begin
 
 
-def _extend(dataset, rows) -> None:
-    count = len(rows)
-    dataset.resize(len(dataset) + count, axis=0)
-    dataset[-count:] = rows
+def _extend_if_new(dataset, rows) -> int:
+    """Where rows begin that a dataset ends with, added if it does not."""
+    begin = len(dataset) - len(rows)
+    if begin >= 0 and np.array_equal(dataset[begin:], rows):
+        return begin
+    return _extend(dataset, rows)

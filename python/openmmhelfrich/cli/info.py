@@ -10,6 +10,7 @@ from pathlib import Path
 
 import click
 
+from ..errors import MeshError
 from .options import platform_option, reader_options, tidy_errors
 
 __all__ = ["info"]
@@ -75,8 +76,7 @@ def _membrane(cfg, membrane) -> list[str]:
     mesh = membrane.mesh
     lines = [
         f"Membrane {membrane.label}: {mesh.num_vertices} vertices, {mesh.num_triangles} triangles",
-        f"  area {mesh.area:.8g} nm², volume {mesh.volume:.8g} nm³, "
-        f"reduced volume {mesh.reduced_volume:.4f}",
+        f"  area {mesh.area:.8g} nm²" + _enclosed(mesh),
     ]
     if membrane.num_reversed:
         lines.append(
@@ -88,6 +88,17 @@ def _membrane(cfg, membrane) -> list[str]:
     if membrane.settings["Sticky"]:
         lines.append(f"  sticky: {len(sticky_pairs(cfg, membrane))} bonds to other membranes")
     return lines + _time_scales(cfg, membrane)
+
+
+def _enclosed(mesh) -> str:
+    """What a mesh encloses, or why it does not."""
+    if not mesh.is_closed:
+        return f", {len(mesh.border_loops)} border(s)"
+    try:
+        volume = mesh.volume
+    except MeshError:
+        return ", spans the periodic box"
+    return f", volume {volume:.8g} nm³, reduced volume {mesh.reduced_volume:.4f}"
 
 
 def _time_scales(cfg, membrane) -> list[str]:

@@ -5,19 +5,22 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from ..forces import BendingForce, DihedralForce
+from ..forces import BendingForce, DihedralForce, MonteCarloMembraneTension
 from ..vcm.frames import FRAMES
 from .values import (
     Reader,
     boolean,
+    box,
     choice,
     choices,
+    counts,
     energy,
     flips,
     integer,
     mode,
     number,
     scale,
+    signed_energy,
     text,
     vector,
 )
@@ -48,6 +51,10 @@ _TEXTS = {
     "velocities": "VEL",
     "forces": "FORCE",
     "curvatures": "CURVE",
+}
+_AXES = {
+    name: getattr(MonteCarloMembraneTension, name)
+    for name in ("XYIsotropic", "XYIndependent", "XYConstantArea", "ZOnly")
 }
 _INTEGRATORS = ("Verlet", "LangevinMiddle", "Langevin", "Brownian")
 _MAX_SEED = 2**31 - 1
@@ -95,6 +102,9 @@ KEYS: tuple[Key, ...] = (
     Key("output", "ply", boolean, False, "Short for `frames = \"ply\"`."),
     Key("output", "text", choices(_TEXTS), (),
         "Text files: an array of " + ", ".join(f"`\"{name}\"`" for name in _TEXTS) + "."),
+    Key("box", "vectors", box, REQUIRED,
+        "Periodic box of everything, nm: `[x, y, z]`, or three vectors `[[ax, 0, 0], [bx, by, 0], "
+        "[cx, cy, cz]]`. Without the table: that of the meshes, if they have one."),
     Key("vesicle", "name", text, None, "Label in file names and tables. Default: its number."),
     Key("vesicle", "rigidity", energy, None, "Bending rigidity κ, kJ/mol. Default: 20 kBT, 300 K."),
     Key("vesicle", "scheme", choice(_SCHEMES), None,
@@ -105,7 +115,8 @@ KEYS: tuple[Key, ...] = (
     Key("vesicle", "unsigned_spontaneous_curvature", boolean, None,
         "VCM's magnitude of the curvature in the linear term of C0. Default: false."),
     Key("vesicle", "area_modulus", number(least=0), None, "kA, kJ/mol/nm². Default: 1.3."),
-    Key("vesicle", "volume_modulus", number(least=0), None, "kV, kJ/mol/nm³. Default: 0.04."),
+    Key("vesicle", "volume_modulus", number(least=0), None, "kV, kJ/mol/nm³; 0 for meshes with "
+        "borders, or that span the box. Default: 0.04."),
     Key("vesicle", "area", number(above=0), None, "A0, nm². Default: that of the mesh."),
     Key("vesicle", "volume", number(above=0), None, "V0, nm³. Default: that of the mesh."),
     Key("vesicle", "reduced_volume", number(above=0), None,
@@ -125,6 +136,10 @@ KEYS: tuple[Key, ...] = (
         "Stiffness that keeps vertex areas equal, kJ/mol. Default: 0, none."),
     Key("vesicle", "min_triangle_area", number(least=0), None,
         "Triangle area below which triangles repel, nm². Default: 0, none."),
+    Key("vesicle", "edge_tension", number(), None,
+        "γ, energy per length of borders, kJ/mol/nm. Default: 0, none."),
+    Key("vesicle", "gaussian_modulus", signed_energy, None,
+        "κ_G, kJ/mol, which acts at borders. Default: 0, none."),
     Key("vesicle", "flips", flips, None,
         "Flip bonds, so that the membrane is fluid: attempts per edge and step, such as 0.01, or a "
         "table `{ attempts_per_edge = 0.1, frequency = 10, min_degree = 3, max_degree = 10, "
@@ -142,8 +157,19 @@ KEYS: tuple[Key, ...] = (
         "N = 10 n² + 2."),
     Key("vesicle.mesh", "random", integer(12), None,
         "In place of a file: an irregular sphere of so many vertices."),
+    Key("vesicle.mesh", "sheet", counts(2), None,
+        "In place of a file: a flat sheet of `[nx, ny]` vertices, see `Mesh.sheet`."),
+    Key("vesicle.mesh", "tube", counts(2), None,
+        "In place of a file: a tube of `[n_around, n_along]` vertices, see `Mesh.tube`."),
+    Key("vesicle.mesh", "disk", integer(1), None,
+        "In place of a file: a flat disk of so many rings, see `Mesh.disk`."),
+    Key("vesicle.mesh", "spacing", number(above=0), None,
+        "Length of the edges of `sheet`, nm; it needs it."),
+    Key("vesicle.mesh", "length", number(above=0), None, "Length of `tube`, nm; it needs it."),
+    Key("vesicle.mesh", "periodic", boolean, False,
+        "`sheet` and `tube` span a periodic box, which is made with them."),
     Key("vesicle.mesh", "radius", number(above=0), None,
-        "Radius of `icosphere` and `random`, nm; they need it."),
+        "Radius of `icosphere`, `random`, `tube` and `disk`, nm; they need it."),
     Key("vesicle.mesh", "seed", integer(0, _MAX_SEED), None, "Of `random`. Default: 0."),
     Key("vesicle.mesh", "scale", scale, None, "Factor of the coordinates, or three of them."),
     Key("vesicle.mesh", "deform", mode, None,
@@ -155,6 +181,12 @@ KEYS: tuple[Key, ...] = (
     Key("vesicle.mesh", "rotate", vector, None,
         "Rotation vector about the origin, degrees: `[0, 0, 90]` is a quarter turn about z."),
     Key("vesicle.mesh", "translate", vector, None, "Displacement, nm."),
+    Key("tension", "tension", number(), 0.0,
+        "Of the frame, kJ/mol/nm²; see `MonteCarloMembraneTension`, which changes the box."),
+    Key("tension", "pulling_force", number(), 0.0, "Along z, kJ/mol/nm; with `ZOnly`."),
+    Key("tension", "axes", choice(_AXES), None,
+        "What changes: " + ", ".join(f"`{name}`" for name in _AXES) + ". Default: `XYIsotropic`."),
+    Key("tension", "frequency", integer(1), 25, "Steps between moves."),
     Key("repulsion", "strength", energy, REQUIRED,
         "ε, kJ/mol, of ε ((D/d)⁶ − 1)² at a distance d; see `SurfaceRepulsionForce`."),
     Key("repulsion", "distance", number(above=0), REQUIRED, "D, nm, beyond which there is none."),

@@ -12,7 +12,23 @@ from .tables import Table
 
 __all__ = ["start_mesh"]
 
-_SOURCES = ("file", "icosphere", "random")
+#: Where meshes come from, and the keys that each needs and takes.
+_SOURCES = {
+    "file": ((), ("triangulate", "merge", "drop_unused")),
+    "icosphere": (("radius",), ()),
+    "random": (("radius",), ("seed",)),
+    "sheet": (("spacing",), ("periodic",)),
+    "tube": (("radius", "length"), ("periodic",)),
+    "disk": (("radius",), ()),
+}
+_COMPANIONS = ("radius", "spacing", "length", "periodic", "seed")
+_ARTICLES = {
+    "icosphere": "a sphere",
+    "random": "a sphere",
+    "sheet": "a sheet",
+    "tube": "a tube",
+    "disk": "a disk",
+}
 _READING = ("triangulate", "merge", "drop_unused")
 
 
@@ -42,10 +58,8 @@ def start_mesh(table: Table, folder: Path) -> Mesh:
     try:
         if source == "file":
             mesh = Mesh.read(folder / table["file"], **{name: table[name] for name in _READING})
-        elif source == "icosphere":
-            mesh = Mesh.icosphere(table["icosphere"], table["radius"])
         else:
-            mesh = Mesh.random_sphere(table["random"], table["radius"], table["seed"] or 0)
+            mesh = _MADE[source](table)
     except (FileNotFoundError, MeshError) as reason:
         raise table.error(source, str(reason)) from None
     if table["oblate"] is not None and table["prolate"] is not None:
@@ -67,14 +81,28 @@ def start_mesh(table: Table, folder: Path) -> Mesh:
     return mesh
 
 
+_MADE = {
+    "icosphere": lambda t: Mesh.icosphere(t["icosphere"], t["radius"]),
+    "random": lambda t: Mesh.random_sphere(t["random"], t["radius"], t["seed"] or 0),
+    "sheet": lambda t: Mesh.sheet(*t["sheet"], t["spacing"], t["periodic"]),
+    "tube": lambda t: Mesh.tube(*t["tube"], t["radius"], t["length"], t["periodic"]),
+    "disk": lambda t: Mesh.disk(t["disk"], t["radius"]),
+}
+
+
 def _check_companions(table: Table, source: str) -> None:
     """Keys that go with some sources only."""
-    if source == "file" and table.given("radius"):
-        raise table.error("radius", "a mesh from a file has its own size; use scale")
-    if source != "file" and not table.given("radius"):
-        raise table.error(source, "a sphere needs a radius, nm; add radius")
+    needed, taken = _SOURCES[source]
+    for name in needed:
+        if not table.given(name):
+            raise table.error(source, f"{_ARTICLES[source]} needs a {name}, nm; add {name}")
     for name in _READING:
         if source != "file" and table.given(name):
             raise table.error(name, "it says how to read a file, and this mesh is made")
-    if source != "random" and table.given("seed"):
-        raise table.error("seed", "only a random mesh has a seed")
+    for name in _COMPANIONS:
+        if table.given(name) and name not in needed + taken:
+            if source == "file" and name != "seed":
+                raise table.error(name, "a mesh from a file has its own size; use scale")
+            others = [other for other, keys in _SOURCES.items() if name in keys[0] + keys[1]]
+            has = f"only a {' or '.join(others)} mesh has a {name}"
+            raise table.error(name, has)

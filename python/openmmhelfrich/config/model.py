@@ -9,9 +9,12 @@ from pathlib import Path
 
 import numpy as np
 import openmm
+from openmm import unit
 
 from .. import platforms, vcm
-from ..forces import SurfaceRepulsionForce
+from ..errors import MeshError
+from ..forces import MonteCarloMembraneTension, SurfaceRepulsionForce
+from ..mesh import Mesh
 from ..vcm.grammar import GENERAL, MEMBRANE, ConfigError, nearest
 from ..vcm.parsers import Interval
 from ..vcm.settings import Settings
@@ -23,7 +26,7 @@ from .tables import Table
 
 __all__ = ["Configuration", "VesicleMembrane", "read", "read_any"]
 
-_TABLES = ("simulation", "integrator", "output", "vesicle", "repulsion")
+_TABLES = ("simulation", "integrator", "output", "box", "vesicle", "tension", "repulsion")
 _MAX_SEED = 2**31 - 1
 # Group 31 is left to what a user adds.
 _NUM_GROUPS = 31
@@ -68,7 +71,17 @@ class Configuration(vcm.Config):
             raise output.error("ply", "give either frames or ply, not both")
         frames = "ply" if output["ply"] else output["frames"]
         self.writes = {"xtc": output["xtc"], "frames": frames}
-        self.membranes = _vesicles(document, self.kT)
+        self.box, self.membranes = _vesicles(document, self.kT)
+        if self.box is not None:
+            # Outputs have a box then.
+            self.general["SimulationBoxLength"] = float(self.box[0, 0])
+        self._tension = None
+        if "tension" in document.data:
+            self._tension = Table(document, ("tension",), "tension")
+            if self.box is None:
+                raise self._tension.error(
+                    None, "it acts on a periodic box; add [box], or a mesh that spans one"
+                )
         self._repulsion = None
         if "repulsion" in document.data:
             self._repulsion = Table(document, ("repulsion",), "repulsion", self.kT)
@@ -133,7 +146,31 @@ class Configuration(vcm.Config):
             force.setForceGroup(max(self._terms.values()) + 1)
             self._terms[force.getName()] = force.getForceGroup()
             result.addForce(force)
+        if self.box is not None:
+            result.setDefaultPeriodicBoxVectors(*self.box)
+        if self._tension is not None:
+            result.addForce(self._mover_of_box())
         return result
+
+    def topology(self) -> openmm.app.Topology:
+        """A chain per vesicle, an atom per vertex, a bond per edge, and the periodic box."""
+        result = super().topology()
+        if self.box is not None:
+            result.setPeriodicBoxVectors(self.box * unit.nanometer)
+        return result
+
+    def _mover_of_box(self) -> openmm.Force:
+        given = self._tension
+        force = MonteCarloMembraneTension(
+            self.temperature,
+            given["tension"],
+            given["frequency"],
+            MonteCarloMembraneTension.XYIsotropic if given["axes"] is None else given["axes"],
+            given["pulling_force"],
+        )
+        force.setRandomNumberSeed(self.seed)
+        force.setName("tension")
+        return force
 
     def _repulsive_force(self) -> openmm.Force:
         """A SurfaceRepulsionForce on the triangles of all vesicles."""
@@ -148,6 +185,7 @@ class Configuration(vcm.Config):
         )
         force.setOnlyBetweenParts(not repulsion["within"])
         force.setName("repulsion")
+        force.setUsesPeriodicBoundaryConditions(self.box is not None)
         return force
 
 
@@ -233,20 +271,29 @@ def _platform(simulation: Table) -> str | None:
         raise simulation.error("platform", str(reason)) from None
 
 
-def _vesicles(document: Document, kT: float) -> tuple[VesicleMembrane, ...]:
-    """All vesicles, in the order of the file, which is that of their particles."""
+def _vesicles(
+    document: Document, kT: float
+) -> tuple[np.ndarray | None, tuple[VesicleMembrane, ...]]:
+    """The box, and all vesicles in the order of the file, which is that of their particles."""
     given = document.data.get("vesicle")
     if not isinstance(given, list) or not given:
         raise document.error(("vesicle",), "a configuration needs one or more [[vesicle]] tables")
-    found: list[VesicleMembrane] = []
+    tables, meshes = [], []
     for number in range(len(given)):
         place = ("vesicle", number)
         table = Table(document, place, "vesicle", kT, tables=("mesh",))
         if not table.given("mesh"):
             raise table.error("mesh", "a vesicle needs a mesh; add [vesicle.mesh]")
-        mesh = start_mesh(
-            Table(document, (*place, "mesh"), "vesicle.mesh", kT), document.path.parent
-        )
+        of_mesh = Table(document, (*place, "mesh"), "vesicle.mesh", kT)
+        tables.append((table, of_mesh))
+        meshes.append(start_mesh(of_mesh, document.path.parent))
+    box = _box_of(document, tables, meshes)
+    found: list[VesicleMembrane] = []
+    for number, ((table, of_mesh), start) in enumerate(zip(tables, meshes, strict=True)):
+        try:
+            mesh = start if box is None else Mesh(start.vertices, start.triangles, box)
+        except MeshError as reason:
+            raise of_mesh.error(None, str(reason)) from None
         label = table["name"] or str(number)
         if re.search(r"[\s/\\,]", label):
             raise table.error("name", f"expected a word without spaces or slashes, got {label!r}")
@@ -255,7 +302,22 @@ def _vesicles(document: Document, kT: float) -> tuple[VesicleMembrane, ...]:
         offset = found[-1].particles.stop if found else 0
         settings = Settings(None, MEMBRANE)
         found.append(VesicleMembrane(label, settings, mesh, offset, 0, _vesicle(table, mesh)))
-    return tuple(found)
+    return box, tuple(found)
+
+
+def _box_of(document: Document, tables: list, meshes: list[Mesh]) -> np.ndarray | None:
+    """The box of the file, or else that of the meshes, which must agree."""
+    if "box" in document.data:
+        return Table(document, ("box",), "box")["vectors"]
+    box = None
+    for (_, table), mesh in zip(tables, meshes, strict=True):
+        if mesh.box is not None:
+            if box is not None and not np.array_equal(box, mesh.box):
+                raise table.error(
+                    None, "its box is not that of the mesh before; say which it is in [box]"
+                )
+            box = mesh.box
+    return box
 
 
 def _vesicle(table: Table, mesh) -> Vesicle:
@@ -265,5 +327,5 @@ def _vesicle(table: Table, mesh) -> Vesicle:
     given = {name: table[name] for name in names if table[name] is not None}
     try:
         return Vesicle(mesh, **given)
-    except (TypeError, ValueError) as reason:
+    except (TypeError, ValueError, MeshError) as reason:
         raise table.error(None, str(reason)) from None

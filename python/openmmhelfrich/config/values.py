@@ -11,19 +11,26 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
+import numpy as np
+
+from .._mesh.inputs import box_array
+from ..errors import MeshError
 from ..vcm.grammar import nearest
 
 __all__ = [
     "Reader",
     "boolean",
+    "box",
     "choice",
     "choices",
+    "counts",
     "energy",
     "flips",
     "integer",
     "mode",
     "number",
     "scale",
+    "signed_energy",
     "table",
     "text",
     "vector",
@@ -64,6 +71,13 @@ def number(least: float | None = None, above: float | None = None) -> Reader:
 
 def energy(value, kT):
     """A number in kJ/mol, or a string such as ``"20 kT"``; 0 or more."""
+    result = signed_energy(value, kT)
+    _check_range(result, 0, None)
+    return result
+
+
+def signed_energy(value, kT):
+    """A number in kJ/mol, or a string such as ``"-20 kT"``."""
     if isinstance(value, str):
         found = re.fullmatch(r"\s*(\S+)\s*kT\s*", value)
         try:
@@ -74,11 +88,8 @@ def energy(value, kT):
             raise ValueError(
                 f'expected a number in kJ/mol or a string such as "20 kT", got {value!r}'
             )
-        result = factor * kT
-    else:
-        result = _finite(value, 'a number in kJ/mol or a string such as "20 kT"')
-    _check_range(result, 0, None)
-    return result
+        return factor * kT
+    return _finite(value, 'a number in kJ/mol or a string such as "20 kT"')
 
 
 def integer(least: int, most: int | None = None) -> Reader:
@@ -141,6 +152,31 @@ def vector(value, kT):
     if not isinstance(value, list) or len(value) != 3:
         raise ValueError(f"expected three numbers [x, y, z], got {value!r}")
     return tuple(_finite(component) for component in value)
+
+
+def counts(least: int) -> Reader:
+    """Two integers in a range."""
+
+    def read(value, kT):
+        if not isinstance(value, list) or len(value) != 2:
+            raise ValueError(f"expected two integers, got {value!r}")
+        return tuple(integer(least)(count, kT) for count in value)
+
+    return read
+
+
+def box(value, kT):
+    """Three lengths, or three box vectors, as an array of vectors."""
+    if isinstance(value, list) and value and not isinstance(value[0], list):
+        rows = np.diag(vector(value, kT))
+    elif isinstance(value, list) and len(value) == 3:
+        rows = [vector(row, kT) for row in value]
+    else:
+        raise ValueError(f"expected [x, y, z] or three vectors, got {value!r}")
+    try:
+        return box_array(rows, "[box]")
+    except MeshError as reason:
+        raise ValueError(str(reason).removeprefix("[box]: ")) from None
 
 
 def scale(value, kT):

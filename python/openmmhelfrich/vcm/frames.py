@@ -10,7 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from .._mesh import files
+from .._mesh import files, geometry
+from .._mesh.periodic import cut_images
 from ..analysis.curvature import vertex_quantities
 from ..analysis.vtkhdf import SurfaceFrame, SurfaceSeries
 
@@ -73,13 +74,13 @@ class SeriesFrames:
         self._path = path
         self._series = SurfaceSeries(path)
 
-    def write(self, number: int, step: int, time: float, parts: list[Part]) -> None:
+    def write(self, number: int, step: int, time: float, parts: list[Part], box=None) -> None:
         """Add a frame; arguments as for `MeshFrames.write`."""
         if number and not self._path.exists():
             # Not a new file where one was taken away.
             raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(self._path))
         vertices, triangles = joined(parts)
-        self._series.add([SurfaceFrame(step, time, vertices, triangles)])
+        self._series.add([SurfaceFrame(step, time, vertices, triangles, box)])
 
     def remove_from(self, number: int) -> None:
         """Remove the frames of this number and later ones.
@@ -119,7 +120,7 @@ class MeshFrames:
         self._kind = kind
         self._labels = list(labels)
 
-    def write(self, number: int, step: int, time: float, parts: list[Part]) -> None:
+    def write(self, number: int, step: int, time: float, parts: list[Part], box=None) -> None:
         """Write the meshes of one frame.
 
         Parameters
@@ -132,18 +133,26 @@ class MeshFrames:
             ps.
         parts : list of Part
             Of each membrane, as it is in this frame.
+        box : ndarray, optional
+            The periodic box that they live in, shape (3, 3), nm. PLY keeps it; other formats have
+            surfaces that are cut at its faces.
         """
         self._folder.mkdir(exist_ok=True)
         for label, (vertices, triangles) in zip(self._labels, parts, strict=True):
             path = self._folder / f"{self._name}_{label}_{number:06d}.{self._kind}"
-            self._write(path, vertices, triangles)
+            self._write(path, vertices, triangles, box)
 
-    def _write(self, path: Path, vertices: np.ndarray, triangles: np.ndarray) -> None:
+    def _write(self, path: Path, vertices: np.ndarray, triangles: np.ndarray, box) -> None:
         data = None
         if self._kind in _WITH_DATA:
-            found = vertex_quantities(vertices, triangles)
+            found = vertex_quantities(vertices, triangles, box=box)
             data = {"mean_curvature": found.mean_curvature(), "area": found.barycentric_area}
-        files.write(path, vertices, triangles, data)
+        if box is not None and self._kind != "ply":
+            edges = geometry.edges_of(triangles)
+            vertices, triangles, owners = cut_images(vertices, triangles, edges, box)
+            data = data and {name: values[owners] for name, values in data.items()}
+            box = None
+        files.write(path, vertices, triangles, data, box=box)
 
     def remove_from(self, number: int) -> None:
         """Remove the frames of this number and later ones."""

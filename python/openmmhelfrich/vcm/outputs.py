@@ -20,7 +20,7 @@ from openmm.app.internal.xtc_utils import xtc_write_frame
 
 from .._mesh import geometry
 from .._writing import in_memory, naming
-from ..analysis import mean_curvature
+from ..analysis import mean_curvature, shape
 from ..wireframe import write_psf
 from .connectivity import present_triangles
 from .frames import frames_writer
@@ -209,8 +209,9 @@ class Outputs:
                 file.seek(0, os.SEEK_END)
                 file.write(encode(frame))
         if self._frames is not None:
-            parts = [part[1:] for part in self._parts(frame)]
-            self._frames.write(self._num_frames, frame.step, frame.time, parts)
+            parts = [(vertices, triangles) for _, vertices, triangles, _ in self._parts(frame)]
+            box = next((box for *_, box in self._parts(frame)), None)
+            self._frames.write(self._num_frames, frame.step, frame.time, parts, box)
         self._num_frames += 1
 
     def state(self) -> dict:
@@ -301,27 +302,32 @@ class Outputs:
         return np.ascontiguousarray(values, dtype=self._type).tobytes()
 
     def _parts(self, frame: Frame):
-        """Each membrane with the positions of its vertices and its triangles."""
+        """Each membrane with the positions of its vertices, its triangles and its box."""
         for membrane, triangles in zip(self._cfg.membranes, frame.triangles, strict=True):
             vertices = frame.positions[membrane.offset : membrane.particles.stop]
-            yield membrane, vertices, triangles
+            yield membrane, vertices, triangles, None if membrane.mesh.box is None else frame.box
 
     def _curvatures(self, frame: Frame) -> np.ndarray:
         """Mean curvature H = C1 + C2 of every vertex, 1/nm."""
         parts = self._parts(frame)
-        return np.concatenate([mean_curvature(vertices, corners) for _, vertices, corners in parts])
+        return np.concatenate(
+            [mean_curvature(vertices, corners, box=box) for _, vertices, corners, box in parts]
+        )
 
     def _csv(self, frame: Frame) -> bytes:
         columns: dict[str, float] = {"step": frame.step, "time (ps)": frame.time}
         columns.update({f"{name} (kJ/mol)": energy for name, energy in frame.terms.items()})
         columns["potential (kJ/mol)"] = frame.potential
         columns["kinetic (kJ/mol)"] = frame.kinetic
-        for membrane, vertices, triangles in self._parts(frame):
-            area = geometry.surface_area(vertices[triangles])
+        for membrane, vertices, triangles, box in self._parts(frame):
+            if box is None and membrane.mesh.is_closed:
+                area = geometry.surface_area(vertices[triangles])
+                volume = geometry.volume_enclosed(vertices, triangles)
+            else:
+                area, volume, *_ = shape(vertices, triangles, box=box)
             columns[f"area {membrane.label} (nm^2)"] = area
-            columns[f"volume {membrane.label} (nm^3)"] = geometry.volume_enclosed(
-                vertices, triangles
-            )
+            if not np.isnan(volume):
+                columns[f"volume {membrane.label} (nm^3)"] = volume
         line = ",".join(f"{value:.12g}" for value in columns.values()) + "\n"
         header = ",".join(columns) + "\n" if self._num_frames == 0 else ""
         return (header + line).encode()

@@ -25,7 +25,7 @@ _LOCK = ".lock"
 # What a run may leave behind that is killed before it has written anything.
 _NOTHING = (_LOCK, CHECKPOINT + ".new")
 _KIND = "run"
-_KNOWN = {"run": 1, "openmm": 1, "connectivity": 1}
+_KNOWN = {"run": 1, "openmm": 1, "connectivity": 1, "tension": 1}
 # How the checkpoints began that had no checksum.
 _UNCHECKED = b'{"format": "openmm-helfrich checkpoint 1"'
 
@@ -56,11 +56,12 @@ class State:
     """A Context at a checkpoint.
 
     openmm: OpenMM's checkpoint; connectivity: what is saved of each surface whose bonds flip, which
-    OpenMM's checkpoint has on the platform Helfrich only.
+    OpenMM's checkpoint has on the platform Helfrich only; tension: of what moves the box.
     """
 
     openmm: bytes
     connectivity: tuple[bytes, ...] = ()
+    tension: tuple[bytes, ...] = ()
 
 
 class RunFolder:
@@ -170,10 +171,13 @@ class RunFolder:
                 "the run with the version that began it, or give another folder with --out"
             )
         blocks = unpack(data, _KIND, _KNOWN)
-        connectivity = []
-        while (key := f"connectivity/{len(connectivity)}") in blocks:
-            connectivity.append(blocks[key].value)
-        return Saved(**blocks["run"].value), State(blocks["openmm"].value, tuple(connectivity))
+        movers = []
+        for name in ("connectivity", "tension"):
+            saved: list[bytes] = []
+            while (key := f"{name}/{len(saved)}") in blocks:
+                saved.append(blocks[key].value)
+            movers.append(tuple(saved))
+        return Saved(**blocks["run"].value), State(blocks["openmm"].value, *movers)
 
     def _offer(self, other: str, reason: BlockError) -> str:
         """How to go on from the other checkpoint, if that helps."""
@@ -197,6 +201,8 @@ class RunFolder:
         blocks = {"run": Block(asdict(saved)), "openmm": Block(state.openmm)}
         for number, surface in enumerate(state.connectivity):
             blocks[f"connectivity/{number}"] = Block(surface)
+        for number, mover in enumerate(state.tension):
+            blocks[f"tension/{number}"] = Block(mover)
         data = pack(_KIND, blocks)
         with self.writing():
             replace(self.path / CHECKPOINT, data, self.path / PREVIOUS)

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import openmm
 
+from ..states import tensions_of
 from . import build
 from .config import Config
 from .connectivity import movers
@@ -257,7 +258,8 @@ class Run:
         )
         moving = movers(self.context)
         connectivity = tuple(mover._saveConnectivity(self.context) for mover in moving)
-        self._folder.save(saved, State(self.context.createCheckpoint(), connectivity))
+        tension = tuple(mover._saveState(self.context) for mover in tensions_of(self.context))
+        self._folder.save(saved, State(self.context.createCheckpoint(), connectivity, tension))
 
     @staticmethod
     def _agree(saved: Saved, platform: str | None, seed: int) -> tuple[str, int]:
@@ -278,6 +280,9 @@ class Run:
             moving = movers(self.context)
             for mover, surface in zip(moving, state.connectivity, strict=True):
                 mover._restoreConnectivity(self.context, surface)
+            of_box = tensions_of(self.context)
+            for mover, moves in zip(of_box, state.tension, strict=True):
+                mover._restoreState(self.context, moves)
         except openmm.OpenMMException as reason:
             raise RunError(f"OpenMM cannot go on from {self.folder}: {reason}") from None
         with self._folder.writing():

@@ -12,7 +12,8 @@ namespace HelfrichPlugin {
  *
  * with L the length of all borders, the edges that belong to one triangle. There is no energy on a closed surface. A
  * disk closes to a vesicle where that costs less (Helfrich, Phys. Lett. A 50, 115 (1974),
- * doi:10.1016/0375-9601(74)90899-8). GaussianCurvatureForce is the other energy that borders have.
+ * doi:10.1016/0375-9601(74)90899-8). GaussianCurvatureForce is the other energy that borders have, and says what keeps
+ * free borders from folding over.
  */
 class EdgeTensionForce : public MembraneForce {
 public:

@@ -16,6 +16,12 @@ namespace HelfrichPlugin {
  * are equal by the theorem of Gauss and Bonnet, in which the second sum is the integrated geodesic curvature of the
  * borders; forces act on the triangles at borders only. On a closed surface E is the constant 2 pi chi kappa_G, 4 pi
  * kappa_G on a sphere, and there are no forces.
+ *
+ * With kappa_G below zero and bond flips, meshes with borders may crumple: where the dihedral angles at a vertex
+ * cancel, BendingForce's scheme Julicher sees no curvature however the surface zigzags, and folds at a border gain
+ * energy. A DihedralForce of the stiffness of the membrane's rigidity prevents that for kappa_G down to minus the
+ * rigidity; at -1.5 of it borders ruffle nevertheless. Free borders also fold over and heat up at low friction, with or
+ * without this force; a DihedralForce of 0.2 of the rigidity keeps them from it. docs/surfaces.md has the measurements.
  */
 class GaussianCurvatureForce : public MembraneForce {
 public:

@@ -130,8 +130,10 @@ public:
      * must be shorter than half of the least distance between opposite faces; the evaluation throws an OpenMMException
      * that names one which is not.
      *
-     * Forces on the same triangles must agree. It is not periodic unless this is called, and existing Contexts do not
-     * change.
+     * Forces on the same triangles must agree. It is not periodic unless this is called or, in Python, the force is
+     * made of a Mesh that has a box; triangles alone say nothing of a box. Without it a surface that crosses the box is
+     * taken with edges that go all the way back through it, and its energy is wrong without an error. Existing Contexts
+     * do not change.
      *
      * @param periodic  whether it is periodic
      */

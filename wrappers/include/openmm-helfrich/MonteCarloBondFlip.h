@@ -27,8 +27,15 @@ namespace HelfrichPlugin {
  * where dE is the change of the energy of all membrane forces on these triangles whose force group is among the
  * integrator's (Integrator::getIntegrationForceGroups()): N. Metropolis et al., doi:10.1063/1.1699114. With a
  * thermostat of the same temperature, positions, velocities and connectivity have their joint Boltzmann distribution.
+ * An edge that vertices have stretched beyond the longest that a new edge may be can flip, but not back: where that
+ * happens, long edges are rarer than in that distribution.
  * See G. Gompper and D. M. Kroll, doi:10.1088/0953-8984/9/42/001, and on the viscosity that the rate of flips sets
  * H. Noguchi and G. Gompper, doi:10.1103/PhysRevE.72.011901.
+ *
+ * In a periodic box every edge must stay shorter than half of the least width of the box, or the simulation stops with
+ * an error. Flips make edges of up to 0.8 of that half, unless maxEdgeLength says otherwise, and leave the rest to the
+ * motion of vertices. Eight vertices around the box are enough for that; with six, at the softness 0.33 and above, let
+ * flips be frequent (attemptsPerEdge 1), so that edges that have grown are flipped in time.
  *
  * Without a thermostat, choose the ensemble Microcanonical: a demon (M. Creutz, doi:10.1103/PhysRevLett.50.1411), whose
  * energy is never below zero, pays for flips and takes what they set free, so that the energy of the System and the
@@ -88,7 +95,8 @@ public:
      * of an attempt is carried over to the next time
      * @param minDegree        the fewest neighbours of a vertex, 3 or more; of one on a border, one fewer
      * @param maxDegree        the most neighbours of a vertex
-     * @param maxEdgeLength    the longest that a new edge may be, nm; 0 for any length
+     * @param maxEdgeLength    the longest that a new edge may be, nm; 0 for any length, or in a periodic box
+     * for 0.8 of half of its least width
      */
     MonteCarloBondFlip(const std::vector<int>& triangles, double temperature, int frequency = 10,
                        double attemptsPerEdge = 0.1, int minDegree = 3, int maxDegree = 10, double maxEdgeLength = 0)
@@ -144,13 +152,13 @@ public:
         this->maxDegree = maxDegree;
     }
     /**
-     * Get the longest that a new edge may be, nm; 0 for any length.
+     * Get the longest that a new edge may be, nm; 0 for any length, or 0.8 of half of the width of a periodic box.
      */
     double getMaxEdgeLength() const {
         return maxEdgeLength;
     }
     /**
-     * Set the longest that a new edge may be, nm; 0 for any length.
+     * Set the longest that a new edge may be, nm; 0 for any length, or 0.8 of half of the width of a periodic box.
      */
     void setMaxEdgeLength(double maxEdgeLength) {
         if (!(maxEdgeLength >= 0 && std::isfinite(maxEdgeLength)))
