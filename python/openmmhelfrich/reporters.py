@@ -9,14 +9,10 @@ import numpy as np
 import openmm
 from openmm import unit
 
-from ._mesh.geometry import edges_of
-from ._mesh.periodic import unfolded
 from ._numbers import whole_number
-from ._present import present_box, present_triangles
+from ._surface_reporters import SurfaceReporter, TableReporter
 from .analysis import mode_amplitudes, shape
-from .analysis._arrays import triangles_of
-from .analysis.tables import open_table
-from .analysis.vtkhdf import SurfaceFrame, SurfaceSeries
+from .analysis.surface_series import SurfaceFrame, SurfaceSeries
 from .forces import MonteCarloBondFlip, MonteCarloMembraneTension
 from .virials import virial
 
@@ -35,110 +31,7 @@ _ELEMENTS = {
 }
 
 
-class _NextReport(dict):
-    """What `describeNextReport` returns: the dict of OpenMM 8.1 and later.
-
-    Programs that drive reporters themselves may still index the tuple of old (steps, positions,
-    velocities, forces, energy, wrap), so that numbers work as keys too.
-    """
-
-    _TUPLE = ("positions", "velocities", "forces", "energy")
-
-    def __missing__(self, key):
-        if key == 0:
-            return self["steps"]
-        if key in (1, 2, 3, 4):
-            return self._TUPLE[key - 1] in self["include"]
-        if key == 5:
-            return self["periodic"]
-        raise KeyError(key)
-
-
-class _SurfaceReporter:
-    """What is asked for of one membrane at equal intervals.
-
-    Subclasses have `_include`, what they need of the State, `_begin`, which opens their file, and
-    `_write`, from time, positions, triangles and periodic box of the moment, where parts that cross
-    faces of the box are whole. Those that span it are refused unless `_spans`.
-    """
-
-    _spans = False
-    _include = ("positions",)
-
-    def __init__(self, file, reportInterval, triangles, offset, append):
-        name = type(self).__name__
-        self._interval = whole_number(reportInterval, name, "reportInterval", 1)
-        offset = whole_number(offset, name, "offset", 0)
-        self._file, self._append, self._begun = file, append, False
-        corners = np.asarray(getattr(triangles, "triangles", triangles))
-        highest = corners.max(initial=0) if corners.dtype.kind in "iu" else 0
-        self._corners = triangles_of(corners, int(highest) + 1) + offset
-        # Vertices in ascending order of particle index, as in the forces.
-        self._particles = np.unique(self._corners)
-
-    def describeNextReport(self, simulation):
-        """When the next report is due, and what it needs, as OpenMM asks for it."""
-        # What the file has beyond the step at which the simulation goes on is written again.
-        self._open(simulation)
-        steps = self._interval - simulation.currentStep % self._interval
-        return _NextReport(steps=steps, periodic=False, include=list(self._include))
-
-    def report(self, simulation, state):
-        """Write a row, or a frame; it is on disk when this returns."""
-        self._open(simulation)
-        time = state.getTime().value_in_unit(unit.picosecond)
-        positions = state.getPositions(asNumpy=True).value_in_unit(unit.nanometer)
-        try:
-            corners = present_triangles(simulation.context, self._corners)
-        except ValueError as reason:
-            raise ValueError(f"{type(self).__name__}: {reason}") from None
-        triangles = np.searchsorted(self._particles, corners)
-        vertices = np.asarray(positions)[self._particles]
-        box = present_box(simulation.context, state, self._particles)
-        if box is not None:
-            vertices, _, spanning = unfolded(vertices, edges_of(triangles), box)
-            if spanning.any() and not self._spans:
-                raise ValueError(
-                    f"{type(self).__name__}: the surface spans the periodic box, so that it cannot "
-                    "be shown with each vertex once; write "
-                    "Mesh(*Mesh.from_context(context, force).unfolded()) to files, or use a "
-                    "MembraneReporter"
-                )
-        self._write(simulation, state, time, vertices, triangles, box)
-
-    def _open(self, simulation):
-        if self._begun:
-            return
-        count = simulation.system.getNumParticles()
-        if self._particles[-1] >= count:
-            raise ValueError(
-                f"{type(self).__name__}: the triangles name particle {self._particles[-1]}, but "
-                f"there are {count}"
-            )
-        self._begin(simulation)
-        self._begun = True
-
-
-class _TableReporter(_SurfaceReporter):
-    """Rows of numbers about one membrane, to a CSV or HDF5 file.
-
-    Subclasses have `_columns`, the units of their columns by name, and `_values`, a row, from
-    positions and triangles of the moment.
-    """
-
-    def _begin(self, simulation):
-        columns = {"step": "", "time": "ps", **self._columns(simulation)}
-        table = open_table(self._file, columns, self._append)
-        if self._append:
-            table.cut(simulation.currentStep)
-        self._table = table
-
-    def _write(self, simulation, state, time, vertices, triangles, box):
-        values = self._values(simulation, state, vertices, triangles, box)
-        self._table.add([int(simulation.currentStep), time, *(float(value) for value in values)])
-
-
-class ModeReporter(_TableReporter):
+class ModeReporter(TableReporter):
     """Writes the amplitudes u_lm of a vesicle while a Simulation runs.
 
     Columns ``step``, ``time`` (ps) and ``u_l_m`` for l = 0 … lmax, m = −l … l; see
@@ -204,7 +97,7 @@ class ModeReporter(_TableReporter):
         return mode_amplitudes(positions, triangles, self._lmax, **self._options)
 
 
-class MembraneReporter(_TableReporter):
+class MembraneReporter(TableReporter):
     """Writes energies per term and the shape of a membrane while a Simulation runs.
 
     Columns, in this order: ``step``; ``time`` (ps); ``NAME_energy`` (kJ/mol) for each force group
@@ -285,7 +178,7 @@ class MembraneReporter(_TableReporter):
         ]
 
 
-class VirialReporter(_TableReporter):
+class VirialReporter(TableReporter):
     """Writes virial, tension and pull of a membrane that spans the periodic box.
 
     Columns: ``step``; ``time`` (ps); ``ax``, ``bx``, ``by``, ``cx``, ``cy``, ``cz`` (nm), the
@@ -351,7 +244,7 @@ class VirialReporter(_TableReporter):
         ]
 
 
-class VTKHDFReporter(_SurfaceReporter):
+class VTKHDFReporter(SurfaceReporter):
     """Writes the surface of a membrane while a Simulation runs, in one file that ParaView opens.
 
     Each frame has its own positions and triangles, so that membranes whose bonds flip are shown as

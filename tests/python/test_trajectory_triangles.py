@@ -4,7 +4,7 @@ import numpy as np
 import openmmhelfrich as helfrich
 import pytest
 from openmmhelfrich import analysis
-from openmmhelfrich.analysis.vtkhdf import SurfaceSeries
+from openmmhelfrich.analysis.surface_series import SurfaceSeries
 from run_files import fluid_and_solid, invoke
 from vtkhdf_files import check_layout, read
 

@@ -13,7 +13,7 @@ import pytest
 from openmm import app
 from openmmhelfrich import VTKHDFReporter, analysis
 from openmmhelfrich._journal import JournaledFile
-from openmmhelfrich.analysis.vtkhdf import SurfaceFrame, SurfaceSeries
+from openmmhelfrich.analysis.surface_series import SurfaceFrame, SurfaceSeries
 from openmmhelfrich.vcm.runner import Run, RunError
 from run_files import fluid_and_solid, invoke
 from vtkhdf_files import check_layout, read

@@ -39,7 +39,7 @@ def open_trajectory(source, mesh_path, membrane, start, stride, several=False):
     import numpy as np
 
     from .. import analysis
-    from ..analysis.vtkhdf import components
+    from ..analysis.surface_series import components
     from ..mesh import Mesh
 
     trajectory = analysis.Trajectory(source, start=start, stride=stride)

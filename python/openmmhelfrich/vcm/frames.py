@@ -13,7 +13,7 @@ import numpy as np
 from .._mesh import files, geometry
 from .._mesh.periodic import cut_images
 from ..analysis.curvature import vertex_quantities
-from ..analysis.vtkhdf import SurfaceFrame, SurfaceSeries
+from ..analysis.surface_series import SurfaceFrame, SurfaceSeries
 
 __all__ = ["FRAMES", "MeshFrames", "SeriesFrames", "frames_writer"]
 
