@@ -119,7 +119,7 @@ impl Lists {
             let mut all = std::mem::take(&mut self.all);
             all.clear();
             all.extend(self.edges.all_ends().map(|ends| self.edge_sphere(made, ends)));
-            let size = made.reach + made.outer_skin + made.mean;
+            let size = made.reach + made.outer_skin + 1.5 * made.mean;
             self.edges.fill(made.cell.as_ref(), size, &all);
             self.all = all;
         }

@@ -27,6 +27,13 @@ type Range = [[i64; 2]; 3];
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Around(Range);
 
+impl Around {
+    /// Whether all boxes of another one are among these.
+    pub fn has(&self, other: &Self) -> bool {
+        self.0.iter().zip(&other.0).all(|(own, other)| own[0] <= other[0] && other[1] <= own[1])
+    }
+}
+
 impl Grid {
     /// An empty grid whose boxes are about `size` wide, over the periodic box, or else from `low` to `high`; there are not
     /// many more boxes than `most`.

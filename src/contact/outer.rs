@@ -71,12 +71,12 @@ impl Lists {
         let range = reach + outer_skin;
         let neighbours = self.neighbours(cell, range);
         neighbours.retain(&mut all, range);
-        self.edges.fill(cell, range + mean, &all);
+        self.edges.fill(cell, range + 1.5 * mean, &all);
         all.clear();
         let numbers = 0..self.outer.len() as u32;
         all.extend(numbers.map(|v| Sphere::of_vertex(&self.outer, v, self.part(v))));
         neighbours.retain(&mut all, range);
-        self.vertices.fill(cell, range + 0.5 * mean, &all);
+        self.vertices.fill(cell, range + mean, &all);
         self.all = all;
         let (fingerprint, inner_skin) = (mesh.fingerprint(), inner * outer_skin);
         let cell = cell.copied();
@@ -90,15 +90,20 @@ impl Lists {
         scratch.resize_with(team.size().max(scratch.len()), Default::default);
         let places = Parts::new(&mut scratch);
         let (this, size) = (&*self, team.size());
+        // Those of a box one after another.
+        let boxes =
+            self.triangles.iter().map(|[a, ..]| self.vertices.home(&self.outer[*a as usize]));
+        let mut order: Vec<(usize, u32)> = boxes.zip(0..).collect();
+        order.sort_unstable();
         team.run(|member| {
             // SAFETY: each member has its own place.
             let Scratch { far: [vertices, edges], search, .. } =
                 &mut unsafe { places.part(member.index()..member.index() + 1) }[0];
             vertices.clear();
             edges.clear();
-            let triangles = &this.triangles[member.share(this.triangles.len())];
-            let corners = triangles.iter().map(|corners| lowest_first(*corners));
-            this.pair_triangles(made, corners, search, vertices);
+            let triangles = order[member.share(order.len())].iter();
+            let corners = triangles.map(|(_, index)| this.triangles[*index as usize]);
+            this.pair_triangles(made, corners.map(lowest_first), search, vertices);
             this.pair_edges(made, member.share(this.edges.len()), search, edges);
         });
         for (kind, far) in self.far.iter_mut().enumerate() {

@@ -76,16 +76,15 @@ pub struct Spheres {
     cell: Option<Cell>,
     brick: Option<Brick>,
     origin: Vec3,
-    /// Middles and halves, in the order of the boxes, and then as they came; there is room for lanes behind the last one.
+    /// Middles and halves, in the order of the boxes, and then as they came.
     middles: [Vec<f32>; 3],
     halves: [Vec<f32>; 3],
     /// No number for those that have been taken out.
     radii: Vec<f32>,
-    ends: [Vec<u32>; 2],
+    ends: Vec<[u32; 2]>,
     parts: Vec<u32>,
-    /// How many are in boxes, and in all.
+    /// How many are in boxes.
     sorted: usize,
-    count: usize,
     /// The largest radius, nm.
     largest: f64,
     /// How far a position may be off, nm.
@@ -115,11 +114,13 @@ impl Brick {
     }
 }
 
-/// Memory of searches, and the boxes that were searched last.
+/// The spheres around the one that was looked for last, side by side, and what was found.
 #[derive(Default)]
 pub struct Search {
     around: Option<Around>,
-    runs: Vec<[u32; 2]>,
+    middles: [Vec<f32>; 3],
+    radii: Vec<f32>,
+    places: Vec<u32>,
     /// The places that were found.
     pub found: Vec<u32>,
 }
@@ -143,35 +144,27 @@ impl Spheres {
             self.grid.add(item as u32, &sphere.middle);
         }
         self.grid.seal();
-        (self.sorted, self.count) = (0, 0);
-        self.make_room(all.len());
+        let floats = self.middles.iter_mut().chain(&mut self.halves).chain([&mut self.radii]);
+        floats.for_each(Vec::clear);
+        self.ends.clear();
+        self.parts.clear();
         let items = std::mem::take(&mut self.grid);
         for item in items.all_items() {
             self.push(&all[*item as usize]);
         }
         self.grid = items;
-        self.sorted = self.count;
-    }
-
-    fn make_room(&mut self, count: usize) {
-        let room = count + LANES;
-        let floats = self.middles.iter_mut().chain(&mut self.halves).chain([&mut self.radii]);
-        floats.for_each(|values| values.resize(room, 0.0));
-        let numbers = self.ends.iter_mut().chain([&mut self.parts]);
-        numbers.for_each(|values| values.resize(room, 0));
+        self.sorted = self.len();
     }
 
     fn push(&mut self, sphere: &Sphere) {
-        let (place, middle) = (self.count, self.single(&sphere.middle));
+        let middle = self.single(&sphere.middle);
         for k in 0..3 {
-            self.middles[k][place] = middle[k];
-            self.halves[k][place] = sphere.half[k] as f32;
+            self.middles[k].push(middle[k]);
+            self.halves[k].push(sphere.half[k] as f32);
         }
-        self.radii[place] = sphere.radius() as f32;
-        self.ends[0][place] = sphere.ends[0];
-        self.ends[1][place] = sphere.ends[1];
-        self.parts[place] = sphere.part;
-        self.count += 1;
+        self.radii.push(sphere.radius() as f32);
+        self.ends.push(sphere.ends);
+        self.parts.push(sphere.part);
     }
 
     /// A position from the origin.
@@ -184,20 +177,25 @@ impl Spheres {
         from.map(|x| x as f32).into()
     }
 
+    /// The box that a position is in, of all that are in boxes.
+    pub fn home(&self, position: &Vec3) -> usize {
+        self.grid.home(position).unwrap_or(0)
+    }
+
     /// How many places there are, those of what has been taken out among them.
     pub fn len(&self) -> usize {
-        self.count
+        self.ends.len()
     }
 
     /// How many have come since they were sorted.
     pub fn num_late(&self) -> usize {
-        self.count - self.sorted
+        self.len() - self.sorted
     }
 
     /// The ends of the one at a place.
     #[inline]
     pub fn ends(&self, place: usize) -> [u32; 2] {
-        [self.ends[0][place], self.ends[1][place]]
+        self.ends[place]
     }
 
     /// How far a distance between two places may be off, nm.
@@ -208,9 +206,8 @@ impl Spheres {
     /// Add one that is not there, or that has been taken out.
     pub fn put(&mut self, sphere: &Sphere) {
         let place = self.place(sphere).unwrap_or_else(|| {
-            self.make_room(self.count + 1);
             self.push(sphere);
-            self.count - 1
+            self.len() - 1
         });
         self.radii[place] = sphere.radius() as f32;
         self.largest = self.largest.max(sphere.radius());
@@ -225,7 +222,7 @@ impl Spheres {
 
     fn place(&self, sphere: &Sphere) -> Option<usize> {
         let home = self.grid.home(&sphere.middle).map_or(0..0, |home| self.grid.run(home));
-        let mut places = home.chain(self.sorted..self.count);
+        let mut places = home.chain(self.sorted..self.len());
         places.find(|place| self.ends(*place) == sphere.ends)
     }
 
@@ -252,7 +249,7 @@ impl Spheres {
 
     /// The ends of all that have not been taken out.
     pub fn all_ends(&self) -> impl Iterator<Item = [u32; 2]> {
-        (0..self.count).filter(|place| !self.radii[*place].is_nan()).map(|place| self.ends(place))
+        (0..self.len()).filter(|place| !self.radii[*place].is_nan()).map(|place| self.ends(place))
     }
 
     /// From one middle to another, of the nearest image.
@@ -307,21 +304,45 @@ impl Spheres {
     fn search(&self, middle: &Vec3, reach: f64, query: &Query, search: &mut Search) {
         // A little more, as a middle in single precision may have changed boxes.
         let around = self.grid.around(middle, (reach + self.slack) * (1.0 + 1e-6));
-        let Search { around: last, runs, found } = search;
-        if *last != Some(around) {
-            runs.clear();
-            self.grid.each_run(&around, |run| {
-                if !run.is_empty() {
-                    runs.push([run.start as u32, run.end as u32]);
-                }
-            });
-            if self.num_late() > 0 {
-                runs.push([self.sorted as u32, self.count as u32]);
-            }
-            *last = Some(around);
+        if !search.around.as_ref().is_some_and(|last| last.has(&around)) {
+            self.collect(around, search);
         }
-        found.clear();
-        run(Sift { spheres: self, query, runs, found });
+        search.found.clear();
+        run(Sift { brick: self.brick, query, search });
+        let Query { largest, before, corners, part, .. } = *query;
+        search.found.retain(|found| {
+            let place = *found as usize;
+            let counts = self.radii[place] < largest || *found < before;
+            let [a, b] = self.ends(place);
+            let shares = corners.iter().fold(false, |any, c| any | (*c == a) | (*c == b));
+            counts & !shares & (self.parts[place] != part)
+        });
+    }
+
+    /// Put what is in some boxes, and what came later, side by side.
+    fn collect(&self, around: Around, search: &mut Search) {
+        let Search { around: last, middles, radii, places, .. } = search;
+        middles.iter_mut().chain([&mut *radii]).for_each(Vec::clear);
+        places.clear();
+        let mut copy = |run: std::ops::Range<usize>| {
+            for k in 0..3 {
+                middles[k].extend_from_slice(&self.middles[k][run.clone()]);
+            }
+            radii.extend_from_slice(&self.radii[run.clone()]);
+            places.extend(run.start as u32..run.end as u32);
+        };
+        self.grid.each_run(&around, |run| {
+            if !run.is_empty() {
+                copy(run);
+            }
+        });
+        copy(self.sorted..self.len());
+        // None is in the lanes that are left.
+        let room = places.len().next_multiple_of(LANES);
+        middles.iter_mut().for_each(|values| values.resize(room, 0.0));
+        radii.resize(room, f32::NAN);
+        places.resize(room, 0);
+        *last = Some(around);
     }
 }
 
@@ -333,59 +354,41 @@ impl Search {
 }
 
 struct Sift<'a> {
-    spheres: &'a Spheres,
+    brick: Option<Brick>,
     query: &'a Query,
-    runs: &'a [[u32; 2]],
-    found: &'a mut Vec<u32>,
+    search: &'a mut Search,
 }
 
 impl Kernel for Sift<'_> {
     #[inline(always)]
     fn execute<A: Arithmetic>(self) {
-        match self.spheres.brick {
+        match self.brick {
             None => self.sift(|way| way),
             Some(brick) => self.sift(|way| brick.shortest(way)),
         }
     }
 }
 
-/// The values from a place on.
-#[inline(always)]
-fn lanes<T>(values: &[T], from: usize) -> &[T; LANES] {
-    values[from..from + LANES].try_into().expect("there is room for lanes behind the last one")
-}
-
 impl Sift<'_> {
+    /// Find what is near and not too large.
     #[inline(always)]
     fn sift(self, shortest: impl Fn([f32; 3]) -> [f32; 3]) {
-        let Self { spheres, query, runs, found } = self;
-        let Query { middle, own, largest, before, corners: [a, b, c], part } = *query;
-        for &[start, end] in runs {
-            let mut from = start;
-            while from < end {
-                let at = from as usize;
-                let [x, y, z] = [0, 1, 2].map(|k| lanes(&spheres.middles[k], at));
-                let radii = lanes(&spheres.radii, at);
-                let [first, second] = [0, 1].map(|k| lanes(&spheres.ends[k], at));
-                let parts = lanes(&spheres.parts, at);
-                let mut near = [0_u32; LANES];
-                for n in 0..LANES {
-                    let way = shortest([x[n] - middle[0], y[n] - middle[1], z[n] - middle[2]]);
-                    let squared = way[0] * way[0] + way[1] * way[1] + way[2] * way[2];
-                    let (r, place) = (radii[n], from + n as u32);
-                    let (p, q) = (first[n], second[n]);
-                    let counts = (r < largest) | ((r == largest) & (place < before));
-                    let shares = (p == a) | (p == b) | (p == c) | (q == a) | (q == b) | (q == c);
-                    let is_near = squared < (own + r) * (own + r);
-                    let stays = is_near & counts & !shares & (parts[n] != part) & (place < end);
-                    near[n] = u32::from(stays) << n;
-                }
-                let mut bits = near.iter().fold(0, |all, bit| all | bit);
-                while bits != 0 {
-                    found.push(from + bits.trailing_zeros());
-                    bits &= bits - 1;
-                }
-                from += LANES as u32;
+        let Query { middle, own, largest, .. } = *self.query;
+        let Search { middles: [x, y, z], radii, places, found, .. } = self.search;
+        let [x, y, z, radii] = [x, y, z, radii].map(|values| values.as_chunks::<LANES>().0);
+        let places = places.as_chunks::<LANES>().0;
+        for ((((x, y), z), radii), places) in x.iter().zip(y).zip(z).zip(radii).zip(places) {
+            let mut near = [0_u32; LANES];
+            for n in 0..LANES {
+                let way = shortest([x[n] - middle[0], y[n] - middle[1], z[n] - middle[2]]);
+                let squared = way[0] * way[0] + way[1] * way[1] + way[2] * way[2];
+                let most = own + radii[n];
+                near[n] = u32::from((squared < most * most) & (radii[n] <= largest)) << n;
+            }
+            let mut bits = near.iter().fold(0, |all, bit| all | bit);
+            while bits != 0 {
+                found.push(places[bits.trailing_zeros() as usize]);
+                bits &= bits - 1;
             }
         }
     }
