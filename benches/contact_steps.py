@@ -69,9 +69,7 @@ def box(count, distance, threads):
     pitch = 200.0 + 1.2 * distance
     places = [(x, y, z) for x in range(across) for y in range(across) for z in range(across)]
     vertices = np.concatenate([start.vertices + pitch * np.array(p) for p in places[:count]])
-    triangles = np.concatenate(
-        [start.triangles + k * start.num_vertices for k in range(count)]
-    )
+    triangles = np.concatenate([start.triangles + k * start.num_vertices for k in range(count)])
     mesh = Mesh(vertices, triangles)
     contexts = []
     for contact in (True, False):

@@ -78,16 +78,15 @@ impl Lists {
         search: &mut Search,
         pairs: &mut Vec<Far>,
     ) {
-        let range = made.reach + made.outer_skin;
-        let (most, slack) = limits(range, self.edges.slack());
+        let (reach, slack) = limits(made.reach, self.edges.slack());
         let mut rough = Rough::<Pair, true>::new([0; 4]);
         let mut note = |pair, least| pairs.push(Far { pair, distance: least - slack });
         search.forget();
         for ends @ [a, b] in new {
-            let sphere = self.edge_sphere(made, *ends);
+            let sphere = self.edge_sphere(made.cell.as_ref(), *ends);
             let around = (&sphere.middle, sphere.radius());
             let part = self.own_part(*a);
-            let middle = self.edges.find(around, range, [*a, *b, *b], part, search);
+            let middle = self.edges.find(around, made.reach, [*a, *b, *b], part, search);
             let half = sphere.half.map(|x| x as f32).into();
             let one = Edge { ends: *ends, middle, half };
             for place in &search.found {
@@ -95,32 +94,29 @@ impl Lists {
                 // Of two new ones the higher one finds the lower one.
                 if other.ends < *ends || new.binary_search(&other.ends).is_err() {
                     let arms = self.edges.arms(&one, &other);
+                    let most = reach + sphere.room + self.outer.room_of(other.ends);
                     rough.push(both(*ends, other.ends), arms, most, &mut note);
                 }
             }
         }
-        rough.find(most, note);
-    }
-
-    /// An edge at the outer reference.
-    fn edge_sphere(&self, made: &Made, ends: [u32; 2]) -> Sphere {
-        Sphere::of_edge(made.cell.as_ref(), &self.outer, ends, self.part(ends[0]))
+        rough.find(note);
     }
 
     fn take_edge(&mut self, made: &Made, ends: [u32; 2]) {
-        let sphere = self.edge_sphere(made, ends);
+        let sphere = self.edge_sphere(made.cell.as_ref(), ends);
         self.edges.take(&sphere);
     }
 
     fn put_edge(&mut self, made: &Made, ends: [u32; 2]) {
-        let sphere = self.edge_sphere(made, ends);
+        let sphere = self.edge_sphere(made.cell.as_ref(), ends);
         self.edges.put(&sphere);
         if self.edges.num_late() > MOST_NEW {
+            let cell = made.cell.as_ref();
             let mut all = std::mem::take(&mut self.all);
             all.clear();
-            all.extend(self.edges.all_ends().map(|ends| self.edge_sphere(made, ends)));
-            let size = made.reach + made.outer_skin + 1.5 * made.mean;
-            self.edges.fill(made.cell.as_ref(), size, &all);
+            all.extend(self.edges.all_ends().map(|ends| self.edge_sphere(cell, ends)));
+            let size = made.reach + 2.0 * self.outer.largest() + 1.5 * made.mean;
+            self.edges.fill(cell, size, &all);
             self.all = all;
         }
     }
@@ -128,14 +124,13 @@ impl Lists {
     /// The vertices within reach of a triangle at present, ascending.
     pub fn vertices_near_now(&self, corners: [u32; 3], search: &mut Search, found: &mut Vec<u32>) {
         found.clear();
-        let Some(Made { reach, outer_skin, cell, .. }) = self.made_for else { return };
+        let Some(Made { reach, cell, .. }) = self.made_for else { return };
         let cell = cell.as_ref();
         let (points, middle, radius) = triangle_sphere(cell, &self.positions, corners);
         let part = self.own_part(corners[0]);
-        // No vertex is farther than half of the skin from where the grid has it.
-        let range = reach + 0.5 * outer_skin;
+        // Vertices are where the boxes have them or in the room around.
         search.forget();
-        self.vertices.find((&middle, radius), range, corners, part, search);
+        self.vertices.find((&middle, radius), reach, corners, part, search);
         found.extend(search.found.iter().map(|place| self.vertices.ends(*place as usize)[0]));
         found.retain(|vertex| {
             let at = &self.positions[*vertex as usize];
@@ -147,13 +142,13 @@ impl Lists {
     /// The ends of all edges within reach of an edge at present, ascending.
     pub fn edges_near_now(&self, ends: [u32; 2], search: &mut Search, found: &mut Vec<[u32; 2]>) {
         found.clear();
-        let Some(Made { reach, outer_skin, cell, .. }) = self.made_for else { return };
+        let Some(Made { reach, cell, .. }) = self.made_for else { return };
         let cell = cell.as_ref();
         let [a, b] = ends;
-        let sphere = Sphere::of_edge(cell, &self.positions, ends, self.part(a));
-        let (around, range) = ((&sphere.middle, sphere.radius()), reach + 0.5 * outer_skin);
+        let sphere = Sphere::of_edge(cell, &self.positions, ends, self.part(a), 0.0);
+        let around = (&sphere.middle, sphere.radius());
         search.forget();
-        self.edges.find(around, range, [a, b, b], self.own_part(a), search);
+        self.edges.find(around, reach, [a, b, b], self.own_part(a), search);
         let at = |vertex: u32| &self.positions[vertex as usize];
         found.extend(search.found.iter().map(|place| self.edges.ends(*place as usize)));
         found.retain(|[p, q]| {

@@ -1,50 +1,46 @@
 //! The inner list, which is chosen from the outer one.
 
 use super::closest::{Arms, edge_arms};
-use super::lists::{Far, Lists, Made, Pair, Scratch};
+use super::lists::{Far, Lists, Made, Pair, Scratch, usual};
 use super::rough::Rough;
 use crate::mesh::Cell;
 use crate::mesh::geometry::Vec3;
 use crate::team::{Parts, Team};
 
-/// The inner skin as a share of the outer one: at first, at least and at most.
+/// What may be strayed by in the inner list as a share of that in the outer one: at first, at least and at most.
 pub const INNER: [f64; 3] = [0.2, 0.02, 0.6];
 
 /// What it costs to choose from a pair of the outer list, in looks at a pair.
-const CHOOSING: f64 = 0.3;
+const CHOOSING: f64 = 0.15;
 
 impl Lists {
-    /// See how far vertices are from the outer reference, for an inner list of the present; false if it would not be good
-    /// for long.
-    pub(super) fn measure(&mut self, made: &mut Made) -> bool {
-        self.adapt_inner(made);
-        let mut most = 0.0;
-        self.moved.clear();
-        self.moved.extend(self.positions.iter().zip(&self.outer).map(|(now, then)| {
-            let moved = (now - then).norm();
-            most = if moved <= most { most } else { moved };
-            // A little more, for what is lost in rounding.
-            moved as f32 * (1.0 + 1e-6)
-        }));
-        // Until the next time vertices may move by half of the inner skin.
-        most + 0.5 * made.inner_skin < 0.5 * made.outer_skin
-    }
-
     /// What costs less from now on than it did.
-    fn adapt_inner(&mut self, made: &mut Made) {
+    pub(super) fn adapt_inner(&mut self) {
         let (looking, choosing) = (self.cost.looking, self.cost.choosing);
         self.cost.all += looking + choosing;
         (self.cost.looking, self.cost.choosing) = (0.0, 0.0);
+        self.lives[1] = usual(self.lives[1], self.since);
         if let Some([_, inner]) = &mut self.shares {
             *inner *= if choosing > looking { 1.25 } else { 0.8 };
             *inner = inner.clamp(INNER[1], INNER[2]);
-            made.inner_skin = *inner * made.outer_skin;
         }
     }
 
-    /// Make the inner list of the outer one, after [`Self::measure`].
+    /// Make the inner list of the outer one.
     pub(super) fn choose(&mut self, made: &Made, team: &mut Team) {
-        self.inner.clone_from(&self.positions);
+        let [outer, inner] = self.shares.unwrap_or_default();
+        let room = outer * made.size;
+        let (last, life) = ((&self.last[..], self.since), self.lives[1]);
+        self.inner.aim(&self.positions, last, life, (inner * room, room));
+        self.last.clone_from(&self.positions);
+        self.since = 0;
+        self.moved.clear();
+        let references = self.inner.middles.iter().zip(&self.outer.middles);
+        let pairs = references.zip(&self.inner.rooms);
+        self.moved.extend(pairs.map(|((inner, outer), room)| {
+            // A little more, for what is lost in rounding.
+            ((inner - outer).norm() as f32 + room) * (1.0 + 1e-6)
+        }));
         let mut scratch = std::mem::take(&mut self.scratch);
         scratch.resize_with(team.size().max(scratch.len()), Default::default);
         let places = Parts::new(&mut scratch);
@@ -77,21 +73,27 @@ impl Lists {
         all: &[Far],
         near: &mut Vec<Pair>,
     ) {
-        let range = (made.reach + made.inner_skin) as f32 * (1.0 + 1e-6);
+        let reach = made.reach as f32 * (1.0 + 1e-6);
         let cell = made.cell.as_ref();
         let mut rough = Rough::<_, EDGES>::new([0; 4]);
         for Far { pair, distance } in all {
             // What a pair has lost of its distance is no more than its vertices have moved.
-            let [a, b, c, d] = pair.map(|vertex| self.moved[vertex as usize]);
-            let lost = if EDGES { a.max(b) + c.max(d) } else { a + b.max(c).max(d) };
-            if *distance <= range + lost {
-                let arms = arms::<EDGES>(cell, &self.inner, *pair);
+            if *distance <= reach + sum_of::<EDGES>(&self.moved, pair) {
+                let arms = arms::<EDGES>(cell, &self.inner.middles, *pair);
                 let single = arms.map(|arm| arm.map(|x| x as f32).into());
-                rough.push(*pair, single, range, |pair, _| near.push(pair));
+                let most = reach + sum_of::<EDGES>(&self.inner.rooms, pair) * (1.0 + 1e-6);
+                rough.push(*pair, single, most, |pair, _| near.push(pair));
             }
         }
-        rough.find(range, |pair, _| near.push(pair));
+        rough.find(|pair, _| near.push(pair));
     }
+}
+
+/// The most of the vertices of the one and the most of those of the other.
+#[inline(always)]
+pub fn sum_of<const EDGES: bool>(values: &[f32], pair: &Pair) -> f32 {
+    let [a, b, c, d] = pair.map(|vertex| values[vertex as usize]);
+    if EDGES { a.max(b) + c.max(d) } else { a + b.max(c).max(d) }
 }
 
 /// Have pairs in ascending order.

@@ -1,8 +1,9 @@
 //! Which vertices may touch which triangles of a surface, and which edges which edges.
 //!
-//! Two lists, one within the other, have the pairs that were nearer than reach + skin at the positions of a **reference**,
-//! but for those that share a vertex. Each is good until a vertex has moved by half of its skin. The outer one has a thick skin
-//! and comes from boxes (`outer.rs`); the inner one has a thin skin and comes from the outer one (`inner.rs`), and is what
+//! Two lists, one within the other, have the pairs that can come within reach while every vertex stays in a ball around its place
+//! in a **reference**, but for those that share a vertex. As vertices fly straight on for a while, a reference is where they
+//! will be half a **life** of the list later, and a ball has room for the way there, and for some straying. The outer list has a long life
+//! and comes from boxes (`outer.rs`); the inner one has a short life and comes from the outer one (`inner.rs`), and is what
 //! evaluations look at. Pairs are known by their vertices, and the inner list is in ascending order of these, so that nothing depends
 //! on when lists were made. After flips, pairs of what is gone are taken out and those of what is new are added (`following.rs`).
 
@@ -30,12 +31,18 @@ pub struct Lists {
     pub(super) made_for: Option<Made>,
     /// All vertices as they are now.
     pub(super) positions: Vec<Vec3>,
-    /// The references of the outer and the inner list.
-    pub(super) outer: Vec<Vec3>,
-    pub(super) inner: Vec<Vec3>,
-    /// How far each vertex was from its outer reference at the inner one, nm.
+    pub(super) outer: Balls,
+    pub(super) inner: Balls,
+    /// For each vertex how far what it does in the balls of the inner list may be from its outer reference, nm.
     pub(super) moved: Vec<f32>,
-    /// The outer skin in mean edges, the inner one as a share of it; none before the first lists.
+    /// Where vertices were when the last list was made, and how many refreshes ago that was.
+    pub(super) last: Vec<Vec3>,
+    pub(super) since: usize,
+    /// How many refreshes ago the outer list was made, and how many the outer and the inner one last usually.
+    pub(super) age: usize,
+    pub(super) lives: [f64; 2],
+    /// What vertices may stray by in the outer list, in mean edges, and in the inner one, as a share of that; none before the
+    /// first lists.
     pub(super) shares: Option<[f64; 2]>,
     /// The triangles that the lists are of.
     pub(super) triangles: Vec<[u32; 3]>,
@@ -79,11 +86,9 @@ pub struct Made {
     pub between_parts: bool,
     pub cell: Option<Cell>,
     pub fingerprint: u64,
-    /// nm.
-    pub outer_skin: f64,
-    pub inner_skin: f64,
-    /// The mean edge, nm.
+    /// The mean edge, and what straying goes by, nm.
     pub mean: f64,
+    pub size: f64,
 }
 
 impl Lists {
@@ -108,19 +113,19 @@ impl Lists {
         let good = self.made_for.filter(|made| {
             made.reach >= reach && made.between_parts <= between_parts && made.cell.as_ref() == cell
         });
-        if let Some(mut made) = good {
-            let stays = farthest(&self.positions, &self.inner) < 0.5 * made.inner_skin;
-            if (stays || self.measure(&mut made))
-                && (made.fingerprint == mesh.fingerprint() || self.follow_flips(mesh, &made))
-            {
-                made.fingerprint = mesh.fingerprint();
-                if !stays {
-                    self.choose(&made, team);
-                }
-                self.made_for = Some(made);
-                self.cost.looking += self.work() as f64;
-                return Ok(());
+        (self.since, self.age) = (self.since + 1, self.age + 1);
+        if let Some(mut made) = good
+            && self.outer.have(&self.positions)
+            && (made.fingerprint == mesh.fingerprint() || self.follow_flips(mesh, &made))
+        {
+            made.fingerprint = mesh.fingerprint();
+            if !self.inner.have(&self.positions) {
+                self.adapt_inner();
+                self.choose(&made, team);
             }
+            self.made_for = Some(made);
+            self.cost.looking += self.work() as f64;
+            return Ok(());
         }
         self.made_for = None;
         for (position, particle) in self.positions.iter().zip(mesh.particles()) {
@@ -169,42 +174,98 @@ impl Lists {
     }
 }
 
-/// How far the farthest vertex is from where it was, nm; no number if a position is none.
-pub fn farthest(now: &[Vec3], then: &[Vec3]) -> f64 {
-    let mut found = 0.0;
-    run(Farthest { now, then, found: &mut found });
-    found
-}
-
 const LANES: usize = 8;
 
-struct Farthest<'a> {
-    now: &'a [Vec3],
-    then: &'a [Vec3],
-    found: &'a mut f64,
+/// A ball for each vertex.
+#[derive(Default)]
+pub struct Balls {
+    pub middles: Vec<Vec3>,
+    /// The radii, and their squares or a little less, nm.
+    pub rooms: Vec<f32>,
+    squares: Vec<f64>,
 }
 
-impl Kernel for Farthest<'_> {
+/// What is usual after a list that lasted for some refreshes.
+pub fn usual(life: f64, age: usize) -> f64 {
+    // Lists that last as long as they are made for are made for longer.
+    0.5 * life + 0.6 * age as f64
+}
+
+impl Balls {
+    /// For vertices that were elsewhere `since` refreshes ago, in balls for a life, with room for straying. No way is longer than
+    /// some length, nm.
+    pub fn aim(
+        &mut self,
+        now: &[Vec3],
+        (last, since): (&[Vec3], usize),
+        life: f64,
+        (stray, longest): (f64, f64),
+    ) {
+        let knows = last.len() == now.len() && since > 0;
+        let ahead = if knows { 0.5 * life / since as f64 } else { 0.0 };
+        self.middles.clear();
+        for (vertex, now) in now.iter().enumerate() {
+            let mut way = if knows { (now - last[vertex]) * ahead } else { Vec3::zeros() };
+            let length = way.norm();
+            if length > longest {
+                way *= longest / length;
+            }
+            self.middles.push(now + way);
+        }
+        self.rooms.clear();
+        let ways = self.middles.iter().zip(now).map(|(there, now)| (there - now).norm());
+        self.rooms.extend(ways.map(|way| (way + stray) as f32));
+        self.squares.clear();
+        let square = |room: &f32| f64::from(*room).powi(2) * (1.0 - 1e-9);
+        self.squares.extend(self.rooms.iter().map(square));
+    }
+
+    /// Whether all vertices are in their balls.
+    pub fn have(&self, positions: &[Vec3]) -> bool {
+        let mut all = false;
+        run(Within { positions, balls: self, all: &mut all });
+        all
+    }
+
+    /// The largest radius.
+    pub fn largest(&self) -> f64 {
+        f64::from(self.rooms.iter().copied().fold(0.0, f32::max))
+    }
+
+    /// The larger room of two.
+    #[inline]
+    pub fn room_of(&self, [a, b]: [u32; 2]) -> f32 {
+        self.rooms[a as usize].max(self.rooms[b as usize])
+    }
+}
+
+struct Within<'a> {
+    positions: &'a [Vec3],
+    balls: &'a Balls,
+    all: &'a mut bool,
+}
+
+impl Kernel for Within<'_> {
     #[inline(always)]
     fn execute<A: Arithmetic>(self) {
-        let mut most = [0.0; LANES];
-        // What is no number stays.
-        let larger = |most: f64, x: f64| if x <= most { most } else { x };
-        let squared = |now: &Vec3, then: &Vec3| {
+        // What is no number is nowhere.
+        let within = |now: &Vec3, then: &Vec3, square: f64| {
             let way = [now[0] - then[0], now[1] - then[1], now[2] - then[2]];
-            way[0] * way[0] + way[1] * way[1] + way[2] * way[2]
+            way[0] * way[0] + way[1] * way[1] + way[2] * way[2] < square
         };
-        let (now, rest) = self.now.as_chunks::<LANES>();
-        let (then, other_rest) = self.then.as_chunks::<LANES>();
-        for (now, then) in now.iter().zip(then) {
+        let (now, rest) = self.positions.as_chunks::<LANES>();
+        let (then, other_rest) = self.balls.middles.as_chunks::<LANES>();
+        let (squares, rest_squares) = self.balls.squares.as_chunks::<LANES>();
+        let mut all = [true; LANES];
+        for ((now, then), squares) in now.iter().zip(then).zip(squares) {
             for n in 0..LANES {
-                most[n] = larger(most[n], squared(&now[n], &then[n]));
+                all[n] &= within(&now[n], &then[n], squares[n]);
             }
         }
-        for (now, then) in rest.iter().zip(other_rest) {
-            most[0] = larger(most[0], squared(now, then));
+        for ((now, then), square) in rest.iter().zip(other_rest).zip(rest_squares) {
+            all[0] &= within(now, then, *square);
         }
-        *self.found = most.into_iter().fold(0.0, larger).sqrt();
+        *self.all = all.iter().all(|all| *all);
     }
 }
 

@@ -3,7 +3,7 @@
 use super::closest::difference;
 use super::grid::bounds;
 use super::inner::INNER;
-use super::lists::{Cost, Far, Lists, Made, Pair, Scratch, ascending, lowest_first};
+use super::lists::{Cost, Far, Lists, Made, Pair, Scratch, ascending, lowest_first, usual};
 use super::rough::Rough;
 use super::spheres::{Search, Sphere};
 use crate::error::{Error, Result};
@@ -12,11 +12,14 @@ use crate::mesh::triangulation::next;
 use crate::mesh::{Cell, Triangulation};
 use crate::team::{Parts, Team};
 
-/// The outer skin in mean edges: at first, at least and at most.
-const OUTER: [f64; 3] = [0.4, 0.1, 1.0];
+/// What vertices may stray by, in mean edges: at first, at least and at most.
+const OUTER: [f64; 3] = [0.1, 0.03, 0.5];
+
+/// The most that a way may be long, in mean edges.
+const LONGEST: f64 = 0.5;
 
 /// What it costs to make the outer list, by triangle or edge, in looks at a pair.
-const MAKING: f64 = 10.0;
+const MAKING: f64 = 4.0;
 
 impl Lists {
     /// Make the outer list of the present positions.
@@ -27,9 +30,6 @@ impl Lists {
         (reach, between_parts): (f64, bool),
         team: &mut Team,
     ) -> Result<Made> {
-        self.outer.clone_from(&self.positions);
-        self.moved.clear();
-        self.moved.resize(self.outer.len(), 0.0);
         self.triangles.clear();
         self.triangles.extend_from_slice(mesh.triangles());
         if !between_parts {
@@ -37,52 +37,67 @@ impl Lists {
         } else if self.parts.is_empty() {
             self.parts = mesh.parts();
         }
-        let mut all = std::mem::take(&mut self.all);
-        all.clear();
-        all.extend(mesh.edges().map(|half| {
-            let ends = ascending(mesh.origin(half), mesh.origin(next(half)));
-            Sphere::of_edge(cell, &self.outer, ends, self.part(ends[0]))
-        }));
+        let ends = |half| ascending(mesh.origin(half), mesh.origin(next(half)));
         let (mut total, mut largest) = (0.0, 0.0_f64);
-        for edge in &all {
-            (total, largest) = (total + 2.0 * edge.radius(), largest.max(edge.radius()));
+        for [a, b] in mesh.edges().map(ends) {
+            let [a, b] = [a, b].map(|end| &self.positions[end as usize]);
+            let length = difference(cell, b, a).norm();
+            (total, largest) = (total + length, largest.max(length));
         }
-        let mean = total / all.len() as f64;
+        let mean = total / mesh.num_edges() as f64;
         if let Some([outer, _]) = &mut self.shares {
-            let elements = (all.len() + self.triangles.len()) as f64;
+            let elements = (mesh.num_edges() + self.triangles.len()) as f64;
             let spent = self.cost.all + self.cost.looking + self.cost.choosing;
             *outer *= if MAKING * elements > spent { 1.25 } else { 0.8 };
             *outer = outer.clamp(OUTER[1], OUTER[2]);
+            self.lives[0] = usual(self.lives[0], self.age);
         }
-        let [outer, inner] = *self.shares.get_or_insert([OUTER[0], INNER[0]]);
+        self.age = 0;
+        let [outer, _] = *self.shares.get_or_insert([OUTER[0], INNER[0]]);
         self.cost = Cost::default();
-        let mut outer_skin = outer * mean.max(0.5 * reach);
+        // What is as near as half of the reach matters, whatever edges are.
+        let size = mean.max(0.5 * reach);
+        let mut size = size;
         if let Some(cell) = cell {
             // A triangle is not farther around its middle than its longest edge.
-            let room = cell.half_width() - reach - 3.0 * largest;
+            let room = cell.half_width() - reach - 1.5 * largest;
             if room <= 0.0 {
                 return Err(Error::Contract(format!(
                     "the repulsion reaches {reach} nm, which with the size of a triangle is more than half of the periodic \
                      box; make the distance smaller or the box larger"
                 )));
             }
-            outer_skin = outer_skin.min(room);
+            // An edge may be longer by twice the way of its ends.
+            size = size.min(room / (4.0 * (OUTER[2] + 2.0 * LONGEST)));
         }
-        let range = reach + outer_skin;
+        let (last, life) = ((&self.last[..], self.since), self.lives[0]);
+        self.outer.aim(&self.positions, last, life, (outer * size, LONGEST * size));
+        let room = self.outer.largest();
+        let range = reach + 2.0 * room;
         let neighbours = self.neighbours(cell, range);
-        neighbours.retain(&mut all, range);
+        let mut all = std::mem::take(&mut self.all);
+        all.clear();
+        all.extend(mesh.edges().map(|half| self.edge_sphere(cell, ends(half))));
+        neighbours.retain(&mut all, reach + room);
         self.edges.fill(cell, range + 1.5 * mean, &all);
         all.clear();
-        let numbers = 0..self.outer.len() as u32;
-        all.extend(numbers.map(|v| Sphere::of_vertex(&self.outer, v, self.part(v))));
-        neighbours.retain(&mut all, range);
+        all.extend((0..self.positions.len() as u32).map(|vertex| {
+            let room = self.outer.rooms[vertex as usize];
+            Sphere::of_vertex(&self.outer.middles, vertex, self.part(vertex), room)
+        }));
+        neighbours.retain(&mut all, reach + room);
         self.vertices.fill(cell, range + mean, &all);
         self.all = all;
-        let (fingerprint, inner_skin) = (mesh.fingerprint(), inner * outer_skin);
-        let cell = cell.copied();
-        let made = Made { reach, between_parts, cell, fingerprint, outer_skin, inner_skin, mean };
+        let (cell, fingerprint) = (cell.copied(), mesh.fingerprint());
+        let made = Made { reach, between_parts, cell, fingerprint, size, mean };
         self.find_pairs(&made, team);
         Ok(made)
+    }
+
+    /// An edge at the outer reference.
+    pub(super) fn edge_sphere(&self, cell: Option<&Cell>, ends: [u32; 2]) -> Sphere {
+        let room = self.outer.room_of(ends);
+        Sphere::of_edge(cell, &self.outer.middles, ends, self.part(ends[0]), room)
     }
 
     fn find_pairs(&mut self, made: &Made, team: &mut Team) {
@@ -91,8 +106,10 @@ impl Lists {
         let places = Parts::new(&mut scratch);
         let (this, size) = (&*self, team.size());
         // Those of a box one after another.
-        let boxes =
-            self.triangles.iter().map(|[a, ..]| self.vertices.home(&self.outer[*a as usize]));
+        let boxes = self
+            .triangles
+            .iter()
+            .map(|[a, ..]| self.vertices.home(&self.outer.middles[*a as usize]));
         let mut order: Vec<(usize, u32)> = boxes.zip(0..).collect();
         order.sort_unstable();
         team.run(|member| {
@@ -121,15 +138,18 @@ impl Lists {
         search: &mut Search,
         pairs: &mut Vec<Far>,
     ) {
-        let (cell, range) = (made.cell.as_ref(), made.reach + made.outer_skin);
-        let (most, slack) = limits(range, self.vertices.slack());
+        let cell = made.cell.as_ref();
+        let (reach, slack) = limits(made.reach, self.vertices.slack());
         let mut rough = Rough::<Pair, false>::new([0; 4]);
         let mut note = |pair, least| pairs.push(Far { pair, distance: least - slack });
         search.forget();
         for corners in triangles {
-            let (points, middle, radius) = triangle_sphere(cell, &self.outer, corners);
+            let (points, middle, radius) = triangle_sphere(cell, &self.outer.middles, corners);
+            let [a, b, c] = corners;
+            let room = self.outer.room_of([a, b]).max(self.outer.room_of([b, c]));
+            let around = (&middle, radius + f64::from(room));
             let part = self.own_part(corners[0]);
-            let middle_here = self.vertices.find((&middle, radius), range, corners, part, search);
+            let middle_here = self.vertices.find(around, made.reach, corners, part, search);
             let single = |way: Vec3| -> [f32; 3] { way.map(|x| x as f32).into() };
             let from_a = single(middle - points[0]);
             let sides = [single(points[1] - points[0]), single(points[2] - points[0])];
@@ -138,11 +158,11 @@ impl Lists {
                 let at = self.vertices.middle(*place as usize);
                 let way = self.vertices.between(middle_here, at);
                 let point = [0, 1, 2].map(|k| way[k] + from_a[k]);
-                let [a, b, c] = corners;
+                let most = reach + room + self.outer.rooms[vertex as usize];
                 rough.push([vertex, a, b, c], [point, sides[0], sides[1]], most, &mut note);
             }
         }
-        rough.find(most, note);
+        rough.find(note);
     }
 
     /// Add the pairs of edges at some places with smaller ones at the outer reference.
@@ -153,21 +173,22 @@ impl Lists {
         search: &mut Search,
         pairs: &mut Vec<Far>,
     ) {
-        let range = made.reach + made.outer_skin;
-        let (most, slack) = limits(range, self.edges.slack());
+        let (reach, slack) = limits(made.reach, self.edges.slack());
         let mut rough = Rough::<Pair, true>::new([0; 4]);
         let mut note = |pair, least| pairs.push(Far { pair, distance: least - slack });
         search.forget();
         for place in places {
-            self.edges.find_smaller(place, range, made.between_parts, search);
+            self.edges.find_smaller(place, made.reach, made.between_parts, search);
             let one = self.edges.edge(place);
+            let room = reach + self.outer.room_of(one.ends);
             for other in &search.found {
                 let other = self.edges.edge(*other as usize);
                 let arms = self.edges.arms(&one, &other);
+                let most = room + self.outer.room_of(other.ends);
                 rough.push(both(one.ends, other.ends), arms, most, &mut note);
             }
         }
-        rough.find(most, note);
+        rough.find(note);
     }
 
     /// Which parts may be near which; none unless that matters, and in a periodic box, whose parts may lie across its faces.
@@ -177,7 +198,7 @@ impl Lists {
         }
         let count = self.parts.iter().max().map_or(0, |last| *last as usize + 1);
         let mut bricks = vec![bounds([]); count];
-        for (position, part) in self.outer.iter().zip(&self.parts) {
+        for (position, part) in self.outer.middles.iter().zip(&self.parts) {
             let [low, high] = &mut bricks[*part as usize];
             (*low, *high) = (low.inf(position), high.sup(position));
         }

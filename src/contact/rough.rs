@@ -16,6 +16,7 @@ const MARGIN: f32 = 1e-3;
 pub struct Rough<T, const EDGES: bool> {
     pairs: [T; LANES],
     arms: [[f32; LANES]; 9],
+    most: [f32; LANES],
     least: [f32; LANES],
     count: usize,
 }
@@ -23,30 +24,33 @@ pub struct Rough<T, const EDGES: bool> {
 impl<T: Copy, const EDGES: bool> Rough<T, EDGES> {
     /// None yet.
     pub fn new(nothing: T) -> Self {
-        let (arms, least) = ([[0.0; LANES]; 9], [0.0; LANES]);
-        Self { pairs: [nothing; LANES], arms, least, count: 0 }
+        let (arms, zeros) = ([[0.0; LANES]; 9], [0.0; LANES]);
+        Self { pairs: [nothing; LANES], arms, most: zeros, least: zeros, count: 0 }
     }
 
-    /// Add a pair by its arms, as `closest.rs` has them; when there is no more room, visit all as [`Self::find`] does.
+    /// Add a pair by its arms, as `closest.rs` has them, that is looked for up to some distance; when there is no more room, visit all as [`Self::find`] does.
     #[inline(always)]
     pub fn push(&mut self, pair: T, arms: [[f32; 3]; 3], most: f32, visit: impl FnMut(T, f32)) {
         self.pairs[self.count] = pair;
+        self.most[self.count] = most;
         for (k, x) in arms.as_flattened().iter().enumerate() {
             self.arms[k][self.count] = *x;
         }
         self.count += 1;
         if self.count == LANES {
-            self.find(most, visit);
+            self.find(visit);
         }
     }
 
-    /// Visit the pairs that may be nearer than some distance, with their least distance, and forget all.
+    /// Visit the pairs that may be nearer than they are looked for, with their least distance, and forget all.
     #[inline]
-    pub fn find(&mut self, most: f32, mut visit: impl FnMut(T, f32)) {
+    pub fn find(&mut self, mut visit: impl FnMut(T, f32)) {
         run(Together(self));
-        for (pair, least) in self.pairs[..self.count].iter().zip(&self.least) {
+        for ((pair, least), most) in
+            self.pairs[..self.count].iter().zip(&self.least).zip(&self.most)
+        {
             // What is no number counts as near.
-            if !(*least >= most) {
+            if !(*least >= *most) {
                 visit(*pair, *least);
             }
         }

@@ -22,27 +22,35 @@ pub struct Sphere {
     pub ends: [u32; 2],
     /// The connected part that it is on; 0 unless that matters.
     pub part: u32,
+    /// How far its ends may be from where they are here, nm.
+    pub room: f32,
 }
 
 impl Sphere {
     /// Around a vertex.
-    pub fn of_vertex(positions: &[Vec3], vertex: u32, part: u32) -> Self {
+    pub fn of_vertex(positions: &[Vec3], vertex: u32, part: u32, room: f32) -> Self {
         let middle = positions[vertex as usize];
-        Self { middle, half: Vec3::zeros(), ends: [vertex; 2], part }
+        Self { middle, half: Vec3::zeros(), ends: [vertex; 2], part, room }
     }
 
     /// Around an edge.
     #[inline]
-    pub fn of_edge(cell: Option<&Cell>, positions: &[Vec3], ends: [u32; 2], part: u32) -> Self {
+    pub fn of_edge(
+        cell: Option<&Cell>,
+        positions: &[Vec3],
+        ends: [u32; 2],
+        part: u32,
+        room: f32,
+    ) -> Self {
         let [start, end] = ends.map(|end| &positions[end as usize]);
         let half = difference(cell, end, start) * 0.5;
-        Self { middle: start + half, half, ends, part }
+        Self { middle: start + half, half, ends, part, room }
     }
 
-    /// nm.
+    /// With the room, nm.
     #[inline]
     pub fn radius(&self) -> f64 {
-        self.half.norm()
+        self.half.norm() + f64::from(self.room)
     }
 }
 
