@@ -30,6 +30,17 @@ pub struct Grid {
 /// Boxes from a first to a last one along each axis.
 type Range = [[i64; 2]; 3];
 
+/// Some boxes of a grid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Around(Range);
+
+impl Around {
+    /// Whether all boxes of another one are among these.
+    pub fn has(&self, other: &Self) -> bool {
+        self.0.iter().zip(&other.0).all(|(own, other)| own[0] <= other[0] && other[1] <= own[1])
+    }
+}
+
 impl Grid {
     /// An empty grid whose boxes are about `size` wide, over the periodic box, or else from `low` to `high`; there are not
     /// many more boxes than `most`.
@@ -157,7 +168,8 @@ impl Grid {
 
     /// The numbers in all boxes that are nearer than `reach` to some points or between them.
     pub fn near(&self, points: &[Vec3], reach: f64, mut visit: impl FnMut(u32)) {
-        self.runs(points, reach, |run| self.items[run].iter().for_each(|item| visit(*item)));
+        let around = Around(self.range(points, reach));
+        self.each_run(&around, |run| self.items[run].iter().for_each(|item| visit(*item)));
     }
 
     /// The numbers in all boxes, one box after another.
@@ -165,10 +177,29 @@ impl Grid {
         &self.items
     }
 
-    /// The same as [`Self::near`], as places among [`Self::all_items`].
+    /// The numbers in a box, as places among [`Self::all_items`].
     #[inline]
-    pub fn runs(&self, points: &[Vec3], reach: f64, mut visit: impl FnMut(std::ops::Range<usize>)) {
-        let [x, y, z] = self.range(points, reach);
+    pub fn run(&self, home: usize) -> std::ops::Range<usize> {
+        self.starts[home] as usize..self.starts[home + 1] as usize
+    }
+
+    /// All boxes that are nearer than `reach` to the box of a point; so it is the same for all points of a box.
+    #[inline]
+    pub fn around(&self, point: &Vec3, reach: f64) -> Around {
+        let place = self.coordinates(point);
+        Around(std::array::from_fn(|k| {
+            let (home, far) = (place[k].floor() as i64, (reach * self.lengths[k]).ceil() as i64);
+            self.clip(k, [home - far, home + far])
+        }))
+    }
+
+    /// Go through the numbers in some boxes, as places among [`Self::all_items`].
+    #[inline]
+    pub fn each_run(
+        &self,
+        Around([x, y, z]): &Around,
+        mut visit: impl FnMut(std::ops::Range<usize>),
+    ) {
         let count = self.counts[0];
         // What lies in boxes side by side lies side by side.
         let runs = if !self.periodic {
@@ -206,15 +237,21 @@ impl Grid {
         std::array::from_fn(|k| {
             let margin = reach * self.lengths[k];
             let [low, high] = [(range[k][0] - margin).floor(), (range[k][1] + margin).floor()];
-            let (low, high, last) = (low as i64, high as i64, self.counts[k] - 1);
-            if !self.periodic {
-                [low.max(0), high.min(last)]
-            } else if high - low >= last {
-                [0, last]
-            } else {
-                [low, high]
-            }
+            self.clip(k, [low as i64, high as i64])
         })
+    }
+
+    /// Boxes along an axis that there are, each once.
+    #[inline]
+    fn clip(&self, axis: usize, [low, high]: [i64; 2]) -> [i64; 2] {
+        let last = self.counts[axis] - 1;
+        if !self.periodic {
+            [low.max(0), high.min(last)]
+        } else if high - low >= last {
+            [0, last]
+        } else {
+            [low, high]
+        }
     }
 
     #[inline]

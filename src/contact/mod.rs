@@ -8,9 +8,14 @@
 mod block;
 pub mod closest;
 mod evaluator;
+mod following;
 mod grid;
+mod inner;
 mod lists;
+mod outer;
 mod particles;
+mod rough;
+mod spheres;
 mod surface;
 
 pub use evaluator::{Contacts, is_contact};

@@ -2,7 +2,9 @@
 
 use super::block::Block;
 use super::closest::{Arms, Nearest, crossing, edge_arms};
-use super::lists::{Lists, Pair, arms, ascending, lowest_first};
+use super::inner::arms;
+use super::lists::{Lists, Pair, ascending, lowest_first};
+use super::spheres::Search;
 use crate::error::Result;
 use crate::mesh::geometry::Vec3;
 use crate::mesh::triangulation::Quad;
@@ -43,6 +45,7 @@ pub struct SurfaceContacts {
     /// Kept for their memory.
     near: Vec<u32>,
     near_edges: Vec<[u32; 2]>,
+    search: Search,
 }
 
 /// Triangles from the lowest corner on, and edges from the lower end on.
@@ -247,6 +250,7 @@ impl SurfaceContacts {
         }
         let (mut near, mut edges) =
             (std::mem::take(&mut self.near), std::mem::take(&mut self.near_edges));
+        let mut search = std::mem::take(&mut self.search);
         let (positions, cell) = (self.lists.positions(), self.cell.as_ref());
         let at = |vertex: u32| &positions[vertex as usize];
         let mut energy = 0.0;
@@ -260,7 +264,7 @@ impl SurfaceContacts {
         };
         for triangle in quad.triangles() {
             let corners = lowest_first(mesh.triangles()[triangle]);
-            self.lists.vertices_near_now(corners, &mut near);
+            self.lists.vertices_near_now(corners, &mut search, &mut near);
             for &vertex in &near {
                 let Nearest { squared, .. } =
                     Arms::new(cell, at(vertex), corners.map(at)).nearest();
@@ -268,13 +272,14 @@ impl SurfaceContacts {
             }
         }
         let [i, j, ..] = quad.vertices;
-        self.lists.edges_near_now([i, j], &mut edges);
+        self.lists.edges_near_now([i, j], &mut search, &mut edges);
         for &[p, q] in &edges {
             let [_, u, v] = edge_arms(cell, [at(i), at(j)], [at(p), at(q)]);
             let squared = crossing(cell, [at(i), at(j)], [at(p), at(q)]).squared;
             add([i, j, p, q], squared, surface_repulsion::edge_weight(&u, &v).0, true);
         }
         (self.near, self.near_edges, self.last) = (near, edges, last);
+        self.search = search;
         energy
     }
 
