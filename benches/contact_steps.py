@@ -2,10 +2,11 @@
 
     python benches/contact_steps.py
 
-µs a step, LangevinMiddle of 0.1 ps at 300 K, the least of several rounds in which both take turns, as
-docs/contact.md has them. "sphere": a vesicle of N = 1002; "flips": with a round of bond flips every ten
-steps; "folded": the same vesicle, with the repulsion, brought to a reduced volume of 0.3 and flipped or
-not; "box": vesicles of N = 252 side by side, 1.2 D apart, with one force between parts only.
+µs a step, LangevinMiddle of 0.1 ps at 300 K, the least of several rounds in which both take turns,
+as docs/contact.md has them. "sphere": a vesicle of N = 1002; "flips": with a round of bond flips
+every ten steps; "folded": the same vesicle, with the repulsion, brought to a reduced volume of 0.3
+and flipped or not; "box": vesicles of N = 252 side by side, 1.2 D apart, with one force between
+parts only.
 """
 
 import argparse
@@ -23,6 +24,7 @@ from membranes import positions_of, system_of
 
 
 def context_of(mesh, forces, threads=1):
+    """A Context of some forces on a mesh."""
     integrator = openmm.LangevinMiddleIntegrator(TEMPERATURE, FRICTION, TIME_STEP)
     integrator.setRandomNumberSeed(1)
     platform = openmm.Platform.getPlatformByName("Helfrich")
@@ -103,6 +105,7 @@ def compare(name, contexts, rounds, steps):
 
 
 def main():
+    """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--rounds", type=int, default=8)
     parser.add_argument("--steps", type=int, default=2000)

@@ -14,6 +14,7 @@ mod inner;
 mod lists;
 mod outer;
 mod particles;
+mod reach;
 mod rough;
 mod spheres;
 mod surface;

@@ -5,6 +5,7 @@
 
 use super::closest::{Arms, difference};
 use super::grid::{Grid, NOWHERE, TOGETHER, bounds};
+use super::reach::{Map, Reach, SKIN};
 use crate::error::{Error, Result};
 use crate::mesh::geometry::Vec3;
 use crate::mesh::{Cell, Triangulation};
@@ -13,9 +14,6 @@ use crate::potentials::{Contribution, Term};
 use crate::team::{Parts, Team};
 use nalgebra::Matrix3;
 use std::ops::Range;
-
-/// The skin as a share of the reach.
-const SKIN: f64 = 0.3;
 
 /// Particles of one term on one mesh.
 #[derive(Default)]
@@ -44,56 +42,12 @@ struct Found {
     lost: Option<u32>,
 }
 
-/// Triangles by boxes.
-#[derive(Default)]
-struct Map {
-    /// The reach, and the mesh that it is of.
-    made_for: Option<(f64, Option<Cell>, u64)>,
-    reference: Vec<Vec3>,
-    grid: Grid,
-}
-
 /// A particle that feels a triangle.
 struct Touch {
     /// Among the term's particles.
     place: u32,
     triangle: u32,
     pair: particle_surface::Pair,
-}
-
-impl Map {
-    /// Have all triangles that may be nearer than `reach` to any point of a box in its list.
-    fn refresh(
-        &mut self,
-        mesh: &Triangulation,
-        cell: Option<&Cell>,
-        reach: f64,
-        positions: &[Vec3],
-    ) {
-        let wanted = (reach, cell.copied(), mesh.fingerprint());
-        let skin = SKIN * reach;
-        if self.made_for == Some(wanted) {
-            let pairs = positions.iter().zip(&self.reference);
-            if pairs.fold(0.0, |far: f64, (now, then)| far.max((now - then).norm_squared()))
-                < skin * skin
-            {
-                return;
-            }
-        }
-        let [low, high] = bounds(positions);
-        let range = reach + skin;
-        let around = [low.add_scalar(-range), high.add_scalar(range)];
-        self.grid.set_up(cell, around, range, 16 * mesh.triangles().len());
-        for (triangle, corners) in mesh.triangles().iter().enumerate() {
-            let [a, b, c] = corners.map(|corner| &positions[corner as usize]);
-            let frame = [*a, a + difference(cell, b, a), a + difference(cell, c, a)];
-            self.grid.add_around(triangle as u32, &frame, range);
-        }
-        self.grid.seal();
-        self.reference.clear();
-        self.reference.extend_from_slice(positions);
-        self.made_for = Some(wanted);
-    }
 }
 
 impl ParticleContacts {
@@ -381,46 +335,4 @@ fn of(term: &Term, positions: &[f64], place: u32) -> (Vec3, f64) {
     let first = 3 * term.particles[place as usize] as usize;
     let at = Vec3::new(positions[first], positions[first + 1], positions[first + 2]);
     (at, term.value(RADIUS, place as usize))
-}
-
-/// How far particles act from their middles. Those whose reach is within a factor of two are a class.
-struct Reach {
-    /// From their rims.
-    from_rim: f64,
-    /// The least from their middles.
-    least: f64,
-    most: f64,
-    /// Which classes have particles, from the least reach on.
-    classes: Vec<bool>,
-}
-
-impl Reach {
-    fn new(term: &Term) -> Self {
-        let from_rim = particle_surface::reach(term);
-        let radii = term.fields[RADIUS];
-        let one = [term.values[RADIUS]];
-        let radii = if radii.is_empty() { &one } else { radii };
-        let fold =
-            |choose: fn(f64, f64) -> f64| from_rim + radii.iter().copied().fold(radii[0], choose);
-        let (least, most) = (fold(f64::min), fold(f64::max));
-        let mut reach = Self { from_rim, least, most, classes: Vec::new() };
-        reach.classes = vec![false; reach.class(most - from_rim) + 1];
-        for radius in radii {
-            let class = reach.class(*radius);
-            reach.classes[class] = true;
-        }
-        reach
-    }
-
-    #[inline]
-    fn class(&self, radius: f64) -> usize {
-        // The exponent of a number that is 1 or more, or a little less by rounding.
-        let exponent = ((self.from_rim + radius) / self.least).to_bits() >> 52;
-        (exponent.max(1023) - 1023) as usize
-    }
-
-    /// The most in a class, nm.
-    fn of_class(&self, class: usize) -> f64 {
-        self.most.min(self.least * 2f64.powi(class as i32 + 1))
-    }
 }

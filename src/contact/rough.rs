@@ -5,6 +5,7 @@
 //! sides are farther, L sin θ; so by no more than √(e |r| L). [`MARGIN`] is taken off for that.
 
 use crate::dynamics::instructions::{Arithmetic, Kernel, run};
+use std::cmp::Ordering;
 
 /// Pairs that are looked at together.
 const LANES: usize = 32;
@@ -50,7 +51,7 @@ impl<T: Copy, const EDGES: bool> Rough<T, EDGES> {
             self.pairs[..self.count].iter().zip(&self.least).zip(&self.most)
         {
             // What is no number counts as near.
-            if !(*least >= *most) {
+            if least.partial_cmp(most).is_none_or(Ordering::is_lt) {
                 visit(*pair, *least);
             }
         }

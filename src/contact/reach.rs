@@ -1,0 +1,99 @@
+//! How far particles reach, and which triangles are near the boxes that they may be in.
+
+use super::closest::difference;
+use super::grid::{Grid, bounds};
+use crate::mesh::geometry::Vec3;
+use crate::mesh::{Cell, Triangulation};
+use crate::potentials::Term;
+use crate::potentials::particle_surface::{self, RADIUS};
+
+/// The skin as a share of the reach.
+pub const SKIN: f64 = 0.3;
+
+/// Triangles by boxes.
+#[derive(Default)]
+pub struct Map {
+    /// The reach, and the mesh that it is of.
+    made_for: Option<(f64, Option<Cell>, u64)>,
+    reference: Vec<Vec3>,
+    pub grid: Grid,
+}
+
+impl Map {
+    /// Have all triangles that may be nearer than `reach` to any point of a box in its list.
+    pub fn refresh(
+        &mut self,
+        mesh: &Triangulation,
+        cell: Option<&Cell>,
+        reach: f64,
+        positions: &[Vec3],
+    ) {
+        let wanted = (reach, cell.copied(), mesh.fingerprint());
+        let skin = SKIN * reach;
+        if self.made_for == Some(wanted) {
+            let pairs = positions.iter().zip(&self.reference);
+            if pairs.fold(0.0, |far: f64, (now, then)| far.max((now - then).norm_squared()))
+                < skin * skin
+            {
+                return;
+            }
+        }
+        let [low, high] = bounds(positions);
+        let range = reach + skin;
+        let around = [low.add_scalar(-range), high.add_scalar(range)];
+        self.grid.set_up(cell, around, range, 16 * mesh.triangles().len());
+        for (triangle, corners) in mesh.triangles().iter().enumerate() {
+            let [a, b, c] = corners.map(|corner| &positions[corner as usize]);
+            let frame = [*a, a + difference(cell, b, a), a + difference(cell, c, a)];
+            self.grid.add_around(triangle as u32, &frame, range);
+        }
+        self.grid.seal();
+        self.reference.clear();
+        self.reference.extend_from_slice(positions);
+        self.made_for = Some(wanted);
+    }
+}
+
+/// How far particles act from their middles. Those whose reach is within a factor of two are a class.
+pub struct Reach {
+    /// From their rims.
+    pub from_rim: f64,
+    /// The least from their middles.
+    least: f64,
+    most: f64,
+    /// Which classes have particles, from the least reach on.
+    pub classes: Vec<bool>,
+}
+
+impl Reach {
+    /// Of the particles of a term.
+    pub fn new(term: &Term) -> Self {
+        let from_rim = particle_surface::reach(term);
+        let radii = term.fields[RADIUS];
+        let one = [term.values[RADIUS]];
+        let radii = if radii.is_empty() { &one } else { radii };
+        let fold =
+            |choose: fn(f64, f64) -> f64| from_rim + radii.iter().copied().fold(radii[0], choose);
+        let (least, most) = (fold(f64::min), fold(f64::max));
+        let mut reach = Self { from_rim, least, most, classes: Vec::new() };
+        reach.classes = vec![false; reach.class(most - from_rim) + 1];
+        for radius in radii {
+            let class = reach.class(*radius);
+            reach.classes[class] = true;
+        }
+        reach
+    }
+
+    #[inline]
+    /// The class of particles of a radius.
+    pub fn class(&self, radius: f64) -> usize {
+        // The exponent of a number that is 1 or more, or a little less by rounding.
+        let exponent = ((self.from_rim + radius) / self.least).to_bits() >> 52;
+        (exponent.max(1023) - 1023) as usize
+    }
+
+    /// The most in a class, nm.
+    pub fn of_class(&self, class: usize) -> f64 {
+        self.most.min(self.least * 2f64.powi(class as i32 + 1))
+    }
+}
