@@ -25,10 +25,11 @@ build: $(VENV)/.installed ## build everything and install it in .venv (the defau
 
 test: lint test-rust test-python test-package ## run all checks: lint, Rust, Python, a clean installation
 
-lint: $(VENV)/.requirements ## check formatting, and lint Rust, C++ and Python
+lint: $(VENV)/.requirements ## check formatting, lint Rust, C++ and Python, and check links of Rust's documentation
 	@echo "== Formatting and lint"
 	@cargo fmt --check
 	@$(CARGO) clippy -q --all-targets --release --locked -- -D warnings
+	@RUSTDOCFLAGS="-D warnings" $(CARGO) doc -q --no-deps --release --locked
 	@$(VENV)/bin/clang-format --dry-run -Werror $(CPP)
 	@$(VENV)/bin/ruff check -q $(PY)
 	@$(VENV)/bin/ruff format -q --check $(PY)
@@ -41,10 +42,9 @@ format: $(VENV)/.requirements ## format Rust, C++ and Python in place
 
 # Properties are tested on the same examples each time; another number looks for others.
 test-rust: export PROPTEST_RNG_SEED ?= 1
-test-rust: $(VENV)/.requirements # Rust's tests, and its documentation
+test-rust: $(VENV)/.requirements # Rust's tests
 	@echo "== Rust"
 	@$(CARGO) test -q --release --locked
-	@RUSTDOCFLAGS="-D warnings" $(CARGO) doc -q --no-deps --release --locked
 
 test-package: $(VENV)/.requirements # `pip install .` where nothing else is
 	@echo "== A clean installation"
