@@ -12,6 +12,9 @@ mod compose;
 #[cfg(feature = "gpu")]
 #[path = "shaders/constants.rs"]
 mod constants;
+#[cfg(feature = "gpu")]
+#[path = "shaders/dialect.rs"]
+mod dialect;
 #[path = "wrappers/codes.rs"]
 mod headers;
 #[cfg(feature = "gpu")]

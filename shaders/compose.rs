@@ -5,7 +5,7 @@
 //! `STEM_triangle`, `STEM_edge` or `STEM_vertex` for each kind of element on which it has energy. The functions
 //! `energy_of_…`, which choose among them by the number of a term's potential, are written here.
 
-use crate::constants;
+use crate::{constants, dialect};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use std::fs;
 use std::path::Path;
@@ -60,16 +60,26 @@ pub fn write_modules(folder: &Path, out: &Path) -> Result<(), String> {
         [("single", 4, Capabilities::empty()), ("double", 8, Capabilities::FLOAT64)]
     {
         let module = compose(folder, precision, &stems)?;
-        validate(&module, real, capabilities)
+        let program = validate(&module, real, capabilities)
             .map_err(|error| format!("In {precision} precision: {error}"))?;
         write(&out.join(format!("{precision}.wgsl")), &module.text)?;
+        let [before, after] =
+            ["prelude", "kernels"].map(|name| read(&folder.join(format!("openmm_{name}.c"))));
+        write(&out.join(format!("{precision}.c")), &format!("{}{program}{}\0", before?, after?))?;
     }
-    let rust = format!(
-        "/// In single precision.\npub const SINGLE: &str = include_str!(\"single.wgsl\");\n\
-         /// In double precision.\npub const DOUBLE: &str = include_str!(\"double.wgsl\");\n\
-         /// The stems of the potentials; a term has the index of its potential.\n\
+    let mut rust = format!(
+        "/// The stems of the potentials; a term has the index of its potential.\n\
          pub const POTENTIALS: &[&str] = &{stems:?};\n"
     );
+    for precision in ["single", "double"] {
+        let name = precision.to_uppercase();
+        rust += &format!(
+            "/// In {precision} precision.\npub const {name}: &str = include_str!(\"{precision}.wgsl\");\n\
+             /// The same in OpenMM's dialect.\npub const {name}_PROGRAM: &std::ffi::CStr = \
+             match std::ffi::CStr::from_bytes_with_nul(include_bytes!(\"{precision}.c\")) {{\n\
+             \x20   Ok(text) => text,\n    Err(_) => panic!(\"a program ends with a NUL\"),\n}};\n"
+        );
+    }
     write(&out.join("shaders.rs"), &rust)
 }
 
@@ -149,16 +159,18 @@ fn choice(
     text + "        default: { return nothing(); }\n    }\n}\n"
 }
 
-fn validate(module: &Module, real: usize, capabilities: Capabilities) -> Result<(), String> {
+/// Refuse a module with a slip, else write it as a program for OpenMM's platforms.
+fn validate(module: &Module, real: usize, capabilities: Capabilities) -> Result<String, String> {
     let at = |line: Option<u32>| line.map_or_else(String::new, |line| module.place(line as usize));
     let parsed = naga::front::wgsl::parse_str(&module.text).map_err(|error| {
         let line = error.location(&module.text).map(|place| place.line_number);
         format!("{}: {}", at(line), error.emit_to_string(&module.text))
     })?;
     let mut validator = Validator::new(ValidationFlags::all(), capabilities);
-    validator.validate(&parsed).map_err(|error| {
+    let info = validator.validate(&parsed).map_err(|error| {
         let line = error.location(&module.text).map(|place| place.line_number);
         format!("{}: {}", at(line), error.emit_to_string(&module.text))
     })?;
-    constants::check_layout(&parsed, real)
+    constants::check_layout(&parsed, real)?;
+    dialect::write(&parsed, &info)
 }

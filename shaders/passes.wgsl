@@ -14,9 +14,18 @@ fn is_needed(bits: u32) -> bool {
     return (frame.needs & bits) != 0u;
 }
 
-// Normals and areas, and their sums.
+// Normals and areas.
 @compute @workgroup_size(GROUP_SIZE)
 fn triangles_forward(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+    let triangle = group_index(id) * GROUP_SIZE + lane;
+    if triangle < frame.num_triangles {
+        triangle_geometry[triangle] = new_triangle(triangle);
+    }
+}
+
+// Normals and areas, and their sums: a pass of its own, as not all compilers take barriers that depend on buffers.
+@compute @workgroup_size(GROUP_SIZE)
+fn triangles_forward_summed(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     let group = group_index(id);
     let triangle = group * GROUP_SIZE + lane;
     let exists = triangle < frame.num_triangles;
@@ -25,9 +34,7 @@ fn triangles_forward(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_invoca
         geometry = new_triangle(triangle);
         triangle_geometry[triangle] = geometry;
     }
-    if is_needed(TOTALS) {
-        sum_triangle(triangle, exists, geometry, lane, group, groups_for(frame.num_triangles));
-    }
+    sum_triangle(triangle, exists, geometry, lane, group, groups_for(frame.num_triangles));
 }
 
 // The total area and volume, their energies, and the derivatives with respect to them; one group.

@@ -19,6 +19,8 @@ pub enum Kind {
     Cpu,
     /// The GPU; its failures are errors.
     Gpu,
+    /// OpenMM's GPU platforms themselves; a Context on another platform is an error.
+    Native,
 }
 
 /// A kind with what is asked of the GPU.
@@ -46,16 +48,18 @@ impl FromStr for Choice {
             "auto" => Kind::Auto,
             "cpu" => Kind::Cpu,
             "gpu" => Kind::Gpu,
+            "native" => Kind::Native,
             _ => return Err(unknown()),
         };
         let double = match precision {
             None => None,
-            _ if kind == Kind::Cpu => return Err(unknown()),
+            // OpenMM's platforms have a precision of their own.
+            _ if matches!(kind, Kind::Cpu | Kind::Native) => return Err(unknown()),
             Some("single") => Some(false),
             Some("double") => Some(true),
             Some(_) => return Err(unknown()),
         };
-        if kind == Kind::Cpu && adapter.is_some() {
+        if matches!(kind, Kind::Cpu | Kind::Native) && adapter.is_some() {
             return Err(unknown());
         }
         Ok(Self { kind, double, adapter })
@@ -68,6 +72,7 @@ impl fmt::Display for Choice {
             Kind::Auto => "auto",
             Kind::Cpu => "cpu",
             Kind::Gpu => "gpu",
+            Kind::Native => "native",
         })?;
         if let Some(double) = self.double {
             out.write_str(if double { ":double" } else { ":single" })?;
@@ -94,8 +99,8 @@ pub fn global() -> Result<Choice> {
     let text = std::env::var("HELFRICH_BACKEND").unwrap_or_default();
     let choice = if text.is_empty() { "auto" } else { &text }.parse().map_err(|_| {
         Error::Contract(format!(
-            "the environment variable HELFRICH_BACKEND is \"{text}\"; it must be one of auto, cpu, gpu, \
-             gpu:single, gpu:double"
+            "the environment variable HELFRICH_BACKEND is \"{text}\"; it must be one of auto, cpu, native, \
+             gpu, gpu:single, gpu:double"
         ))
     })?;
     *slot = Some(choice);
@@ -142,16 +147,21 @@ pub fn check(choice: Choice) -> Result<()> {
     Err(Error::NoAdapter { found })
 }
 
-/// Evaluations on the processor and on GPUs since the process began.
-static EVALUATIONS: [AtomicU64; 2] = [AtomicU64::new(0), AtomicU64::new(0)];
+/// Evaluations on the processor, on GPUs and by OpenMM's GPU platforms since the process began.
+static EVALUATIONS: [AtomicU64; 3] = [const { AtomicU64::new(0) }; 3];
 
-pub(crate) fn count_evaluation(on_gpu: bool) {
-    EVALUATIONS[usize::from(on_gpu)].fetch_add(1, Ordering::Relaxed);
+pub(crate) fn count_evaluation(by: Kind) {
+    let place = match by {
+        Kind::Gpu => 1,
+        Kind::Native => 2,
+        Kind::Cpu | Kind::Auto => 0,
+    };
+    EVALUATIONS[place].fetch_add(1, Ordering::Relaxed);
 }
 
-/// How many evaluations the processor and GPUs have done in this process.
-pub fn evaluations() -> [u64; 2] {
-    [&EVALUATIONS[0], &EVALUATIONS[1]].map(|count| count.load(Ordering::Relaxed))
+/// How many evaluations the processor, GPUs and OpenMM's GPU platforms have done in this process.
+pub fn evaluations() -> [u64; 3] {
+    [0, 1, 2].map(|place| EVALUATIONS[place].load(Ordering::Relaxed))
 }
 
 #[cfg(test)]
@@ -160,11 +170,11 @@ mod tests {
 
     #[test]
     fn choices_are_read_as_they_are_written() {
-        for text in ["auto", "cpu", "gpu", "gpu:single", "gpu:double@2", "auto:double", "gpu@0"] {
+        for text in ["auto", "cpu", "gpu", "gpu:single", "gpu:double@2", "auto:double", "gpu@0", "native"] {
             assert_eq!(text.parse::<Choice>().unwrap().to_string(), text);
         }
         for text in
-            ["", "GPU", "gpu:half", "gpu:", "gpu@", "gpu@-1", "cpu:double", "cpu@0", "gpu@1:single"]
+            ["", "GPU", "gpu:half", "gpu:", "gpu@", "gpu@-1", "cpu:double", "cpu@0", "gpu@1:single", "native:single"]
         {
             let error = text.parse::<Choice>().unwrap_err();
             assert_eq!(error, Error::UnknownBackend { name: text.to_owned() });

@@ -10,6 +10,8 @@ mod dynamics;
 mod membrane;
 mod mesh;
 mod moves;
+#[cfg(feature = "gpu")]
+mod native;
 mod plugin;
 mod potentials;
 mod records;
@@ -17,6 +19,8 @@ mod records;
 pub use membrane::*;
 pub use mesh::*;
 pub use moves::*;
+#[cfg(feature = "gpu")]
+pub use native::*;
 pub use plugin::Helfrich_register;
 pub use plugin::*;
 pub use potentials::*;

@@ -2,7 +2,7 @@
 
 #![allow(non_snake_case, reason = "names follow OpenMM's C API")]
 
-use crate::backend::{self, Choice};
+use crate::backend::{self, Choice, Kind};
 use crate::error::Error;
 use crate::ffi::{copy_out, guarded, text};
 use crate::membrane::Membrane;
@@ -63,14 +63,33 @@ pub unsafe extern "C" fn Helfrich_Membrane_choose(
     })
 }
 
-/// The evaluations that the processor and GPUs have done in this process.
+/// Whether OpenMM's GPU platforms shall evaluate a membrane themselves: 0 no, 1 if they can, 2 or it is an error.
 ///
 /// # Safety
-/// `counts` must have room for two values.
+/// `membrane` must be alive.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Membrane_wishesNative(membrane: *const Membrane) -> c_int {
+    match unsafe { &*membrane }.choice().map(|choice| choice.kind) {
+        Some(Kind::Native) => 2,
+        Some(Kind::Cpu | Kind::Gpu) => 0,
+        Some(Kind::Auto) | None => 1,
+    }
+}
+
+/// Note that a GPU platform of OpenMM has evaluated.
+#[unsafe(no_mangle)]
+pub extern "C" fn Helfrich_Native_count() {
+    backend::count_evaluation(Kind::Native);
+}
+
+/// The evaluations that the processor, GPUs and OpenMM's GPU platforms have done in this process.
+///
+/// # Safety
+/// `counts` must have room for three values.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn Helfrich_evaluations(counts: *mut u64) {
     let found = backend::evaluations();
-    unsafe { std::slice::from_raw_parts_mut(counts, 2) }.copy_from_slice(&found);
+    unsafe { std::slice::from_raw_parts_mut(counts, 3) }.copy_from_slice(&found);
 }
 
 /// List the GPUs, one a line: name, kind, interface, driver, and 1 or 0 for double precision and for

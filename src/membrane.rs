@@ -89,6 +89,16 @@ impl Membrane {
         self.surface.evaluator.choose(&self.surface.mesh, wish)
     }
 
+    /// What has been chosen for it, once that is known.
+    pub fn choice(&self) -> Option<Choice> {
+        self.surface.evaluator.choice()
+    }
+
+    /// How often the connectivity has changed.
+    pub fn generation(&self) -> u64 {
+        self.surface.generation
+    }
+
     /// The mesh as it is now.
     pub fn mesh(&self) -> &Triangulation {
         &self.surface.mesh
@@ -134,6 +144,17 @@ impl Membrane {
             placed.evaluate(terms, contributions, forces.as_deref_mut())?;
         }
         self.contacts.evaluate(&self.surface.mesh, cell, terms, positions, contributions, forces)
+    }
+
+    /// Evaluate terms on the processor, whatever has been chosen, for what it says of the positions: an error names its
+    /// culprit.
+    ///
+    /// # Errors
+    /// Those of [`Self::evaluate`].
+    pub fn look(&mut self, terms: &[Term], at: Configuration, forces: &mut [f64]) -> Result<()> {
+        let mut placed = self.surface.place(at)?;
+        placed.look_for_outside(terms)?;
+        placed.evaluate_on_processor(terms, forces)
     }
 
     /// ∂E/∂ε of some terms for a homogeneous strain ε of all positions and of the periodic box, kJ/mol: where there is

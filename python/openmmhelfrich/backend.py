@@ -18,7 +18,7 @@ from . import _core
 
 __all__ = ["Adapter", "Timing", "adapters", "evaluations", "get_backend", "set_backend", "timings"]
 
-_KINDS = ("auto", "cpu", "gpu")
+_KINDS = ("auto", "cpu", "gpu", "native")
 _PRECISIONS = ("auto", "single", "double")
 
 
@@ -99,8 +99,8 @@ def set_backend(backend: str, *, precision: str = "auto", adapter: int | None = 
         raise ValueError(f"set_backend: precision must be one of {_PRECISIONS}, got {precision!r}")
     if adapter is not None and (isinstance(adapter, bool) or not isinstance(adapter, int)):
         raise ValueError(f"set_backend: adapter must be an index, got {adapter!r}")
-    if backend == "cpu" and (precision != "auto" or adapter is not None):
-        raise ValueError('set_backend: the backend "cpu" has neither precisions nor adapters')
+    if backend in ("cpu", "native") and (precision != "auto" or adapter is not None):
+        raise ValueError(f'set_backend: the backend "{backend}" has neither precisions nor adapters')
     choice = backend
     if precision != "auto":
         choice += f":{precision}"
@@ -147,10 +147,13 @@ def timings() -> list[Timing]:
 
 
 def evaluations() -> dict[str, int]:
-    """How many evaluations the processor and GPUs have done in this process: keys "cpu", "gpu"."""
-    counts = (ctypes.c_uint64 * 2)()
+    """How many evaluations have been done in this process.
+
+    Keys: "cpu", the processor; "gpu", GPUs through wgpu; "native", OpenMM's GPU platforms.
+    """
+    counts = (ctypes.c_uint64 * 3)()
     _core.library().Helfrich_evaluations(counts)
-    return {"cpu": counts[0], "gpu": counts[1]}
+    return {"cpu": counts[0], "gpu": counts[1], "native": counts[2]}
 
 
 def _text(function: str) -> str:

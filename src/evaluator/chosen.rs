@@ -101,7 +101,8 @@ impl ChosenEvaluator {
         backend::check(choice)?;
         self.choice = Some(choice);
         self.settled_on_cpu =
-            choice.kind == Kind::Cpu || choice.kind == Kind::Auto && !Self::is_worth_a_look(mesh);
+            matches!(choice.kind, Kind::Cpu | Kind::Native)
+                || choice.kind == Kind::Auto && !Self::is_worth_a_look(mesh);
         #[cfg(feature = "gpu")]
         {
             self.gpu = None;
@@ -111,6 +112,11 @@ impl ChosenEvaluator {
             }
         }
         Ok(())
+    }
+
+    /// What holds, once it is known.
+    pub fn choice(&self) -> Option<Choice> {
+        self.choice
     }
 
     /// Go on with other connectivity, or with another order of the vertices, from the next evaluation on.
@@ -144,7 +150,11 @@ impl ChosenEvaluator {
         self.on_gpu(present, terms, positions, contributions, forces)
     }
 
-    fn on_cpu(
+    /// Evaluate terms on the processor, whatever has been chosen.
+    ///
+    /// # Errors
+    /// Those of [`CpuEvaluator::evaluate`].
+    pub fn on_cpu(
         &mut self,
         present: Present,
         terms: &[Term],
@@ -152,7 +162,7 @@ impl ChosenEvaluator {
         contributions: &mut [Contribution],
         forces: Option<&mut [f64]>,
     ) -> Result<()> {
-        backend::count_evaluation(false);
+        backend::count_evaluation(Kind::Cpu);
         let terms: SmallVec<[&Term; 8]> = terms.iter().collect();
         self.cpu(present).evaluate(&terms, positions, contributions, forces)
     }
@@ -238,7 +248,7 @@ impl ChosenEvaluator {
         let tried = self.try_gpu(present, terms, positions, known, forces.as_deref_mut());
         match tried {
             Ok(true) => {
-                backend::count_evaluation(true);
+                backend::count_evaluation(Kind::Gpu);
                 Ok(())
             }
             // Here the processor names the culprit, or computes what single precision cannot.

@@ -21,6 +21,8 @@ pub(super) struct Surface {
     /// Whether the surface has been looked at and is not inside out.
     pub has_outside: bool,
     pub evaluator: ChosenEvaluator,
+    /// How often the connectivity has changed.
+    pub generation: u64,
     borders: BorderEvaluator,
     unfolding: Unfolding,
 }
@@ -42,6 +44,7 @@ impl Surface {
             has_outside: false,
             mesh,
             evaluator: ChosenEvaluator::new(),
+            generation: 0,
             borders: BorderEvaluator::default(),
             unfolding: Unfolding::default(),
         }
@@ -49,6 +52,7 @@ impl Surface {
 
     /// The triangles have changed, and with them all that is made of them.
     pub fn connectivity_changed(&mut self) {
+        self.generation += 1;
         self.unfolding.connectivity_changed();
         self.borders.connectivity_changed();
         self.evaluator.connectivity_changed();
@@ -107,6 +111,14 @@ impl Placed<'_> {
         self.evaluator.evaluate(present, terms, positions, contributions, into)?;
         self.borders.add(mesh, positions, cell, on_borders, contributions, forces);
         Ok(())
+    }
+
+    /// Evaluate terms of the surface itself on the processor. Forces are added.
+    ///
+    /// # Errors
+    /// Those of [`ChosenEvaluator::on_cpu`].
+    pub fn evaluate_on_processor(&mut self, terms: &[Term], forces: &mut [f64]) -> Result<()> {
+        self.evaluator.on_cpu(self.present, terms, self.positions, &mut [], Some(forces))
     }
 
     /// Note what all terms but those of contacts find of every element. Forces are added.

@@ -13,7 +13,7 @@ using std::string;
 using std::vector;
 
 MembraneForceImpl::MembraneForceImpl(const MembraneForce& owner)
-    : CustomCPPForceImpl(owner), owner(owner), term(), inPlace(false), group(owner.getForceGroup()),
+    : CustomCPPForceImpl(owner), owner(owner), term(), inPlace(false), native(false), group(owner.getForceGroup()),
       periodic(owner.usesPeriodicBoundaryConditions()) {
     // OpenMM asks for the default parameters before it initialises the force.
     for (int i = 0; i < owner.getNumParameters(); i++)
@@ -30,11 +30,6 @@ MembraneForceImpl::~MembraneForceImpl() {
 void MembraneForceImpl::initialize(ContextImpl& context) {
     PlatformChoice::end();
     inPlace = dynamic_cast<const ReferencePlatform*>(&context.getPlatform()) != nullptr;
-    if (!inPlace && !derivatives.empty())
-        throw OpenMMException(owner.getTypeName() +
-                              ": energy parameter derivatives need the Reference, CPU or "
-                              "Helfrich platform, not " +
-                              context.getPlatform().getName());
     check(Helfrich_Potential_find(owner.getTypeName().c_str(), &term.potential));
     term.wantsDerivatives = !derivatives.empty();
     membrane = SharedMembrane::acquire(owner.getTypeName(), context, owner.getTriangles());
@@ -43,13 +38,21 @@ void MembraneForceImpl::initialize(ContextImpl& context) {
         membrane->checkJoining(owner.getTypeName(), term.potential);
         copyValues();
         membrane->choose(owner.getTypeName(), owner.getBackend());
+        native = membrane->startNative(owner, context, term);
+        if (!inPlace && !native && !derivatives.empty())
+            throw OpenMMException(owner.getTypeName() + ": energy parameter derivatives need the Reference, CPU or " +
+                                  "Helfrich platform, or the backend \"native\"; the platform " +
+                                  context.getPlatform().getName() + " does not evaluate this force itself");
+        for (const string& name : derivatives)
+            if (native)
+                membrane->requestDerivative(name);
     } catch (...) {
         // OpenMM will not delete this object any more; the membrane shall not stay for ever.
         membrane.reset();
         throw;
     }
     membrane->join(this);
-    if (!inPlace)
+    if (!inPlace && !native)
         CustomCPPForceImpl::initialize(context);
 }
 
@@ -92,6 +95,12 @@ bool MembraneForceImpl::isInGroups(int groups) const {
 
 double MembraneForceImpl::calcForcesAndEnergy(ContextImpl& context, bool includeForces, bool includeEnergy,
                                               int groups) {
+    if (native) {
+        if (membrane->isLeader(*this, groups))
+            membrane->evaluateNatively(owner.getTypeName(), context, groups, includeForces, includeEnergy);
+        // The energy is on the device.
+        return 0;
+    }
     if (!inPlace)
         return CustomCPPForceImpl::calcForcesAndEnergy(context, includeForces, includeEnergy, groups);
     if (!membrane->isLeader(*this, groups))
@@ -154,6 +163,13 @@ HelfrichTerm MembraneForceImpl::getTerm(ContextImpl& context) const {
         if (!contextParameters[i].empty())
             current.values[i] = context.getParameter(contextParameters[i]);
     return current;
+}
+
+void MembraneForceImpl::findDerivatives(const NativeMembrane& native, int* numbers) const {
+    for (const string& name : derivatives)
+        for (size_t i = 0; i < contextParameters.size(); i++)
+            if (contextParameters[i] == name)
+                numbers[i] = native.findDerivative(name);
 }
 
 void MembraneForceImpl::addDerivatives(const HelfrichContribution& contribution, map<string, double>& sums) const {

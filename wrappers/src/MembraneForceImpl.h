@@ -12,9 +12,9 @@ namespace HelfrichPlugin {
 /**
  * The one implementation of all membrane forces.
  *
- * On Reference, CPU and what derives from them, it reads and writes OpenMM's arrays in place. On every
- * other platform OpenMM's support for forces in plain C++ carries positions to the processor and forces
- * back.
+ * On Reference, CPU and what derives from them, it reads and writes OpenMM's arrays in place. GPU platforms evaluate most
+ * forces themselves; for all others, OpenMM's support for forces in plain C++ carries positions to the processor and
+ * forces back.
  */
 class MembraneForceImpl : public OpenMM::CustomCPPForceImpl, public UpdatableImpl, public ConnectivityImpl {
 public:
@@ -60,6 +60,12 @@ public:
     bool usesContextParameters() const;
     /** What to compute, with the present values of Context parameters. */
     HelfrichTerm getTerm(OpenMM::ContextImpl& context) const;
+    /** Whether the platform evaluates it, with NativeMembrane. */
+    bool isNative() const {
+        return native;
+    }
+    /** For each scalar the number of the derivative that a platform adds to; others stay as they are. */
+    void findDerivatives(const NativeMembrane& native, int* numbers) const;
     /** Add the derivatives that the user asked for. */
     void addDerivatives(const HelfrichContribution& contribution, std::map<std::string, double>& derivatives) const;
 
@@ -78,6 +84,7 @@ private:
     std::vector<std::string> derivatives;
     /** Whether positions and forces are OpenMM's own arrays of doubles. */
     bool inPlace;
+    bool native;
     /** The force's group when the Context was made, as OpenMM's own forces have it: a change needs reinitialize. */
     const int group;
     const bool periodic;

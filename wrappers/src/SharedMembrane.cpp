@@ -8,6 +8,7 @@
 #include <openmm/System.h>
 
 #include <algorithm>
+#include <iostream>
 #include <mutex>
 #include <set>
 
@@ -198,16 +199,65 @@ void SharedMembrane::leave(MonteCarloBondFlipImpl* leaving, ContextImpl& context
 
 bool SharedMembrane::isLeader(const MembraneForceImpl& member, int groups) const {
     for (const MembraneForceImpl* other : members)
-        if (other->isInGroups(groups))
+        if (other->isInGroups(groups) && other->isNative() == member.isNative())
             return other == &member;
     return false;
 }
 
-void SharedMembrane::collect(ContextImpl& context, int groups) {
+bool SharedMembrane::startNative(const MembraneForce& force, ContextImpl& context, const HelfrichTerm& term) {
+    int wish = Helfrich_Membrane_wishesNative(core);
+    if (wish == 0)
+        return false;
+    bool isMust = wish == 2;
+    string reason = NativeMembrane::whyNot(context);
+    if (!reason.empty()) {
+        if (isMust)
+            throw OpenMMException(force.getTypeName() + ": the backend \"native\" cannot be had here: " + reason);
+        return false;
+    }
+    // Borders, contacts and periodic surfaces are for the processor, whatever evaluates the rest.
+    if (force.usesPeriodicBoundaryConditions() || !Helfrich_Native_canEvaluate(&term))
+        return false;
+    if (native != nullptr)
+        return true;
+    const NativeMembrane* sibling = nullptr;
+    for (const auto& other : findAll(context))
+        if (other->native != nullptr)
+            sibling = other->native.get();
+    try {
+        native.reset(new NativeMembrane(context, core, getEdges(), sibling));
+    } catch (const std::exception& error) {
+        if (isMust)
+            throw OpenMMException(force.getTypeName() + ": the backend \"native\" cannot be had here: " + error.what());
+        static std::once_flag said;
+        std::call_once(said, [&] {
+            std::cerr << "openmm-helfrich: the platform " << context.getPlatform().getName()
+                      << " cannot compile the membrane's kernels; the processor takes over: " << error.what() << "\n";
+        });
+        return false;
+    }
+    return true;
+}
+
+void SharedMembrane::evaluateNatively(const string& subject, ContextImpl& context, int groups, bool forces,
+                                      bool energy) {
+    settle(context);
+    collect(context, groups, Which::Native);
+    derivativeNumbers.assign(HELFRICH_MAX_PARAMETERS * terms.size(), -1);
+    bool wantsSums = energy;
+    for (size_t i = 0; i < active.size(); i++)
+        if (terms[i].wantsDerivatives) {
+            active[i]->findDerivatives(*native, &derivativeNumbers[HELFRICH_MAX_PARAMETERS * i]);
+            wantsSums = true;
+        }
+    native->evaluate(subject, context, terms, derivativeNumbers, forces, wantsSums);
+}
+
+void SharedMembrane::collect(ContextImpl& context, int groups, Which which) {
     active.clear();
     terms.clear();
     for (MembraneForceImpl* member : members)
-        if (member->isInGroups(groups)) {
+        if (member->isInGroups(groups) && (which == Which::All || member->isNative() == (which == Which::Native))) {
             active.push_back(member);
             terms.push_back(member->getTerm(context));
             // Context parameters can be anything by now; the message shall name the force whose they are.
@@ -219,7 +269,7 @@ void SharedMembrane::collect(ContextImpl& context, int groups) {
 double SharedMembrane::evaluate(const string& subject, ContextImpl& context, int groups, const vector<Vec3>& positions,
                                 bool includeEnergy, vector<Vec3>* forces, std::map<string, double>* derivatives) {
     settle(context);
-    collect(context, groups);
+    collect(context, groups, Which::Others);
     bool wantsDerivatives = derivatives != nullptr &&
         std::any_of(terms.begin(), terms.end(), [](const HelfrichTerm& term) { return term.wantsDerivatives != 0; });
     contributions.assign(terms.size(), HelfrichContribution());

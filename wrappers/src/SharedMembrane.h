@@ -1,6 +1,7 @@
 #ifndef HELFRICH_SHARED_MEMBRANE_H_
 #define HELFRICH_SHARED_MEMBRANE_H_
 
+#include "NativeMembrane.h"
 #include "openmm-helfrich/internal/Core.h"
 
 #include <openmm/Vec3.h>
@@ -14,6 +15,7 @@
 
 namespace HelfrichPlugin {
 
+class MembraneForce;
 class MembraneForceImpl;
 class MonteCarloBondFlipImpl;
 struct SavedConnectivity;
@@ -59,8 +61,23 @@ public:
     /** Add what flips edges, of which there can be one. */
     void join(MonteCarloBondFlipImpl* mover, OpenMM::ContextImpl& context);
     void leave(MonteCarloBondFlipImpl* mover, OpenMM::ContextImpl& context);
-    /** Whether a member is the first whose force group is among those asked for. */
+    /** Whether a member is the first whose force group is among those asked for, of those that are evaluated like it. */
     bool isLeader(const MembraneForceImpl& member, int groups) const;
+    /**
+     * Let the platform evaluate a term of a force that joins, if it can and if that is wanted.
+     *
+     * @param force  the force
+     * @param term   what it computes
+     * @return whether it will
+     */
+    bool startNative(const MembraneForce& force, OpenMM::ContextImpl& context, const HelfrichTerm& term);
+    /** Have the platform compute the derivative with respect to a Context parameter. */
+    void requestDerivative(const std::string& parameter) {
+        native->requestDerivative(parameter);
+    }
+    /** Evaluate all members in some force groups that the platform evaluates. */
+    void evaluateNatively(const std::string& subject, OpenMM::ContextImpl& context, int groups, bool forces,
+                          bool energy);
     /**
      * Evaluate all members in some force groups.
      *
@@ -198,8 +215,10 @@ private:
     void followParts(OpenMM::ContextImpl& context);
     /** Refuse two triangulations of the same particles if one of them changes, unless it can follow the other. */
     static void refuseOthers(const std::string& subject, const SharedMembrane& one, const SharedMembrane& other);
+    /** Which members: those that the platform evaluates, all others, or both. */
+    enum class Which { Native, Others, All };
     /** Note the members in some force groups, and their terms. */
-    void collect(OpenMM::ContextImpl& context, int groups);
+    void collect(OpenMM::ContextImpl& context, int groups, Which which = Which::All);
     /** The vectors of the box that the members live in, nm, or null. */
     const double* findBox(OpenMM::ContextImpl& context);
     Connectivity getConnectivity() const;
@@ -222,6 +241,10 @@ private:
     std::vector<int> triangles;
     HelfrichMembrane* core;
     std::vector<MembraneForceImpl*> members;
+    /** What the platform evaluates, or null. */
+    std::unique_ptr<NativeMembrane> native;
+    /** For each scalar of each term the number of the derivative that it adds to. */
+    std::vector<int> derivativeNumbers;
     /** What flips edges, or null. */
     MonteCarloBondFlipImpl* mover;
     /** Whether it has been found to span the box, and no barostat tears it. */

@@ -2,10 +2,10 @@
 
 use super::Precision;
 use super::device::Device;
-use super::frame::groups;
-use super::interface::{Binding, FORCES_PER_TRIANGLE, NO_CORNER, SLOPES_PER_VERTEX};
+use super::interface::Binding;
+use super::layout::{connectivity, items};
 use crate::error::{Error, Result};
-use crate::mesh::{NONE, Topology};
+use crate::mesh::Topology;
 use crate::potentials::Needs;
 use wgpu::BufferUsages as Usage;
 
@@ -25,7 +25,7 @@ pub struct Buffers {
     /// The number of vertices, for messages.
     vertices: usize,
     /// For each intermediate result the needs that ask for it, and its size.
-    optional: [(Binding, Needs, usize); 3],
+    optional: Vec<(Binding, Needs, usize)>,
 }
 
 /// Beside the results the processor reads the count of thin triangles and two timestamps.
@@ -42,30 +42,16 @@ impl Buffers {
     /// # Errors
     /// The device has not enough memory, or does not allow buffers of this size.
     pub fn new(device: &Device, topology: &Topology, precision: Precision) -> Result<Self> {
-        let (v, e) = (topology.num_vertices(), topology.edges.len());
-        let t = topology.triangles.len();
-        let bytes = |binding: Binding, items| items * binding.item().size(precision.size());
-        // Two sums of area and volume for each group, and the derivatives with respect to them.
-        let totals = match precision {
-            Precision::Single => 2 * groups(t) + 1,
-            Precision::Double => groups(t) + 1,
-        };
-        let optional = [
-            (Binding::EdgeGeometry, Needs::EDGES | Needs::CURVATURES, e),
-            (Binding::VertexSlopes, Needs::VERTICES, v),
-            (Binding::VectorSlopes, Needs::VECTORS, SLOPES_PER_VERTEX as usize * v),
-        ]
-        .map(|(binding, needs, items)| (binding, needs, bytes(binding, items)));
-        let sizes = |binding: Binding| match binding {
-            Binding::Positions => bytes(binding, 3 * v),
-            Binding::CornerVertices | Binding::CornerEdges => bytes(binding, 3 * t),
-            Binding::EdgeCorners => bytes(binding, e),
-            Binding::Rings => bytes(binding, v + 1 + 3 * t),
-            Binding::TriangleGeometry => bytes(binding, t),
-            Binding::CornerForces => bytes(binding, FORCES_PER_TRIANGLE as usize * t),
-            Binding::Totals => bytes(binding, totals),
+        let v = topology.num_vertices();
+        let of_mesh = Binding::ALL.map(|binding| {
+            let (items, needs) = items(binding, topology, precision).unwrap_or_default();
+            (binding, needs, items * binding.item().size(precision.size()))
+        });
+        let sizes = |binding: Binding| match of_mesh[binding as usize] {
+            (_, needs, bytes) if needs.is_empty() => bytes,
             _ => LEAST,
         };
+        let optional = of_mesh.into_iter().filter(|(_, needs, _)| !needs.is_empty()).collect();
         check_limits(device, v, Binding::ALL.into_iter().map(sizes).max().unwrap_or(0))?;
         let buffers = device.guarded(v, || {
             let bound = std::array::from_fn(|k| create(device, sizes(Binding::ALL[k]), STORED));
@@ -91,7 +77,7 @@ impl Buffers {
             (Binding::Fields, demand.fields),
             (Binding::Results, demand.results),
         ];
-        for (binding, needs, size) in self.optional {
+        for &(binding, needs, size) in &self.optional {
             if demand.needs.intersects(needs) {
                 wanted.push((binding, size));
             }
@@ -122,29 +108,9 @@ impl Buffers {
 
     /// Bring triangles, edges and rings to the device.
     pub fn write_topology(&self, device: &Device, topology: &Topology) {
-        let write = |binding: Binding, words: &[u32]| {
-            device.queue.write_buffer(self.get(binding), 0, bytemuck::cast_slice(words));
-        };
-        write(Binding::CornerVertices, topology.triangles.as_flattened());
-        write(Binding::CornerEdges, topology.triangle_edges.as_flattened());
-        let corners: Vec<u32> = topology
-            .edges
-            .iter()
-            .enumerate()
-            .flat_map(|(index, edge)| {
-                edge.triangles.map(|triangle| {
-                    if triangle == NONE {
-                        return NO_CORNER;
-                    }
-                    let sides = &topology.triangle_edges[triangle as usize];
-                    let side = sides.iter().position(|side| *side as usize == index);
-                    3 * triangle + side.unwrap_or(0) as u32
-                })
-            })
-            .collect();
-        write(Binding::EdgeCorners, &corners);
-        let rings: Vec<u32> = topology.offsets.iter().chain(&topology.corners).copied().collect();
-        write(Binding::Rings, &rings);
+        for (binding, words) in connectivity(topology) {
+            device.queue.write_buffer(self.get(binding), 0, bytemuck::cast_slice(&words));
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::adapters::{self, Adapter};
 use super::interface::Binding;
+use super::layout::Pass;
 use super::{Precision, shaders};
 use crate::error::{Error, Result};
 use std::collections::HashMap;
@@ -9,15 +10,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock};
 use wgpu::{BufferBindingType, ErrorFilter, Features};
 
-/// The passes of one precision, in the order in which they run.
-pub(super) struct Pipelines {
-    pub triangles_forward: wgpu::ComputePipeline,
-    pub totals_forward: wgpu::ComputePipeline,
-    pub edges_forward: wgpu::ComputePipeline,
-    pub vertices_forward: wgpu::ComputePipeline,
-    pub triangles_backward: wgpu::ComputePipeline,
-    pub vertices_backward: wgpu::ComputePipeline,
-}
+/// A pipeline for each of [`Pass::ALL`].
+pub(super) type Pipelines = [wgpu::ComputePipeline; Pass::ALL.len()];
 
 /// A device that is open.
 pub struct Device {
@@ -132,14 +126,7 @@ impl Device {
                 cache: None,
             })
         };
-        Pipelines {
-            triangles_forward: pass("triangles_forward"),
-            totals_forward: pass("totals_forward"),
-            edges_forward: pass("edges_forward"),
-            vertices_forward: pass("vertices_forward"),
-            triangles_backward: pass("triangles_backward"),
-            vertices_backward: pass("vertices_backward"),
-        }
+        Pass::ALL.map(|each| pass(each.name().to_str().unwrap_or_default()))
     }
 
     /// Run something and turn what wgpu says against it into an error. `vertices` is for messages.

@@ -6,10 +6,11 @@ use super::faults::{Fault, strikes};
 use super::frame::{Frame, groups};
 use super::interface::{Binding, GROUPS_ACROSS, Sink};
 use super::lattice::{Lattice, Scale};
+use super::layout::passes;
 use super::{Bytes, Precision, Reals};
 use crate::error::{Error, Result};
 use crate::mesh::Topology;
-use crate::potentials::{Contribution, Needs, Term};
+use crate::potentials::{Contribution, Term};
 use std::sync::{Arc, mpsc};
 use std::time::{Duration, Instant};
 
@@ -200,28 +201,10 @@ impl GpuEvaluator {
         let mut pass = encoder
             .begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes });
         pass.set_bind_group(0, &self.buffers.group, &[]);
-        let mut run = |pipeline, elements| {
+        for (each, elements) in passes(self.frame.needs, forces, &self.topology) {
             let groups = groups(elements) as u32;
-            pass.set_pipeline(pipeline);
+            pass.set_pipeline(&pipelines[each as usize]);
             pass.dispatch_workgroups(groups.min(GROUPS_ACROSS), groups.div_ceil(GROUPS_ACROSS), 1);
-        };
-        let (needs, topology) = (self.frame.needs, &self.topology);
-        let triangles = topology.triangles.len();
-        run(&pipelines.triangles_forward, triangles);
-        if needs.contains(Needs::TOTALS) {
-            run(&pipelines.totals_forward, 1);
-        }
-        if needs.intersects(Needs::EDGES | Needs::CURVATURES) {
-            run(&pipelines.edges_forward, topology.edges.len());
-        }
-        if needs.contains(Needs::VERTICES) {
-            run(&pipelines.vertices_forward, topology.num_vertices());
-        }
-        if forces || needs.contains(Needs::TRIANGLES) {
-            run(&pipelines.triangles_backward, triangles);
-        }
-        if forces {
-            run(&pipelines.vertices_backward, topology.num_vertices());
         }
         drop(pass);
         let (results, readback) = (self.buffers.get(Binding::Results), &self.buffers.readback);

@@ -191,6 +191,29 @@ impl Frame {
         }
     }
 
+    /// Where the sums are: first, length, the number of the derivative or −1 for the energy, and the power of two that
+    /// brings them into OpenMM's units. `derivatives` has these numbers for each scalar of each term.
+    pub fn runs(
+        &self,
+        scale: Scale,
+        terms: &[Term],
+        derivatives: &[[i32; MAX_PARAMETERS]],
+    ) -> Vec<[i32; 4]> {
+        let mut runs = Vec::new();
+        for ((term, sums), numbers) in terms.iter().zip(&self.sums).zip(derivatives) {
+            let units = units(scale, term);
+            for &(first, groups) in sums.places.iter().flatten() {
+                runs.push([first as i32, groups as i32, -1, 0]);
+                let wanted = (0..MAX_PARAMETERS).filter(|k| sums.derivatives && numbers[*k] >= 0);
+                runs.extend(wanted.map(|k| {
+                    let begin = first + (k + 1) * groups;
+                    [begin as i32, groups as i32, numbers[k], -(units[k].log2() as i32)]
+                }));
+            }
+        }
+        runs
+    }
+
     /// The bytes of the results that hold sums.
     pub fn sums_range(&self, topology: &Topology) -> Range<usize> {
         3 * topology.num_vertices()..self.num_results

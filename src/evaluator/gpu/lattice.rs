@@ -117,7 +117,7 @@ impl Lattice {
 }
 
 /// Number the connected parts of a mesh.
-fn connected_parts(topology: &Topology) -> (Vec<u32>, usize) {
+pub fn connected_parts(topology: &Topology) -> (Vec<u32>, usize) {
     const UNKNOWN: u32 = u32::MAX;
     let mut parts = vec![UNKNOWN; topology.num_vertices()];
     let mut count = 0;

@@ -16,6 +16,8 @@ mod frame;
 #[allow(dead_code, reason = "build.rs uses the rest")]
 mod interface;
 mod lattice;
+mod layout;
+pub mod native;
 
 pub use evaluator::{GpuEvaluator, Timings};
 use interface::Sink;

@@ -42,6 +42,38 @@ struct HelfrichTerm {
     int64_t numParticles;
 };
 
+struct HelfrichNative;
+
+/** A buffer that a GPU platform needs for an evaluation. */
+struct HelfrichNativeBuffer {
+    int64_t itemSize, items;
+    /** Null if the host has nothing for it. */
+    const uint8_t* data;
+    int64_t dataSize;
+    /** Changes with the data. */
+    uint64_t version;
+};
+
+/** A pass of an evaluation there. */
+struct HelfrichNativePass {
+    const char* name;
+    int64_t groups;
+};
+
+/** What an evaluation there takes; it holds until the next plan is made. */
+struct HelfrichNativePlan {
+    int64_t numBuffers, numPasses, numTargets, numRuns;
+    /** Four numbers each. */
+    const int *targets, *runs;
+    /** Changes with the targets and runs. */
+    uint64_t version;
+    /** The unit of length as a power of two, nm. */
+    int unit;
+    int64_t numVertices;
+    /** The particle of each vertex, and the first vertex of its connected part. */
+    const uint32_t *particles, *anchors;
+};
+
 /** A membrane that has all triangles of another among its own, and follows its flips. */
 struct HelfrichFollower {
     HelfrichMembrane* membrane;
@@ -89,7 +121,24 @@ int Helfrich_Membrane_create(const char* subject, const int* triangles, int64_t 
                              HelfrichMembrane** membrane);
 void Helfrich_Membrane_destroy(HelfrichMembrane* membrane);
 int Helfrich_Membrane_choose(const char* subject, HelfrichMembrane* membrane, const char* backend);
+/** Whether OpenMM's GPU platforms shall evaluate it themselves: 0 no, 1 if they can, 2 or it is an error. */
+int Helfrich_Membrane_wishesNative(const HelfrichMembrane* membrane);
 int Helfrich_checkBackend(const char* subject, const char* backend);
+const char* Helfrich_Native_source(int isDouble);
+int Helfrich_Native_canEvaluate(const HelfrichTerm* term);
+HelfrichNative* Helfrich_Native_create(int isDouble);
+void Helfrich_Native_destroy(HelfrichNative* native);
+/** Evaluate on the processor, for its errors, and choose the unit of length. */
+int Helfrich_Native_look(const char* subject, HelfrichNative* native, HelfrichMembrane* membrane,
+                         const HelfrichTerm* terms, int64_t numTerms, int64_t numParticles, const double* positions);
+/** For each scalar of each term, `derivatives` has the number of the derivative that it adds to, or -1. */
+int Helfrich_Native_plan(const char* subject, HelfrichNative* native, const HelfrichMembrane* membrane,
+                         const HelfrichTerm* terms, int64_t numTerms, int forces, const int* derivatives,
+                         HelfrichNativePlan* plan);
+HelfrichNativeBuffer Helfrich_Native_buffer(const HelfrichNative* native, int64_t number);
+HelfrichNativePass Helfrich_Native_pass(const HelfrichNative* native, int64_t number);
+/** Note that a GPU platform has evaluated. */
+void Helfrich_Native_count();
 int64_t Helfrich_Membrane_numEdges(const HelfrichMembrane* membrane);
 void Helfrich_Membrane_edges(const HelfrichMembrane* membrane, int* particles);
 /** Whether it spans the periodic box in which it was evaluated last: 1 or 0. */

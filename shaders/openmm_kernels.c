@@ -1,0 +1,187 @@
+// The kernels that only OpenMM's platforms need, after a module: they bring OpenMM's positions into the module's form,
+// and its results where OpenMM wants them.
+//
+// `slots` has the place of each vertex among OpenMM's particles, `anchors` that of the first vertex of its connected
+// part, to which positions are relative. Names of `h_state`:
+
+#define H_FAULT 2
+// A position is not finite, or no size of a mesh.
+#define H_FAULT_POSITION 1u
+// A target of a total is too large for the lattice.
+#define H_FAULT_TARGET 2u
+// A triangle is thin, and perhaps without area.
+#define H_FAULT_THIN 4u
+
+#ifdef HELFRICH_DOUBLE
+typedef double h_place_t;
+#elif defined(HELFRICH_MIXED)
+typedef double h_place_t;
+#else
+typedef float h_place_t;
+#endif
+
+// One number of OpenMM's for each component.
+#ifdef HELFRICH_MIXED
+#define H_PLACE(k) ((h_place_t) posq[slot].k + (h_place_t) correction[slot].k)
+#else
+#define H_PLACE(k) ((h_place_t) posq[slot].k)
+#endif
+
+typedef struct { h_place_t c[3]; } h_Place;
+
+DEVICE h_Place h_load_place(int slot, GLOBAL const real4* posq, GLOBAL const real4* correction) {
+    h_Place place;
+    place.c[0] = H_PLACE(x);
+    place.c[1] = H_PLACE(y);
+    place.c[2] = H_PLACE(z);
+    return place;
+}
+
+// 2ⁿ for −126 ≤ n ≤ 127.
+DEVICE h_f32 h_power(int n) {
+    return H_AS_FLOAT((h_u32) (n + 127) << 23);
+}
+
+// The largest distance of a vertex from its anchor along an axis, as the bits of a float, which are in the order of what
+// they mean; what is not a number is above all.
+KERNEL void h_find_extent(int vertices, int turn, GLOBAL const real4* RESTRICT posq,
+        GLOBAL const real4* RESTRICT correction, GLOBAL const int* RESTRICT slots, GLOBAL const int* RESTRICT anchors,
+        GLOBAL h_u32* RESTRICT state) {
+    LOCAL h_u32 largest[64];
+    h_u32 mine = 0;
+    for (int vertex = GLOBAL_ID; vertex < vertices; vertex += GLOBAL_SIZE) {
+        h_Place place = h_load_place(slots[vertex], posq, correction);
+        h_Place anchor = h_load_place(anchors[vertex], posq, correction);
+        for (int k = 0; k < 3; k++) {
+            h_u32 bits = H_AS_UINT((h_f32) (place.c[k] - anchor.c[k])) & 0x7fffffffu;
+            mine = bits > mine ? bits : mine;
+        }
+    }
+    largest[LOCAL_ID] = mine;
+    SYNC_THREADS
+    for (int width = 32; width > 0; width /= 2) {
+        if (LOCAL_ID < width) {
+            h_u32 other = largest[LOCAL_ID + width];
+            if (other > largest[LOCAL_ID])
+                largest[LOCAL_ID] = other;
+        }
+        SYNC_THREADS
+    }
+    if (LOCAL_ID == 0)
+        H_RAISE(&state[turn], largest[0]);
+}
+
+#ifndef HELFRICH_DOUBLE
+// m 2ˢ, rounded, in 128 bits; a target is m 2ᵖ nmᵏ with m below 2⁵³.
+DEVICE h_u32_4 h_shifted(mm_ulong m, int shift) {
+    mm_ulong low = 0, high = 0;
+    if (shift >= 64)
+        high = m << (shift - 64);
+    else if (shift > 0) {
+        low = m << shift;
+        high = m >> (64 - shift);
+    }
+    else if (shift == 0)
+        low = m;
+    else if (shift > -64)
+        low = (m + ((mm_ulong) 1 << (-shift - 1))) >> -shift;
+    h_u32_4 result;
+    result.c[0] = (h_u32) low;
+    result.c[1] = (h_u32) (low >> 32);
+    result.c[2] = (h_u32) high;
+    result.c[3] = (h_u32) (high >> 32);
+    return result;
+}
+#endif
+
+// Positions relative to anchors: in single precision on a lattice of 2³⁰ steps across the largest part, whose spacing is a
+// power of two, so that they are exact; in double precision in the module's unit of length, 2 to `unit`.
+KERNEL void h_place(int vertices, int turn, int unit, GLOBAL const real4* RESTRICT posq,
+        GLOBAL const real4* RESTRICT correction, GLOBAL const int* RESTRICT slots, GLOBAL const int* RESTRICT anchors,
+        GLOBAL const h_i32* RESTRICT targets, GLOBAL h_u32* RESTRICT state, GLOBAL h_Frame* RESTRICT frame,
+#ifdef HELFRICH_DOUBLE
+        GLOBAL h_f64* RESTRICT positions
+#else
+        GLOBAL h_i32* RESTRICT positions
+#endif
+        ) {
+    h_u32 bits = state[turn];
+    int exponent = (int) (bits >> 23) - 126;
+    bool isSane = exponent > -90 && exponent < 90;
+    if (!isSane)
+        exponent = 0;
+    if (GLOBAL_ID == 0) {
+        state[1 - turn] = 0;
+        if (!isSane)
+            state[H_FAULT] |= H_FAULT_POSITION;
+    }
+#ifdef HELFRICH_DOUBLE
+    double scale = unit < 0 ? (double) h_power(-unit) : 1.0 / h_power(unit);
+    for (int vertex = GLOBAL_ID; vertex < vertices; vertex += GLOBAL_SIZE) {
+        h_Place place = h_load_place(slots[vertex], posq, correction);
+        h_Place anchor = h_load_place(anchors[vertex], posq, correction);
+        for (int k = 0; k < 3; k++)
+            positions[3*vertex + k] = (place.c[k] - anchor.c[k])*scale;
+    }
+#else
+    if (GLOBAL_ID == 0) {
+        frame->h_quantum = h_power(exponent - 29 - unit);
+        for (int term = 0; term < (int) frame->h_num_terms; term++) {
+            int power = targets[4*term + 3];
+            if (power == 0)
+                continue;
+            int shift = targets[4*term + 2] - power*(exponent - 29);
+            if (shift > 72) {
+                state[H_FAULT] |= H_FAULT_TARGET;
+                shift = 0;
+            }
+            mm_ulong m = ((mm_ulong) (h_u32) targets[4*term + 1] << 32) | (h_u32) targets[4*term];
+            frame->h_terms[term].h_reference = h_shifted(m, shift);
+        }
+    }
+    h_place_t steps = h_power(29 - exponent);
+    for (int vertex = GLOBAL_ID; vertex < vertices; vertex += GLOBAL_SIZE) {
+        h_Place place = h_load_place(slots[vertex], posq, correction);
+        h_Place anchor = h_load_place(anchors[vertex], posq, correction);
+        for (int k = 0; k < 3; k++) {
+            h_place_t here = place.c[k]*steps, there = anchor.c[k]*steps;
+            // Whole numbers of 64 bits hold both where they differ by less than 2³⁰ and anything is left of the digits.
+            bool fits = here < 4e18f && here > -4e18f && there < 4e18f && there > -4e18f;
+            if (!fits && isSane)
+                state[H_FAULT] |= H_FAULT_POSITION;
+            positions[3*vertex + k] = fits ? (h_i32) ((mm_long) rint(here) - (mm_long) rint(there)) : 0;
+        }
+    }
+#endif
+}
+
+// Add the forces to OpenMM's.
+KERNEL void h_add_forces(int vertices, int unit, int stride, GLOBAL const int* RESTRICT slots,
+        GLOBAL const real* RESTRICT results, GLOBAL mm_ulong* RESTRICT forces) {
+    real scale = unit < 0 ? (real) h_power(-unit) : 1/(real) h_power(unit);
+    for (int vertex = GLOBAL_ID; vertex < vertices; vertex += GLOBAL_SIZE)
+        for (int k = 0; k < 3; k++)
+            forces[slots[vertex] + k*stride] += (mm_ulong) ((mm_long) (results[3*vertex + k]*scale*0x100000000));
+}
+
+// Add energies to OpenMM's, and derivatives with respect to Context parameters. A run of sums is four numbers: its
+// begin, its length, the derivative or −1 for the energy, and the power of two that it is to be multiplied with.
+KERNEL void h_add_sums(int numRuns, int numDerivatives, GLOBAL const int* RESTRICT runs,
+        GLOBAL const real* RESTRICT results, GLOBAL mixed* RESTRICT energies, GLOBAL mixed* RESTRICT derivatives,
+        GLOBAL h_u32* RESTRICT thin, GLOBAL h_u32* RESTRICT state) {
+    if (GLOBAL_ID == 0 && thin[0] != 0) {
+        state[H_FAULT] |= H_FAULT_THIN;
+        thin[0] = 0;
+    }
+    for (int run = 0; run < numRuns; run++) {
+        int begin = runs[4*run], length = runs[4*run + 1], derivative = runs[4*run + 2];
+        mixed sum = 0;
+        for (int k = GLOBAL_ID; k < length; k += GLOBAL_SIZE)
+            sum += results[begin + k];
+        sum *= h_power(runs[4*run + 3]);
+        if (derivative < 0)
+            energies[GLOBAL_ID] += sum;
+        else
+            derivatives[GLOBAL_ID*numDerivatives + derivative] += sum;
+    }
+}

@@ -1,0 +1,238 @@
+//! Evaluations that OpenMM's GPU platforms do themselves, in their own buffers and with their own compilers.
+//!
+//! The program is the same modules as everywhere, written in OpenMM's dialect (`shaders/dialect.rs`), between
+//! `shaders/openmm_prelude.c` and `shaders/openmm_kernels.c`. Here is what the host decides: which buffers there are, what
+//! is in them and which passes run; `wrappers/src/NativeMembrane.cpp` does it.
+
+use super::frame::{Frame, groups};
+use super::interface::Binding;
+use super::lattice::{Scale, connected_parts};
+use super::layout::{connectivity, items, passes};
+use super::{Bytes, Precision, Sink, shaders};
+use crate::error::{Error, Result};
+use crate::mesh::{Topology, Triangulation};
+use crate::potentials::{MAX_PARAMETERS, Needs, Term};
+use std::ffi::CStr;
+
+/// What one evaluation asks of the device.
+#[derive(Default)]
+pub struct Plan {
+    /// A buffer for each of [`Binding::ALL`].
+    pub buffers: Vec<Buffer>,
+    /// The passes, and how many groups each has.
+    pub passes: Vec<(&'static CStr, usize)>,
+    /// A target of each term: its lower and its higher half, its power of two, and the power of lengths that it is;
+    /// all 0 if there is none.
+    pub targets: Vec<[i32; 4]>,
+    /// Sums in the results: first, length, the derivative or −1 for the energy, and a power of two to multiply with.
+    pub runs: Vec<[i32; 4]>,
+    /// Changes with `targets` and `runs`.
+    pub version: u64,
+}
+
+/// A buffer of a device.
+#[derive(Default)]
+pub struct Buffer {
+    /// Bytes of an item.
+    pub item: usize,
+    /// The number of items.
+    pub items: usize,
+    /// What the host has for it, if anything.
+    pub data: Vec<u8>,
+    /// Changes with the data; 0 if there are none.
+    pub version: u64,
+}
+
+impl Buffer {
+    fn set(&mut self, data: &[u8]) {
+        if self.data != data || self.version == 0 {
+            self.data.clear();
+            self.data.extend_from_slice(data);
+            self.version += 1;
+        }
+    }
+}
+
+/// A membrane that a platform evaluates.
+pub struct Native {
+    precision: Precision,
+    topology: Option<Topology>,
+    /// Of the connectivity that `topology` is of.
+    generation: u64,
+    frame: Frame,
+    /// The unit of length, nm, as a power of two.
+    unit: i32,
+    plan: Plan,
+    /// The particle of each vertex, and the first vertex of its connected part.
+    particles: Vec<u32>,
+    anchors: Vec<u32>,
+}
+
+/// The program of a precision, without what OpenMM defines before it.
+pub fn source(precision: Precision) -> &'static CStr {
+    match precision {
+        Precision::Single => shaders::SINGLE_PROGRAM,
+        Precision::Double => shaders::DOUBLE_PROGRAM,
+    }
+}
+
+/// Whether a platform can evaluate a term: those of borders and contacts are computed on the processor.
+pub fn is_native(term: &Term) -> bool {
+    !term.potential.needs(term).intersects(Needs::BORDERS | Needs::CONTACTS)
+}
+
+impl Native {
+    /// Of no membrane yet.
+    pub fn new(precision: Precision) -> Self {
+        Self {
+            precision,
+            topology: None,
+            generation: 0,
+            frame: Frame::new(),
+            unit: 0,
+            plan: Plan::default(),
+            particles: Vec::new(),
+            anchors: Vec::new(),
+        }
+    }
+
+    /// Choose the unit of length by the positions of all particles: a power of two near the mean edge, so that no square of
+    /// a square leaves the range of single precision. As it is a power of two, no bit depends on it.
+    pub fn set_unit(&mut self, mesh: &Triangulation, positions: &[f64]) {
+        let position = |vertex: u32| {
+            let first = 3 * mesh.particles()[vertex as usize] as usize;
+            [positions[first], positions[first + 1], positions[first + 2]]
+        };
+        let mut sum = 0.0;
+        for half in mesh.edges() {
+            let (a, b) = (mesh.origin(half), mesh.origin(crate::mesh::triangulation::next(half)));
+            let (a, b) = (position(a), position(b));
+            sum += (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
+        }
+        let mean = sum / mesh.num_edges().max(1) as f64;
+        if (1e-20..1e20).contains(&mean) {
+            self.unit = mean.log2().round() as i32;
+        }
+    }
+
+    /// The unit of length as a power of two, nm.
+    pub fn unit(&self) -> i32 {
+        self.unit
+    }
+
+    /// The particle of each vertex, and the first vertex of its connected part.
+    pub fn vertices(&self) -> (&[u32], &[u32]) {
+        (&self.particles, &self.anchors)
+    }
+
+    /// Say what an evaluation of terms takes. `generation` changes with the connectivity of the mesh; `derivatives` has
+    /// for each scalar of each term the number of the derivative that it adds to, or −1.
+    ///
+    /// # Errors
+    /// A target of a total is beyond all sizes.
+    pub fn plan(
+        &mut self,
+        mesh: &Triangulation,
+        generation: u64,
+        terms: &[Term],
+        forces: bool,
+        derivatives: &[[i32; MAX_PARAMETERS]],
+    ) -> Result<()> {
+        if self.topology.is_none() || self.generation != generation {
+            self.set_topology(Topology::of(mesh));
+            self.generation = generation;
+        }
+        let Self { precision, topology: Some(topology), frame, plan, unit, .. } = self else {
+            return Err(Error::Contract("has no mesh".to_owned()));
+        };
+        // The device finds the spacing of its lattice by itself.
+        let scale = Scale { unit: 2f64.powi(*unit), quantum: 1.0 };
+        if !frame.fill(topology, *precision, scale, terms, forces) {
+            let names: Vec<_> = terms.iter().map(|term| term.potential.name()).collect();
+            return Err(Error::Contract(format!(
+                "a target area or volume of {} is too large for a GPU platform; check its unit, or set the backend \
+                 \"cpu\"",
+                names.join(", ")
+            )));
+        }
+        let real = precision.size();
+        plan.buffers.resize_with(Binding::COUNT, Buffer::default);
+        for binding in Binding::ALL {
+            let buffer = &mut plan.buffers[binding as usize];
+            let (count, needs) = match binding {
+                Binding::Frame => (frame.bytes.len() / 4, Needs::empty()),
+                Binding::Fields => (frame.fields.len(), Needs::empty()),
+                Binding::Results => (frame.num_results, Needs::empty()),
+                _ => items(binding, topology, *precision).unwrap_or_default(),
+            };
+            buffer.item = if binding == Binding::Frame { 4 } else { binding.item().size(real) };
+            if needs.is_empty() || frame.needs.intersects(needs) {
+                buffer.items = buffer.items.max(count);
+            }
+            // OpenMM has no arrays without items.
+            buffer.items = buffer.items.max(1);
+        }
+        plan.buffers[Binding::Frame as usize].set(&frame.bytes);
+        if std::mem::take(&mut frame.fields_changed) && !frame.fields.is_empty() {
+            let mut bytes = Vec::with_capacity(frame.fields.len() * real);
+            let mut sink = Bytes { precision: *precision, bytes: &mut bytes };
+            frame.fields.iter().for_each(|value| sink.real(*value));
+            plan.buffers[Binding::Fields as usize].set(&bytes);
+        }
+        plan.passes.clear();
+        plan.passes.extend(
+            passes(frame.needs, forces, topology)
+                .into_iter()
+                .map(|(pass, elements)| (pass.name(), groups(elements))),
+        );
+        let targets = terms.iter().map(target).collect();
+        let runs = frame.runs(scale, terms, derivatives);
+        if plan.version == 0 || plan.targets != targets || plan.runs != runs {
+            (plan.targets, plan.runs) = (targets, runs);
+            plan.version += 1;
+        }
+        Ok(())
+    }
+
+    /// What the last call of [`Self::plan`] has found.
+    pub fn last_plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    fn set_topology(&mut self, topology: Topology) {
+        self.plan.buffers.resize_with(Binding::COUNT, Buffer::default);
+        for (binding, words) in connectivity(&topology) {
+            self.plan.buffers[binding as usize].set(bytemuck::cast_slice(&words));
+        }
+        let (parts, count) = connected_parts(&topology);
+        let mut first = vec![u32::MAX; count];
+        self.anchors.clear();
+        for (vertex, part) in parts.iter().enumerate() {
+            let first = &mut first[*part as usize];
+            *first = (*first).min(vertex as u32);
+            self.anchors.push(*first);
+        }
+        self.particles.clone_from(&topology.particles);
+        self.topology = Some(topology);
+    }
+}
+
+/// The target of a total as m 2ᵖ nmᵏ: twice an area, six times a volume.
+fn target(term: &Term) -> [i32; 4] {
+    if !term.potential.needs(term).contains(Needs::TOTALS) {
+        return [0; 4];
+    }
+    let (factor, power) = match term.potential.parameters().get(1).map(|parameter| parameter.length) {
+        Some(2) => (2.0, 2),
+        Some(3) => (6.0, 3),
+        _ => return [0; 4],
+    };
+    let value: f64 = factor * term.values[1];
+    let bits = value.to_bits();
+    let exponent = (bits >> 52 & 0x7ff) as i32;
+    if exponent == 0 {
+        return [0, 0, 0, power];
+    }
+    let mantissa = bits & ((1 << 52) - 1) | 1 << 52;
+    [mantissa as i32, (mantissa >> 32) as i32, exponent - 1075, power]
+}

@@ -1,0 +1,177 @@
+//! The C interface to [`crate::evaluator::gpu::native`]: evaluations by OpenMM's own GPU platforms.
+
+use super::membrane::read_terms;
+use super::{TermInput, guarded, slice, text};
+use crate::evaluator::gpu::Precision;
+use crate::evaluator::gpu::native::{self, Native};
+use crate::membrane::{Configuration, Membrane};
+use crate::potentials::MAX_PARAMETERS;
+use std::ffi::{c_char, c_int};
+
+/// What C++ reads of a buffer.
+#[repr(C)]
+pub struct NativeBuffer {
+    item_size: i64,
+    items: i64,
+    /// Null if the host has nothing for it.
+    data: *const u8,
+    data_size: i64,
+    version: u64,
+}
+
+/// What C++ reads of a pass.
+#[repr(C)]
+pub struct NativePass {
+    name: *const c_char,
+    groups: i64,
+}
+
+/// What C++ reads of a plan; it holds until the next one is made.
+#[repr(C)]
+pub struct NativePlan {
+    num_buffers: i64,
+    num_passes: i64,
+    num_targets: i64,
+    num_runs: i64,
+    targets: *const [c_int; 4],
+    runs: *const [c_int; 4],
+    version: u64,
+    /// The unit of length as a power of two, nm.
+    unit: c_int,
+    num_vertices: i64,
+    /// The particle of each vertex, and the first vertex of its connected part.
+    particles: *const u32,
+    anchors: *const u32,
+}
+
+fn precision(is_double: c_int) -> Precision {
+    if is_double != 0 { Precision::Double } else { Precision::Single }
+}
+
+/// The program of a precision; it lives as long as the library.
+#[unsafe(no_mangle)]
+pub extern "C" fn Helfrich_Native_source(is_double: c_int) -> *const c_char {
+    native::source(precision(is_double)).as_ptr()
+}
+
+/// Whether a platform can evaluate a term: 1 or 0.
+///
+/// # Safety
+/// `term` must be readable with its fields.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Native_canEvaluate(term: *const TermInput) -> c_int {
+    c_int::from(native::is_native(&unsafe { (*term).term() }))
+}
+
+/// Plans for a membrane in one precision.
+#[unsafe(no_mangle)]
+pub extern "C" fn Helfrich_Native_create(is_double: c_int) -> *mut Native {
+    Box::into_raw(Box::new(Native::new(precision(is_double))))
+}
+
+/// End their life; null is allowed.
+///
+/// # Safety
+/// `native` must come from [`Helfrich_Native_create`] and not be used again.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Native_destroy(native: *mut Native) {
+    if !native.is_null() {
+        drop(unsafe { Box::from_raw(native) });
+    }
+}
+
+/// Evaluate terms on the processor, to name what a device would not, and choose the unit of length by the positions.
+///
+/// # Safety
+/// As of [`Helfrich_Membrane_evaluate`](super::Helfrich_Membrane_evaluate); `native` must be alive.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Native_look(
+    subject: *const c_char,
+    native: *mut Native,
+    membrane: *mut Membrane,
+    terms: *const TermInput,
+    num_terms: i64,
+    num_particles: i64,
+    positions: *const f64,
+) -> c_int {
+    guarded(unsafe { text(subject) }, || {
+        let terms = unsafe { read_terms(terms, num_terms) };
+        let positions = unsafe { slice(positions, 3 * num_particles as usize) };
+        let (native, membrane) = unsafe { (&mut *native, &mut *membrane) };
+        let mut forces = vec![0.0; positions.len()];
+        membrane.look(&terms, Configuration::new(positions, None), &mut forces)?;
+        native.set_unit(membrane.mesh(), positions);
+        Ok(())
+    })
+}
+
+/// Say what an evaluation of terms takes. `derivatives` has `HELFRICH_MAX_PARAMETERS` numbers a term.
+///
+/// # Safety
+/// `subject` must end with a NUL; `native` and `membrane` must be alive and used by no other thread; the arrays must hold
+/// what is said.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Native_plan(
+    subject: *const c_char,
+    native: *mut Native,
+    membrane: *const Membrane,
+    terms: *const TermInput,
+    num_terms: i64,
+    forces: c_int,
+    derivatives: *const [c_int; MAX_PARAMETERS],
+    plan: *mut NativePlan,
+) -> c_int {
+    guarded(unsafe { text(subject) }, || {
+        let terms = unsafe { read_terms(terms, num_terms) };
+        let derivatives = unsafe { slice(derivatives, num_terms as usize) };
+        let (native, membrane) = unsafe { (&mut *native, &*membrane) };
+        for term in &terms {
+            membrane.check(term)?;
+        }
+        native.plan(membrane.mesh(), membrane.generation(), &terms, forces != 0, derivatives)?;
+        let (particles, anchors) = native.vertices();
+        let made = native.last_plan();
+        unsafe {
+            plan.write(NativePlan {
+                num_buffers: made.buffers.len() as i64,
+                num_passes: made.passes.len() as i64,
+                num_targets: made.targets.len() as i64,
+                num_runs: made.runs.len() as i64,
+                targets: made.targets.as_ptr(),
+                runs: made.runs.as_ptr(),
+                version: made.version,
+                unit: native.unit(),
+                num_vertices: particles.len() as i64,
+                particles: particles.as_ptr(),
+                anchors: anchors.as_ptr(),
+            });
+        }
+        Ok(())
+    })
+}
+
+/// A buffer of the last plan.
+///
+/// # Safety
+/// `native` must be alive and `number` one of its buffers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Native_buffer(native: *const Native, number: i64) -> NativeBuffer {
+    let buffer = &unsafe { &*native }.last_plan().buffers[number as usize];
+    NativeBuffer {
+        item_size: buffer.item as i64,
+        items: buffer.items as i64,
+        data: if buffer.version == 0 { std::ptr::null() } else { buffer.data.as_ptr() },
+        data_size: buffer.data.len() as i64,
+        version: buffer.version,
+    }
+}
+
+/// A pass of the last plan.
+///
+/// # Safety
+/// `native` must be alive and `number` one of its passes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Native_pass(native: *const Native, number: i64) -> NativePass {
+    let (name, groups) = unsafe { &*native }.last_plan().passes[number as usize];
+    NativePass { name: name.as_ptr(), groups: groups as i64 }
+}
