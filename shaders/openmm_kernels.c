@@ -13,6 +13,12 @@
 #define H_FAULT_THIN 4u
 
 #ifdef HELFRICH_DOUBLE
+#define H_VEC3 h_f64_3
+#else
+#define H_VEC3 h_f32_3
+#endif
+
+#ifdef HELFRICH_DOUBLE
 typedef double h_place_t;
 #elif defined(HELFRICH_MIXED)
 typedef double h_place_t;
@@ -44,29 +50,36 @@ DEVICE h_f32 h_power(int n) {
 
 // The largest distance of a vertex from its anchor along an axis, as the bits of a float, which are in the order of what
 // they mean; what is not a number is above all.
-KERNEL void h_find_extent(int vertices, int turn, GLOBAL const real4* RESTRICT posq,
-        GLOBAL const real4* RESTRICT correction, GLOBAL const int* RESTRICT slots, GLOBAL const int* RESTRICT anchors,
-        GLOBAL h_u32* RESTRICT state) {
-    LOCAL h_u32 largest[64];
-    h_u32 mine = 0;
-    for (int vertex = GLOBAL_ID; vertex < vertices; vertex += GLOBAL_SIZE) {
+DEVICE h_u32 h_extent(int first, int step, int vertices, GLOBAL const real4* posq, GLOBAL const real4* correction,
+        GLOBAL const int* slots, GLOBAL const int* anchors) {
+    h_u32 largest = 0;
+    for (int vertex = first; vertex < vertices; vertex += step) {
         h_Place place = h_load_place(slots[vertex], posq, correction);
         h_Place anchor = h_load_place(anchors[vertex], posq, correction);
         for (int k = 0; k < 3; k++) {
             h_u32 bits = H_AS_UINT((h_f32) (place.c[k] - anchor.c[k])) & 0x7fffffffu;
-            mine = bits > mine ? bits : mine;
+            largest = bits > largest ? bits : largest;
         }
     }
-    largest[LOCAL_ID] = mine;
-    SYNC_THREADS
-    for (int width = 32; width > 0; width /= 2) {
-        if (LOCAL_ID < width) {
-            h_u32 other = largest[LOCAL_ID + width];
-            if (other > largest[LOCAL_ID])
-                largest[LOCAL_ID] = other;
-        }
-        SYNC_THREADS
+    return largest;
+}
+
+// The largest of what the threads of a group have, in `values[0]`.
+#define H_LARGEST_OF_GROUP(values, mine) \
+    values[LOCAL_ID] = mine; \
+    SYNC_THREADS \
+    for (int width = LOCAL_SIZE/2; width > 0; width /= 2) { \
+        if (LOCAL_ID < width && values[LOCAL_ID + width] > values[LOCAL_ID]) \
+            values[LOCAL_ID] = values[LOCAL_ID + width]; \
+        SYNC_THREADS \
     }
+
+KERNEL void h_find_extent(int vertices, int turn, GLOBAL const real4* RESTRICT posq,
+        GLOBAL const real4* RESTRICT correction, GLOBAL const int* RESTRICT slots, GLOBAL const int* RESTRICT anchors,
+        GLOBAL h_u32* RESTRICT state) {
+    LOCAL h_u32 largest[64];
+    h_u32 mine = h_extent(GLOBAL_ID, GLOBAL_SIZE, vertices, posq, correction, slots, anchors);
+    H_LARGEST_OF_GROUP(largest, mine)
     if (LOCAL_ID == 0)
         H_RAISE(&state[turn], largest[0]);
 }
@@ -94,37 +107,33 @@ DEVICE h_u32_4 h_shifted(mm_ulong m, int shift) {
 }
 #endif
 
+#ifdef HELFRICH_DOUBLE
+#define H_COORDINATE h_f64
+#else
+#define H_COORDINATE h_i32
+#endif
+
 // Positions relative to anchors: in single precision on a lattice of 2³⁰ steps across the largest part, whose spacing is a
 // power of two, so that they are exact; in double precision in the module's unit of length, 2 to `unit`.
-KERNEL void h_place(int vertices, int turn, int unit, GLOBAL const real4* RESTRICT posq,
-        GLOBAL const real4* RESTRICT correction, GLOBAL const int* RESTRICT slots, GLOBAL const int* RESTRICT anchors,
-        GLOBAL const h_i32* RESTRICT targets, GLOBAL h_u32* RESTRICT state, GLOBAL h_Frame* RESTRICT frame,
-#ifdef HELFRICH_DOUBLE
-        GLOBAL h_f64* RESTRICT positions
-#else
-        GLOBAL h_i32* RESTRICT positions
-#endif
-        ) {
-    h_u32 bits = state[turn];
-    int exponent = (int) (bits >> 23) - 126;
+DEVICE void h_place_vertices(h_u32 extent, int first, int step, int vertices, int unit, GLOBAL const real4* posq,
+        GLOBAL const real4* correction, GLOBAL const int* slots, GLOBAL const int* anchors, GLOBAL const h_i32* targets,
+        GLOBAL h_u32* state, GLOBAL h_Frame* frame, GLOBAL H_COORDINATE* positions) {
+    int exponent = (int) (extent >> 23) - 126;
     bool isSane = exponent > -90 && exponent < 90;
     if (!isSane)
         exponent = 0;
-    if (GLOBAL_ID == 0) {
-        state[1 - turn] = 0;
-        if (!isSane)
-            state[H_FAULT] |= H_FAULT_POSITION;
-    }
+    if (first == 0 && !isSane)
+        state[H_FAULT] |= H_FAULT_POSITION;
 #ifdef HELFRICH_DOUBLE
     double scale = unit < 0 ? (double) h_power(-unit) : 1.0 / h_power(unit);
-    for (int vertex = GLOBAL_ID; vertex < vertices; vertex += GLOBAL_SIZE) {
+    for (int vertex = first; vertex < vertices; vertex += step) {
         h_Place place = h_load_place(slots[vertex], posq, correction);
         h_Place anchor = h_load_place(anchors[vertex], posq, correction);
         for (int k = 0; k < 3; k++)
             positions[3*vertex + k] = (place.c[k] - anchor.c[k])*scale;
     }
 #else
-    if (GLOBAL_ID == 0) {
+    if (first == 0) {
         frame->h_quantum = h_power(exponent - 29 - unit);
         for (int term = 0; term < (int) frame->h_num_terms; term++) {
             int power = targets[4*term + 3];
@@ -140,7 +149,7 @@ KERNEL void h_place(int vertices, int turn, int unit, GLOBAL const real4* RESTRI
         }
     }
     h_place_t steps = h_power(29 - exponent);
-    for (int vertex = GLOBAL_ID; vertex < vertices; vertex += GLOBAL_SIZE) {
+    for (int vertex = first; vertex < vertices; vertex += step) {
         h_Place place = h_load_place(slots[vertex], posq, correction);
         h_Place anchor = h_load_place(anchors[vertex], posq, correction);
         for (int k = 0; k < 3; k++) {
@@ -155,13 +164,37 @@ KERNEL void h_place(int vertices, int turn, int unit, GLOBAL const real4* RESTRI
 #endif
 }
 
+#define H_PLACEMENT GLOBAL const real4* RESTRICT posq, GLOBAL const real4* RESTRICT correction, \
+        GLOBAL const int* RESTRICT slots, GLOBAL const int* RESTRICT anchors, GLOBAL const h_i32* RESTRICT targets, \
+        GLOBAL h_u32* RESTRICT state, GLOBAL h_Frame* RESTRICT frame, GLOBAL H_COORDINATE* RESTRICT positions
+
+KERNEL void h_place(int vertices, int turn, int unit, H_PLACEMENT) {
+    if (GLOBAL_ID == 0)
+        state[1 - turn] = 0;
+    h_place_vertices(state[turn], GLOBAL_ID, GLOBAL_SIZE, vertices, unit, posq, correction, slots, anchors, targets,
+            state, frame, positions);
+}
+
+// Both for small meshes, with one group.
+KERNEL void h_find_extent_and_place(int vertices, int unit, H_PLACEMENT) {
+    LOCAL h_u32 largest[256];
+    h_u32 mine = h_extent(LOCAL_ID, LOCAL_SIZE, vertices, posq, correction, slots, anchors);
+    H_LARGEST_OF_GROUP(largest, mine)
+    h_place_vertices(largest[0], LOCAL_ID, LOCAL_SIZE, vertices, unit, posq, correction, slots, anchors, targets, state,
+            frame, positions);
+}
+
 // Add the forces to OpenMM's.
 KERNEL void h_add_forces(int vertices, int unit, int stride, GLOBAL const int* RESTRICT slots,
-        GLOBAL const real* RESTRICT results, GLOBAL mm_ulong* RESTRICT forces) {
+        GLOBAL const h_Frame* RESTRICT frame, GLOBAL const h_u32* RESTRICT rings, GLOBAL real* RESTRICT corner_forces,
+        GLOBAL mm_ulong* RESTRICT forces) {
     real scale = unit < 0 ? (real) h_power(-unit) : 1/(real) h_power(unit);
-    for (int vertex = GLOBAL_ID; vertex < vertices; vertex += GLOBAL_SIZE)
+    scale *= 0x100000000;
+    for (int vertex = GLOBAL_ID; vertex < vertices; vertex += GLOBAL_SIZE) {
+        H_VEC3 force = h_force_on_vertex(vertex, frame, rings, corner_forces);
         for (int k = 0; k < 3; k++)
-            forces[slots[vertex] + k*stride] += (mm_ulong) ((mm_long) (results[3*vertex + k]*scale*0x100000000));
+            forces[slots[vertex] + k*stride] += (mm_ulong) ((mm_long) (force.c[k]*scale));
+    }
 }
 
 // Add energies to OpenMM's, and derivatives with respect to Context parameters. A run of sums is four numbers: its

@@ -62,9 +62,26 @@ fn totals_forward(@builtin(local_invocation_index) lane: u32) {
     store_total_slopes(slopes, groups);
 }
 
-// Lengths and dihedral angles, their energies and moments.
+// Lengths, dihedral angles and moments.
 @compute @workgroup_size(GROUP_SIZE)
 fn edges_forward(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+    let index = group_index(id) * GROUP_SIZE + lane;
+    if index >= frame.num_edges {
+        return;
+    }
+    let edge = new_edge(index);
+    var slope = real(0.0);
+    for (var term = 0u; term < frame.num_terms; term++) {
+        if (frame.terms[term].needs & EDGES) != 0u {
+            energy_of_edge(term, index, edge, &slope);
+        }
+    }
+    store_edge(index, edge, slope);
+}
+
+// The same, and the energies.
+@compute @workgroup_size(GROUP_SIZE)
+fn edges_forward_summed(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     let group = group_index(id);
     let index = group * GROUP_SIZE + lane;
     let exists = index < frame.num_edges;
@@ -84,14 +101,36 @@ fn edges_forward(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_invocation
         store_sums(term, frame.terms[term].sums[SUMS_OF_EDGES], contribution, lane, group, groups_for(frame.num_edges));
     }
     if exists {
-        let moment = select(real(0.0), slope / root(edge.length_squared), slope != real(0.0));
-        edge_geometry[index] = vec4r(edge.length_squared, edge.bend, moment, real(0.0));
+        store_edge(index, edge, slope);
     }
 }
 
-// Areas, curvatures and vectors, their energies and the derivatives with respect to them.
+fn store_edge(index: u32, edge: EdgeGeometry, slope: real) {
+    let moment = select(real(0.0), slope / root(edge.length_squared), slope != real(0.0));
+    edge_geometry[index] = vec4r(edge.length_squared, edge.bend, moment, real(0.0));
+}
+
+// Areas, curvatures and vectors, and the derivatives of energies with respect to them.
 @compute @workgroup_size(GROUP_SIZE)
 fn vertices_forward(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+    let index = group_index(id) * GROUP_SIZE + lane;
+    if index >= frame.num_vertices {
+        return;
+    }
+    let vertex = new_vertex(index);
+    let inner = !is_on_border(index);
+    var slopes: VertexSlopes;
+    for (var term = 0u; term < frame.num_terms; term++) {
+        if acts_on_vertex(term, inner) {
+            energy_of_vertex(term, index, vertex, &slopes);
+        }
+    }
+    store_vertex(index, slopes);
+}
+
+// The same, and the energies.
+@compute @workgroup_size(GROUP_SIZE)
+fn vertices_forward_summed(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     let group = group_index(id);
     let index = group * GROUP_SIZE + lane;
     let exists = index < frame.num_vertices;
@@ -107,18 +146,27 @@ fn vertices_forward(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_invocat
             continue;
         }
         var contribution = nothing();
-        if exists && (inner || (frame.terms[term].needs & INNER) == 0u) {
+        if exists && acts_on_vertex(term, inner) {
             contribution = energy_of_vertex(term, index, vertex, &slopes);
         }
         store_sums(term, frame.terms[term].sums[SUMS_OF_VERTICES], contribution, lane, group, groups_for(frame.num_vertices));
     }
     if exists {
-        vertex_slopes[index] = vec4r(slopes.area, slopes.voronoi_area, slopes.curvature, real(0.0));
-        if is_needed(VECTORS) {
-            store_vector_slope(index, 0u, slopes.cotangent);
-            store_vector_slope(index, 1u, slopes.umbrella);
-            store_vector_slope(index, 2u, slopes.normal_sum);
-        }
+        store_vertex(index, slopes);
+    }
+}
+
+fn acts_on_vertex(term: u32, inner: bool) -> bool {
+    let needs = frame.terms[term].needs;
+    return (needs & VERTICES) != 0u && (inner || (needs & INNER) == 0u);
+}
+
+fn store_vertex(index: u32, slopes: VertexSlopes) {
+    vertex_slopes[index] = vec4r(slopes.area, slopes.voronoi_area, slopes.curvature, real(0.0));
+    if is_needed(VECTORS) {
+        store_vector_slope(index, 0u, slopes.cotangent);
+        store_vector_slope(index, 1u, slopes.umbrella);
+        store_vector_slope(index, 2u, slopes.normal_sum);
     }
 }
 
@@ -158,9 +206,26 @@ fn new_vertex(index: u32) -> VertexGeometry {
     return vertex;
 }
 
-// Energies of triangles, and all forces of a triangle on its corners.
+// All forces of a triangle on its corners.
 @compute @workgroup_size(GROUP_SIZE)
 fn triangles_backward(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+    let index = group_index(id) * GROUP_SIZE + lane;
+    if index >= frame.num_triangles {
+        return;
+    }
+    let triangle = load_triangle(index);
+    var slopes: TriangleSlopes;
+    for (var term = 0u; term < frame.num_terms; term++) {
+        if (frame.terms[term].needs & TRIANGLES) != 0u {
+            energy_of_triangle(term, index, triangle, &slopes);
+        }
+    }
+    store_corner_forces(index, triangle, slopes);
+}
+
+// The same, and the energies of triangles.
+@compute @workgroup_size(GROUP_SIZE)
+fn triangles_backward_summed(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     let group = group_index(id);
     let index = group * GROUP_SIZE + lane;
     let exists = index < frame.num_triangles;
@@ -180,10 +245,13 @@ fn triangles_backward(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_invoc
         let groups = groups_for(frame.num_triangles);
         store_sums(term, frame.terms[term].sums[SUMS_OF_TRIANGLES], contribution, lane, group, groups);
     }
-    if !exists || !is_needed(FORCES) {
-        return;
+    if exists && is_needed(FORCES) {
+        store_corner_forces(index, triangle, slopes);
     }
+}
 
+fn store_corner_forces(index: u32, triangle: TriangleGeometry, of_terms: TriangleSlopes) {
+    var slopes = of_terms;
     var volume_slope = real(0.0);
     if is_needed(TOTALS) {
         let totals = total_slopes(groups_for(frame.num_triangles));
@@ -227,20 +295,26 @@ fn triangles_backward(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_invoc
     }
 }
 
-// The force on each vertex: the sum over its corners.
+// The force on each vertex.
 @compute @workgroup_size(GROUP_SIZE)
 fn vertices_backward(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     let index = group_index(id) * GROUP_SIZE + lane;
     if index >= frame.num_vertices {
         return;
     }
+    let force = force_on_vertex(index);
+    results[3u * index] = force.x;
+    results[3u * index + 1u] = force.y;
+    results[3u * index + 2u] = force.z;
+}
+
+// The sum over its corners.
+fn force_on_vertex(index: u32) -> vec3r {
     var force = vec3r();
     let ring = frame.num_vertices + 1u;
     for (var place = rings[index]; place < rings[index + 1u]; place++) {
         let first = 3u * rings[ring + place];
         force += vec3r(corner_forces[first], corner_forces[first + 1u], corner_forces[first + 2u]);
     }
-    results[3u * index] = force.x;
-    results[3u * index + 1u] = force.y;
-    results[3u * index + 2u] = force.z;
+    return force;
 }

@@ -117,6 +117,7 @@ pub unsafe extern "C" fn Helfrich_Native_plan(
     membrane: *const Membrane,
     terms: *const TermInput,
     num_terms: i64,
+    energies: c_int,
     forces: c_int,
     derivatives: *const [c_int; MAX_PARAMETERS],
     plan: *mut NativePlan,
@@ -128,7 +129,9 @@ pub unsafe extern "C" fn Helfrich_Native_plan(
         for term in &terms {
             membrane.check(term)?;
         }
-        native.plan(membrane.mesh(), membrane.generation(), &terms, forces != 0, derivatives)?;
+        let (energies, forces) = (energies != 0, forces != 0);
+        let generation = membrane.generation();
+        native.plan(membrane.mesh(), generation, &terms, energies, forces, derivatives)?;
         let (particles, anchors) = native.vertices();
         let made = native.last_plan();
         unsafe {

@@ -42,8 +42,11 @@ const int groupSize = 64;
 const int evaluationsBetweenChecks = 1000;
 /** Words of the kernels' state: two extents that take turns, faults, and one that nobody uses. */
 const int stateSize = 4;
-/** The buffer of the frame, of the positions, of the results and of the count of thin triangles. */
-const int frameBuffer = 0, positionsBuffer = 1, resultsBuffer = 13, thinBuffer = 14;
+/** Buffers, as src/evaluator/gpu/interface.rs numbers them. */
+const int frameBuffer = 0, positionsBuffer = 1, ringsBuffer = 5, cornerForcesBuffer = 11, resultsBuffer = 13,
+          thinBuffer = 14;
+/** Below so many vertices one group is faster than two kernels. */
+const int64_t verticesOfOneGroup = 2048;
 
 template <class Platform>
 ComputeContext* findDevice(ContextImpl& context) {
@@ -170,9 +173,10 @@ NativeMembrane::NativeMembrane(ContextImpl& context, HelfrichMembrane* core, con
             defines["HELFRICH_MIXED"] = "1";
         device->program = cc.compileProgram(Helfrich_Native_source(isDouble), defines);
     }
-    for (const char* name : {"triangles_forward", "triangles_forward_summed", "totals_forward", "edges_forward", "vertices_forward",
-                             "triangles_backward", "vertices_backward", "h_find_extent", "h_place", "h_add_forces",
-                             "h_add_sums"})
+    for (const char* name : {"triangles_forward", "triangles_forward_summed", "totals_forward", "edges_forward",
+                             "edges_forward_summed", "vertices_forward", "vertices_forward_summed",
+                             "triangles_backward", "triangles_backward_summed", "h_find_extent", "h_place",
+                             "h_find_extent_and_place", "h_add_forces", "h_add_sums"})
         device->kernels[name] = device->program->createKernel(name);
     cc.addForce(new Vertices(edges, context.getSystem().getNumParticles()));
     cc.getReorderListeners().push_back(new OrderListener(device->hasNewOrder));
@@ -253,19 +257,23 @@ void NativeMembrane::provide(const HelfrichNativePlan& plan) {
     extent->addArg(0);
     for (ArrayInterface* array : {&posq, &correction, device->slots.get(), device->anchors.get(), device->state.get()})
         extent->addArg(*array);
-    ComputeKernel place = device->kernels["h_place"];
+    ComputeKernel place = device->kernels["h_place"], both = device->kernels["h_find_extent_and_place"];
     place->addArg(vertices);
     place->addArg(0);
-    place->addArg(0);
-    for (ArrayInterface* array :
-         {&posq, &correction, device->slots.get(), device->anchors.get(), device->targets.get(), device->state.get(),
-          buffers[frameBuffer].get(), buffers[positionsBuffer].get()})
-        place->addArg(*array);
+    both->addArg(vertices);
+    for (const ComputeKernel& kernel : {place, both}) {
+        kernel->addArg(0);
+        for (ArrayInterface* array :
+             {&posq, &correction, device->slots.get(), device->anchors.get(), device->targets.get(),
+              device->state.get(), buffers[frameBuffer].get(), buffers[positionsBuffer].get()})
+            kernel->addArg(*array);
+    }
     ComputeKernel forces = device->kernels["h_add_forces"];
     forces->addArg(vertices);
     forces->addArg(0);
     forces->addArg(cc.getPaddedNumAtoms());
-    for (ArrayInterface* array : {device->slots.get(), buffers[resultsBuffer].get(), &cc.getLongForceBuffer()})
+    for (ArrayInterface* array : {device->slots.get(), buffers[frameBuffer].get(), buffers[ringsBuffer].get(),
+                                  buffers[cornerForcesBuffer].get(), &cc.getLongForceBuffer()})
         forces->addArg(*array);
     ComputeKernel sums = device->kernels["h_add_sums"];
     sums->addArg(0);
@@ -285,16 +293,22 @@ void NativeMembrane::evaluate(const string& subject, ContextImpl& context, const
         hasLooked = true;
     }
     HelfrichNativePlan plan;
-    check(Helfrich_Native_plan(subject.c_str(), native, core, terms.data(), (int64_t) terms.size(), forces,
-                               derivatives.data(), &plan));
+    check(Helfrich_Native_plan(subject.c_str(), native, core, terms.data(), (int64_t) terms.size(),
+                               wantsSums, forces, derivatives.data(), &plan));
     provide(plan);
     int64_t groups = (plan.numVertices + groupSize - 1) / groupSize;
-    device->kernels["h_find_extent"]->setArg(1, turn);
-    device->run("h_find_extent", groups);
-    device->kernels["h_place"]->setArg(1, turn);
-    device->kernels["h_place"]->setArg(2, plan.unit);
-    device->run("h_place", groups);
-    turn = 1 - turn;
+    if (plan.numVertices <= verticesOfOneGroup) {
+        device->kernels["h_find_extent_and_place"]->setArg(1, plan.unit);
+        int threads = device->cc.getMaxThreadBlockSize() < 256 ? groupSize : 256;
+        device->kernels["h_find_extent_and_place"]->execute(threads, threads);
+    } else {
+        device->kernels["h_find_extent"]->setArg(1, turn);
+        device->run("h_find_extent", groups);
+        device->kernels["h_place"]->setArg(1, turn);
+        device->kernels["h_place"]->setArg(2, plan.unit);
+        device->run("h_place", groups);
+        turn = 1 - turn;
+    }
     for (int64_t i = 0; i < plan.numPasses; i++) {
         HelfrichNativePass pass = Helfrich_Native_pass(native, i);
         device->kernels.at(pass.name)->setArg(0, (int) pass.groups);

@@ -201,7 +201,7 @@ impl GpuEvaluator {
         let mut pass = encoder
             .begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes });
         pass.set_bind_group(0, &self.buffers.group, &[]);
-        for (each, elements) in passes(self.frame.needs, forces, &self.topology) {
+        for (each, elements) in passes(self.frame.needs, true, forces, &self.topology) {
             let groups = groups(elements) as u32;
             pass.set_pipeline(&pipelines[each as usize]);
             pass.dispatch_workgroups(groups.min(GROUPS_ACROSS), groups.div_ceil(GROUPS_ACROSS), 1);

@@ -54,60 +54,65 @@ pub fn items(binding: Binding, topology: &Topology, precision: Precision) -> Opt
     })
 }
 
-/// A pass over the mesh.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Pass {
-    TrianglesForward,
-    TrianglesForwardSummed,
-    TotalsForward,
-    EdgesForward,
-    VerticesForward,
-    TrianglesBackward,
-    VerticesBackward,
-}
-
-impl Pass {
-    /// In their order.
-    pub const ALL: [Self; 7] = [
-        Self::TrianglesForward,
-        Self::TrianglesForwardSummed,
-        Self::TotalsForward,
-        Self::EdgesForward,
-        Self::VerticesForward,
-        Self::TrianglesBackward,
-        Self::VerticesBackward,
-    ];
-
-    /// Its name in the shaders.
-    pub const fn name(self) -> &'static CStr {
-        match self {
-            Self::TrianglesForward => c"triangles_forward",
-            Self::TrianglesForwardSummed => c"triangles_forward_summed",
-            Self::TotalsForward => c"totals_forward",
-            Self::EdgesForward => c"edges_forward",
-            Self::VerticesForward => c"vertices_forward",
-            Self::TrianglesBackward => c"triangles_backward",
-            Self::VerticesBackward => c"vertices_backward",
+macro_rules! passes {
+    ($($name:ident $text:literal,)*) => {
+        /// A pass over the mesh. Those that are "summed" leave energies too.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum Pass {
+            $($name,)*
         }
-    }
+
+        impl Pass {
+            /// All of them.
+            pub const ALL: [Self; [$(Self::$name),*].len()] = [$(Self::$name),*];
+
+            /// Its name in the shaders.
+            pub const fn name(self) -> &'static CStr {
+                match self {
+                    $(Self::$name => $text,)*
+                }
+            }
+        }
+    };
 }
 
-/// The passes of an evaluation in their order, with the number of elements of each.
-pub fn passes(needs: Needs, forces: bool, topology: &Topology) -> SmallVec<[(Pass, usize); 6]> {
+passes! {
+    TrianglesForward c"triangles_forward",
+    TrianglesForwardSummed c"triangles_forward_summed",
+    TotalsForward c"totals_forward",
+    EdgesForward c"edges_forward",
+    EdgesForwardSummed c"edges_forward_summed",
+    VerticesForward c"vertices_forward",
+    VerticesForwardSummed c"vertices_forward_summed",
+    TrianglesBackward c"triangles_backward",
+    TrianglesBackwardSummed c"triangles_backward_summed",
+    VerticesBackward c"vertices_backward",
+}
+
+/// The passes of an evaluation in their order, with the number of elements of each: of energies, of forces, or of both.
+pub fn passes(
+    needs: Needs,
+    energies: bool,
+    forces: bool,
+    topology: &Topology,
+) -> SmallVec<[(Pass, usize); 6]> {
     let (vertices, triangles) = (topology.num_vertices(), topology.triangles.len());
+    let mut passes = SmallVec::new();
+    let mut add = |wanted, silent, summed, elements| {
+        if wanted {
+            passes.push((if energies { summed } else { silent }, elements));
+        }
+    };
     let totals = needs.contains(Needs::TOTALS);
-    let all = [
-        (!totals, Pass::TrianglesForward, triangles),
-        (totals, Pass::TrianglesForwardSummed, triangles),
-        (totals, Pass::TotalsForward, 1),
-        (
-            needs.intersects(Needs::EDGES | Needs::CURVATURES),
-            Pass::EdgesForward,
-            topology.edges.len(),
-        ),
-        (needs.contains(Needs::VERTICES), Pass::VerticesForward, vertices),
-        (forces || needs.contains(Needs::TRIANGLES), Pass::TrianglesBackward, triangles),
-        (forces, Pass::VerticesBackward, vertices),
-    ];
-    all.into_iter().filter(|(wanted, ..)| *wanted).map(|(_, pass, count)| (pass, count)).collect()
+    let (silent, summed) = (Pass::TrianglesForward, Pass::TrianglesForwardSummed);
+    add(true, if totals { summed } else { silent }, if totals { summed } else { silent }, triangles);
+    add(totals, Pass::TotalsForward, Pass::TotalsForward, 1);
+    let edges = needs.intersects(Needs::EDGES | Needs::CURVATURES);
+    add(edges, Pass::EdgesForward, Pass::EdgesForwardSummed, topology.edges.len());
+    let of_vertices = needs.contains(Needs::VERTICES);
+    add(of_vertices, Pass::VerticesForward, Pass::VerticesForwardSummed, vertices);
+    let backward = forces || energies && needs.contains(Needs::TRIANGLES);
+    add(backward, Pass::TrianglesBackward, Pass::TrianglesBackwardSummed, triangles);
+    add(forces, Pass::VerticesBackward, Pass::VerticesBackward, vertices);
+    passes
 }

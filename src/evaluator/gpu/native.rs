@@ -7,7 +7,7 @@
 use super::frame::{Frame, groups};
 use super::interface::Binding;
 use super::lattice::{Scale, connected_parts};
-use super::layout::{connectivity, items, passes};
+use super::layout::{Pass, connectivity, items, passes};
 use super::{Bytes, Precision, Sink, shaders};
 use crate::error::{Error, Result};
 use crate::mesh::{Topology, Triangulation};
@@ -135,6 +135,7 @@ impl Native {
         mesh: &Triangulation,
         generation: u64,
         terms: &[Term],
+        energies: bool,
         forces: bool,
         derivatives: &[[i32; MAX_PARAMETERS]],
     ) -> Result<()> {
@@ -181,8 +182,10 @@ impl Native {
         }
         plan.passes.clear();
         plan.passes.extend(
-            passes(frame.needs, forces, topology)
+            passes(frame.needs, energies, forces, topology)
                 .into_iter()
+                // The platform's kernel takes forces from corners to OpenMM's array.
+                .filter(|(pass, _)| *pass != Pass::VerticesBackward)
                 .map(|(pass, elements)| (pass.name(), groups(elements))),
         );
         let targets = terms.iter().map(target).collect();

@@ -133,7 +133,7 @@ int Helfrich_Native_look(const char* subject, HelfrichNative* native, HelfrichMe
                          const HelfrichTerm* terms, int64_t numTerms, int64_t numParticles, const double* positions);
 /** For each scalar of each term, `derivatives` has the number of the derivative that it adds to, or -1. */
 int Helfrich_Native_plan(const char* subject, HelfrichNative* native, const HelfrichMembrane* membrane,
-                         const HelfrichTerm* terms, int64_t numTerms, int forces, const int* derivatives,
+                         const HelfrichTerm* terms, int64_t numTerms, int energies, int forces, const int* derivatives,
                          HelfrichNativePlan* plan);
 HelfrichNativeBuffer Helfrich_Native_buffer(const HelfrichNative* native, int64_t number);
 HelfrichNativePass Helfrich_Native_pass(const HelfrichNative* native, int64_t number);
