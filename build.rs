@@ -6,18 +6,14 @@
 #[path = "src/potentials/codes.rs"]
 #[allow(dead_code, reason = "the crate uses the rest")]
 mod codes;
-#[cfg(feature = "gpu")]
 #[path = "shaders/compose.rs"]
 mod compose;
-#[cfg(feature = "gpu")]
 #[path = "shaders/constants.rs"]
 mod constants;
-#[cfg(feature = "gpu")]
 #[path = "shaders/dialect.rs"]
 mod dialect;
 #[path = "wrappers/codes.rs"]
 mod headers;
-#[cfg(feature = "gpu")]
 #[path = "src/evaluator/gpu/interface.rs"]
 #[allow(dead_code, reason = "the crate uses the rest")]
 mod interface;
@@ -30,7 +26,6 @@ mod records;
 
 /// Where the included files look for them.
 mod potentials {
-    #[allow(unused_imports, reason = "without a GPU nothing needs Needs")]
     pub use crate::codes::{MAX_PARAMETERS, Needs};
 }
 
@@ -49,7 +44,6 @@ fn main() {
     {
         println!("cargo:rerun-if-changed=src/{shared}");
     }
-    #[cfg(feature = "gpu")]
     if let Err(message) = compose::write_modules(Path::new("shaders"), &out_dir()) {
         fail(&message);
     }

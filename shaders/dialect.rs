@@ -7,14 +7,17 @@
 
 use naga::valid::{FunctionInfo, ModuleInfo};
 use naga::{
-    AddressSpace, ArraySize, AtomicFunction, BinaryOperator, Block, BuiltIn, Expression, Function, GlobalVariable,
-    Handle, Literal, LocalVariable, MathFunction, Module, RelationalFunction, ScalarKind, Statement, SwitchValue, Type,
-    TypeInner, UnaryOperator,
+    AddressSpace, ArraySize, AtomicFunction, BinaryOperator, Block, BuiltIn, Expression, Function,
+    GlobalVariable, Handle, Literal, LocalVariable, MathFunction, Module, RelationalFunction,
+    ScalarKind, Statement, SwitchValue, Type, TypeInner, UnaryOperator,
 };
 use std::collections::HashSet;
 use std::fmt::Write;
 
 type Text = Result<String, String>;
+
+/// An expression for each component of a vector.
+type OfComponent<'a> = dyn Fn(u8) -> Text + 'a;
 
 /// Write all types, functions and entry points of a module.
 pub fn write(module: &Module, info: &ModuleInfo) -> Text {
@@ -109,7 +112,8 @@ fn definition(module: &Module, handle: Handle<Type>, inner: &TypeInner, align: u
         }
         _ => return Ok(String::new()),
     };
-    let _ = writeln!(text, "DEVICE {name} h_zero_{name}(void) {{ {name} zero = {{0}}; return zero; }}");
+    let _ =
+        writeln!(text, "DEVICE {name} h_zero_{name}(void) {{ {name} zero = {{0}}; return zero; }}");
     Ok(text)
 }
 
@@ -170,12 +174,13 @@ impl Writer<'_> {
                 parameters.push(self.parameter(handle)?.replacen("* ", "* RESTRICT ", 1));
             }
         }
-        let mut text =
-            format!("KERNEL void {name}(int h_groups, {}) {{\n", parameters.join(", "));
+        let mut text = format!("KERNEL void {name}(int h_groups, {}) {{\n", parameters.join(", "));
         let mut arguments = Vec::new();
         for argument in &self.function.arguments {
             match argument.binding {
-                Some(naga::Binding::BuiltIn(BuiltIn::WorkGroupId)) => arguments.push("h_id".to_owned()),
+                Some(naga::Binding::BuiltIn(BuiltIn::WorkGroupId)) => {
+                    arguments.push("h_id".to_owned())
+                }
                 Some(naga::Binding::BuiltIn(BuiltIn::LocalInvocationIndex)) => {
                     arguments.push("LOCAL_ID".to_owned());
                 }
@@ -190,7 +195,9 @@ impl Writer<'_> {
             }
             let item = self.item_type(handle)?;
             let ty = self.module.global_variables[handle].ty;
-            if let TypeInner::Array { size: ArraySize::Constant(size), .. } = self.module.types[ty].inner {
+            if let TypeInner::Array { size: ArraySize::Constant(size), .. } =
+                self.module.types[ty].inner
+            {
                 let _ = writeln!(text, "    LOCAL {item} {variable}[{size}];");
                 arguments.push(variable);
             } else {
@@ -274,7 +281,12 @@ impl Writer<'_> {
         block.iter().try_for_each(|statement| self.statement(text, statement, depth))
     }
 
-    fn statement(&self, text: &mut String, statement: &Statement, depth: usize) -> Result<(), String> {
+    fn statement(
+        &self,
+        text: &mut String,
+        statement: &Statement,
+        depth: usize,
+    ) -> Result<(), String> {
         let indent = "    ".repeat(depth);
         let mut line = |code: String| {
             let _ = writeln!(text, "{indent}{code}");
@@ -335,7 +347,9 @@ impl Writer<'_> {
             Statement::Break => line("break;".to_owned()),
             Statement::Continue => line("continue;".to_owned()),
             Statement::Return { value: None } => line("return;".to_owned()),
-            Statement::Return { value: Some(value) } => line(format!("return {};", self.value(*value)?)),
+            Statement::Return { value: Some(value) } => {
+                line(format!("return {};", self.value(*value)?))
+            }
             Statement::ControlBarrier(_) => line("SYNC_THREADS".to_owned()),
             Statement::Store { pointer, value } => {
                 line(format!("{} = {};", self.place(*pointer)?, self.value(*value)?));
@@ -354,10 +368,16 @@ impl Writer<'_> {
                         self.value(*argument)?
                     });
                 }
-                values.extend(self.globals(&self.all[*function]).into_iter().map(|g| self.global_name(g)));
+                values.extend(
+                    self.globals(&self.all[*function]).into_iter().map(|g| self.global_name(g)),
+                );
                 let call = format!("{}({});", name_of(&callee.name), values.join(", "));
                 match result {
-                    Some(result) => line(format!("const {} h_e{} = {call}", self.type_of(*result)?, result.index())),
+                    Some(result) => line(format!(
+                        "const {} h_e{} = {call}",
+                        self.type_of(*result)?,
+                        result.index()
+                    )),
                     None => line(call),
                 }
             }
@@ -376,7 +396,8 @@ impl Writer<'_> {
     ) -> Result<(), String> {
         self.block(text, continuing, depth)?;
         if let Some(condition) = break_if {
-            let _ = writeln!(text, "{}if ({}) break;", "    ".repeat(depth), self.value(condition)?);
+            let _ =
+                writeln!(text, "{}if ({}) break;", "    ".repeat(depth), self.value(condition)?);
         }
         Ok(())
     }
@@ -441,7 +462,9 @@ impl Writer<'_> {
             Expression::Access { base, index } => {
                 format!("{}[{}]", self.items(*base)?, self.value(*index)?)
             }
-            Expression::AccessIndex { base, index } => self.member(self.place(*base)?, *base, *index)?,
+            Expression::AccessIndex { base, index } => {
+                self.member(self.place(*base)?, *base, *index)?
+            }
             other => return Err(format!("OpenMM's dialect has no pointer {other:?}")),
         })
     }
@@ -495,7 +518,7 @@ impl Writer<'_> {
     /// An expression: one piece, or one for each component.
     fn pieces(&self, handle: Handle<Expression>) -> Result<Vec<Piece>, String> {
         let size = self.components(handle);
-        let each = |one: &dyn Fn(u8) -> Text| -> Result<Vec<Piece>, String> {
+        let each = |one: &OfComponent| -> Result<Vec<Piece>, String> {
             match size {
                 None => Ok(vec![Piece::Whole(one(0)?)]),
                 Some(size) => (0..size).map(|k| one(k).map(Piece::Part)).collect(),
@@ -548,7 +571,8 @@ impl Writer<'_> {
                 }
                 each(&|k| {
                     let condition = self.component(*condition, k)?;
-                    let (accept, reject) = (self.component(*accept, k)?, self.component(*reject, k)?);
+                    let (accept, reject) =
+                        (self.component(*accept, k)?, self.component(*reject, k)?);
                     Ok(format!("{condition} ? {accept} : {reject}"))
                 })
             }
@@ -559,7 +583,8 @@ impl Writer<'_> {
                     other => return Err(format!("OpenMM's dialect has no {other:?}")),
                 };
                 let count = self.components(*argument).unwrap_or(1);
-                let parts: Result<Vec<_>, _> = (0..count).map(|k| self.component(*argument, k)).collect();
+                let parts: Result<Vec<_>, _> =
+                    (0..count).map(|k| self.component(*argument, k)).collect();
                 whole(parts?.join(join))
             }
             Expression::As { expr, kind, convert } => each(&|k| {
@@ -567,11 +592,17 @@ impl Writer<'_> {
                 let from = self.inner(*expr).scalar().ok_or("a cast of what is no number")?;
                 match (convert, from.kind, kind) {
                     (Some(width), _, _) => Ok(format!("({}) ({value})", scalar(*kind, *width)?)),
-                    (None, ScalarKind::Float, ScalarKind::Uint) => Ok(format!("H_AS_UINT({value})")),
-                    (None, ScalarKind::Uint, ScalarKind::Float) => Ok(format!("H_AS_FLOAT({value})")),
-                    (None, ScalarKind::Sint | ScalarKind::Uint, ScalarKind::Sint | ScalarKind::Uint) => {
-                        Ok(format!("({}) ({value})", scalar(*kind, from.width)?))
+                    (None, ScalarKind::Float, ScalarKind::Uint) => {
+                        Ok(format!("H_AS_UINT({value})"))
                     }
+                    (None, ScalarKind::Uint, ScalarKind::Float) => {
+                        Ok(format!("H_AS_FLOAT({value})"))
+                    }
+                    (
+                        None,
+                        ScalarKind::Sint | ScalarKind::Uint,
+                        ScalarKind::Sint | ScalarKind::Uint,
+                    ) => Ok(format!("({}) ({value})", scalar(*kind, from.width)?)),
                     _ => Err(format!("OpenMM's dialect does not read {from:?} as {kind:?}")),
                 }
             }),
@@ -585,7 +616,7 @@ impl Writer<'_> {
         fun: MathFunction,
         arg: Handle<Expression>,
         arg1: Option<Handle<Expression>>,
-        each: &dyn Fn(&dyn Fn(u8) -> Text) -> Result<Vec<Piece>, String>,
+        each: &dyn Fn(&OfComponent) -> Result<Vec<Piece>, String>,
     ) -> Result<Vec<Piece>, String> {
         let kind = self.inner(arg).scalar().ok_or("a function of what is no number")?;
         let is_float = kind.kind == ScalarKind::Float;
@@ -605,7 +636,9 @@ impl Writer<'_> {
                 let second = other()?;
                 let count = self.components(arg).unwrap_or(1);
                 let terms: Result<Vec<_>, String> = (0..count)
-                    .map(|k| Ok(format!("{}*{}", self.component(arg, k)?, self.component(second, k)?)))
+                    .map(|k| {
+                        Ok(format!("{}*{}", self.component(arg, k)?, self.component(second, k)?))
+                    })
                     .collect();
                 Ok(vec![Piece::Whole(terms?.join(" + "))])
             }

@@ -170,12 +170,23 @@ mod tests {
 
     #[test]
     fn choices_are_read_as_they_are_written() {
-        for text in ["auto", "cpu", "gpu", "gpu:single", "gpu:double@2", "auto:double", "gpu@0", "native"] {
+        for text in
+            ["auto", "cpu", "gpu", "gpu:single", "gpu:double@2", "auto:double", "gpu@0", "native"]
+        {
             assert_eq!(text.parse::<Choice>().unwrap().to_string(), text);
         }
-        for text in
-            ["", "GPU", "gpu:half", "gpu:", "gpu@", "gpu@-1", "cpu:double", "cpu@0", "gpu@1:single", "native:single"]
-        {
+        for text in [
+            "",
+            "GPU",
+            "gpu:half",
+            "gpu:",
+            "gpu@",
+            "gpu@-1",
+            "cpu:double",
+            "cpu@0",
+            "gpu@1:single",
+            "native:single",
+        ] {
             let error = text.parse::<Choice>().unwrap_err();
             assert_eq!(error, Error::UnknownBackend { name: text.to_owned() });
         }

@@ -10,7 +10,6 @@ mod dynamics;
 mod membrane;
 mod mesh;
 mod moves;
-#[cfg(feature = "gpu")]
 mod native;
 mod plugin;
 mod potentials;
@@ -19,7 +18,6 @@ mod records;
 pub use membrane::*;
 pub use mesh::*;
 pub use moves::*;
-#[cfg(feature = "gpu")]
 pub use native::*;
 pub use plugin::Helfrich_register;
 pub use plugin::*;

@@ -154,7 +154,7 @@ impl Membrane {
     pub fn look(&mut self, terms: &[Term], at: Configuration, forces: &mut [f64]) -> Result<()> {
         let mut placed = self.surface.place(at)?;
         placed.look_for_outside(terms)?;
-        placed.evaluate_on_processor(terms, forces)
+        placed.look(terms, forces)
     }
 
     /// ∂E/∂ε of some terms for a homogeneous strain ε of all positions and of the periodic box, kJ/mol: where there is

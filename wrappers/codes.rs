@@ -4,7 +4,9 @@
 
 use crate::codes::{Attraction, Contribution, Form, MAX_PARAMETERS, Scheme};
 use crate::flip_records::{FlipRules, FlipState};
-use crate::records::{FollowerInput, ParameterInfo, ParticleArrays, TermInput};
+use crate::records::{
+    FollowerInput, NativeBuffer, NativePass, NativePlan, ParameterInfo, ParticleArrays, TermInput,
+};
 use std::ffi::CStr;
 use std::mem::offset_of;
 
@@ -64,6 +66,17 @@ pub fn comparison() -> String {
             FollowerInput,
             "HelfrichFollower",
             membrane first_triangle terms num_terms
+        );
+        text += &structure!(
+            NativeBuffer,
+            "HelfrichNativeBuffer",
+            item_size items data data_size version
+        );
+        text += &structure!(NativePass, "HelfrichNativePass", name groups);
+        text += &structure!(
+            NativePlan,
+            "HelfrichNativePlan",
+            num_buffers num_passes num_targets num_runs targets runs version unit num_vertices particles anchors
         );
     }
     text

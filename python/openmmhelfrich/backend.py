@@ -69,10 +69,15 @@ def set_backend(backend: str, *, precision: str = "auto", adapter: int | None = 
 
         ``"gpu"``: a GPU. That there is none, or that it fails, is an error.
 
-        ``"auto"``, the default: a GPU for meshes of 20 000 vertices and more if it is faster than
-        the processor, which is measured once and kept in the user's cache folder. Drivers that
-        compute on the processor are never taken. If the GPU fails, the processor takes over, which
-        is said once on the standard error.
+        ``"native"``: OpenMM's platform OpenCL, CUDA or HIP itself, in its own precision: positions
+        and forces stay on its device. A Context on another platform is an error. Forces of borders
+        and contacts, and those with periodic boundary conditions, are computed on the processor.
+
+        ``"auto"``, the default: on OpenMM's GPU platforms as ``"native"``, if the kernels can be
+        compiled. Elsewhere a GPU for meshes of 20 000 vertices and more if it is faster than the
+        processor, which is measured once and kept in the user's cache folder. Drivers that compute
+        on the processor are never taken. If the GPU fails, the processor takes over, which is said
+        once on the standard error.
     precision : str
         ``"single"``, ``"double"``, or ``"auto"``, which is single. In single precision forces have
         errors of 1e-6 of the largest one, also those of area and volume near their targets,
@@ -100,7 +105,7 @@ def set_backend(backend: str, *, precision: str = "auto", adapter: int | None = 
     if adapter is not None and (isinstance(adapter, bool) or not isinstance(adapter, int)):
         raise ValueError(f"set_backend: adapter must be an index, got {adapter!r}")
     if backend in ("cpu", "native") and (precision != "auto" or adapter is not None):
-        raise ValueError(f'set_backend: the backend "{backend}" has neither precisions nor adapters')
+        raise ValueError(f'set_backend: the backend "{backend}" has no precisions or adapters')
     choice = backend
     if precision != "auto":
         choice += f":{precision}"

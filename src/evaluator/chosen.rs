@@ -100,9 +100,8 @@ impl ChosenEvaluator {
         }
         backend::check(choice)?;
         self.choice = Some(choice);
-        self.settled_on_cpu =
-            matches!(choice.kind, Kind::Cpu | Kind::Native)
-                || choice.kind == Kind::Auto && !Self::is_worth_a_look(mesh);
+        self.settled_on_cpu = matches!(choice.kind, Kind::Cpu | Kind::Native)
+            || choice.kind == Kind::Auto && !Self::is_worth_a_look(mesh);
         #[cfg(feature = "gpu")]
         {
             self.gpu = None;
@@ -150,11 +149,22 @@ impl ChosenEvaluator {
         self.on_gpu(present, terms, positions, contributions, forces)
     }
 
-    /// Evaluate terms on the processor, whatever has been chosen.
+    /// See what the processor says of some positions, whatever has been chosen.
     ///
     /// # Errors
     /// Those of [`CpuEvaluator::evaluate`].
-    pub fn on_cpu(
+    pub fn look(
+        &mut self,
+        present: Present,
+        terms: &[Term],
+        positions: &[f64],
+        forces: &mut [f64],
+    ) -> Result<()> {
+        let terms: SmallVec<[&Term; 8]> = terms.iter().collect();
+        self.cpu(present).evaluate(&terms, positions, &mut [], Some(forces))
+    }
+
+    fn on_cpu(
         &mut self,
         present: Present,
         terms: &[Term],

@@ -4,7 +4,7 @@ mod borders;
 mod checks;
 mod chosen;
 mod cpu;
-#[cfg(feature = "gpu")]
+#[cfg_attr(not(feature = "gpu"), allow(dead_code, reason = "wgpu needs the rest"))]
 pub mod gpu;
 mod passes;
 mod reference;

@@ -1,48 +1,12 @@
 //! The C interface to [`crate::evaluator::gpu::native`]: evaluations by OpenMM's own GPU platforms.
 
 use super::membrane::read_terms;
-use super::{TermInput, guarded, slice, text};
+use super::{NativeBuffer, NativePass, NativePlan, TermInput, guarded, slice, text};
 use crate::evaluator::gpu::Precision;
 use crate::evaluator::gpu::native::{self, Native};
 use crate::membrane::{Configuration, Membrane};
 use crate::potentials::MAX_PARAMETERS;
 use std::ffi::{c_char, c_int};
-
-/// What C++ reads of a buffer.
-#[repr(C)]
-pub struct NativeBuffer {
-    item_size: i64,
-    items: i64,
-    /// Null if the host has nothing for it.
-    data: *const u8,
-    data_size: i64,
-    version: u64,
-}
-
-/// What C++ reads of a pass.
-#[repr(C)]
-pub struct NativePass {
-    name: *const c_char,
-    groups: i64,
-}
-
-/// What C++ reads of a plan; it holds until the next one is made.
-#[repr(C)]
-pub struct NativePlan {
-    num_buffers: i64,
-    num_passes: i64,
-    num_targets: i64,
-    num_runs: i64,
-    targets: *const [c_int; 4],
-    runs: *const [c_int; 4],
-    version: u64,
-    /// The unit of length as a power of two, nm.
-    unit: c_int,
-    num_vertices: i64,
-    /// The particle of each vertex, and the first vertex of its connected part.
-    particles: *const u32,
-    anchors: *const u32,
-}
 
 fn precision(is_double: c_int) -> Precision {
     if is_double != 0 { Precision::Double } else { Precision::Single }
@@ -158,7 +122,10 @@ pub unsafe extern "C" fn Helfrich_Native_plan(
 /// # Safety
 /// `native` must be alive and `number` one of its buffers.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn Helfrich_Native_buffer(native: *const Native, number: i64) -> NativeBuffer {
+pub unsafe extern "C" fn Helfrich_Native_buffer(
+    native: *const Native,
+    number: i64,
+) -> NativeBuffer {
     let buffer = &unsafe { &*native }.last_plan().buffers[number as usize];
     NativeBuffer {
         item_size: buffer.item as i64,

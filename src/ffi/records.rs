@@ -50,3 +50,39 @@ pub struct ParticleArrays {
     pub(super) velocities: *mut f64,
     pub(super) forces: *const f64,
 }
+
+/// What C++ reads of a buffer.
+#[repr(C)]
+pub struct NativeBuffer {
+    pub(super) item_size: i64,
+    pub(super) items: i64,
+    /// Null if the host has nothing for it.
+    pub(super) data: *const u8,
+    pub(super) data_size: i64,
+    pub(super) version: u64,
+}
+
+/// What C++ reads of a pass.
+#[repr(C)]
+pub struct NativePass {
+    pub(super) name: *const c_char,
+    pub(super) groups: i64,
+}
+
+/// What C++ reads of a plan; it holds until the next one is made.
+#[repr(C)]
+pub struct NativePlan {
+    pub(super) num_buffers: i64,
+    pub(super) num_passes: i64,
+    pub(super) num_targets: i64,
+    pub(super) num_runs: i64,
+    pub(super) targets: *const [c_int; 4],
+    pub(super) runs: *const [c_int; 4],
+    pub(super) version: u64,
+    /// The unit of length as a power of two, nm.
+    pub(super) unit: c_int,
+    pub(super) num_vertices: i64,
+    /// The particle of each vertex, and the first vertex of its connected part.
+    pub(super) particles: *const u32,
+    pub(super) anchors: *const u32,
+}

@@ -113,12 +113,12 @@ impl Placed<'_> {
         Ok(())
     }
 
-    /// Evaluate terms of the surface itself on the processor. Forces are added.
+    /// See what the processor says of terms of the surface itself. Forces are added.
     ///
     /// # Errors
-    /// Those of [`ChosenEvaluator::on_cpu`].
-    pub fn evaluate_on_processor(&mut self, terms: &[Term], forces: &mut [f64]) -> Result<()> {
-        self.evaluator.on_cpu(self.present, terms, self.positions, &mut [], Some(forces))
+    /// Those of [`ChosenEvaluator::look`].
+    pub fn look(&mut self, terms: &[Term], forces: &mut [f64]) -> Result<()> {
+        self.evaluator.look(self.present, terms, self.positions, forces)
     }
 
     /// Note what all terms but those of contacts find of every element. Forces are added.

@@ -6,6 +6,7 @@ import os
 from dataclasses import dataclass, field
 from functools import cache
 
+import numpy as np
 import openmm as mm
 import openmmhelfrich as helfrich
 import pytest
@@ -24,6 +25,17 @@ class Target:
 
     def __str__(self) -> str:
         return self.name
+
+    @property
+    def counter(self) -> str:
+        """What `backend.evaluations` calls evaluations on it."""
+        return self.backend.partition(":")[0] or "cpu"
+
+    def rounded(self, positions: np.ndarray) -> np.ndarray:
+        """Positions as the platform has them."""
+        if self.platform == "OpenCL" and self.properties["Precision"] == "single":
+            return positions.astype(np.float32).astype(np.float64)
+        return positions
 
     def context(self, system: mm.System, integrator: mm.Integrator | None = None) -> mm.Context:
         """A Context on this platform; skips the test, or fails it, if there is none."""
@@ -49,6 +61,15 @@ ON_GPU = [
     Target("GPU-single", "Reference", 1e-4, backend="gpu:single"),
     Target("GPU-double", "Reference", 1e-10, backend="gpu:double"),
 ]
+
+
+# PoCL computes on the processor, which is only taken where it is asked for.
+NATIVE = [
+    Target("native-single", "OpenCL", 1e-5, {"Precision": "single"}, "native"),
+    Target("native-mixed", "OpenCL", 1e-5, {"Precision": "mixed"}, "native"),
+    Target("native-double", "OpenCL", 1e-9, {"Precision": "double"}, "native"),
+]
+ON_DEVICE = ON_GPU + NATIVE
 
 
 def require_gpu(double: bool = False) -> None:

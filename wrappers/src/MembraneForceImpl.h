@@ -12,9 +12,9 @@ namespace HelfrichPlugin {
 /**
  * The one implementation of all membrane forces.
  *
- * On Reference, CPU and what derives from them, it reads and writes OpenMM's arrays in place. GPU platforms evaluate most
- * forces themselves; for all others, OpenMM's support for forces in plain C++ carries positions to the processor and
- * forces back.
+ * On Reference, CPU and what derives from them, it reads and writes OpenMM's arrays in place. GPU platforms evaluate
+ * most forces themselves; for all others, OpenMM's support for forces in plain C++ carries positions to the processor
+ * and forces back.
  */
 class MembraneForceImpl : public OpenMM::CustomCPPForceImpl, public UpdatableImpl, public ConnectivityImpl {
 public:

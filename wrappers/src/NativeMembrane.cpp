@@ -10,7 +10,9 @@
 #include <openmm/opencl/OpenCLPlatform.h>
 
 #include <algorithm>
+#include <iostream>
 #include <map>
+#include <mutex>
 
 using namespace HelfrichPlugin;
 using namespace OpenMM;
@@ -147,6 +149,10 @@ struct NativeMembrane::Device {
     }
 };
 
+bool NativeMembrane::isOnProcessor(ContextImpl& context) {
+    return findDevice(context)->getIsCPU();
+}
+
 string NativeMembrane::whyNot(ContextImpl& context) {
     const string& name = context.getPlatform().getName();
     if (name != "OpenCL" && name != "CUDA" && name != "HIP")
@@ -173,10 +179,10 @@ NativeMembrane::NativeMembrane(ContextImpl& context, HelfrichMembrane* core, con
             defines["HELFRICH_MIXED"] = "1";
         device->program = cc.compileProgram(Helfrich_Native_source(isDouble), defines);
     }
-    for (const char* name : {"triangles_forward", "triangles_forward_summed", "totals_forward", "edges_forward",
-                             "edges_forward_summed", "vertices_forward", "vertices_forward_summed",
-                             "triangles_backward", "triangles_backward_summed", "h_find_extent", "h_place",
-                             "h_find_extent_and_place", "h_add_forces", "h_add_sums"})
+    for (const char* name :
+         {"triangles_forward", "triangles_forward_summed", "totals_forward", "edges_forward", "edges_forward_summed",
+          "vertices_forward", "vertices_forward_summed", "triangles_backward", "triangles_backward_summed",
+          "h_find_extent", "h_place", "h_find_extent_and_place", "h_add_forces", "h_add_sums"})
         device->kernels[name] = device->program->createKernel(name);
     cc.addForce(new Vertices(edges, context.getSystem().getNumParticles()));
     cc.getReorderListeners().push_back(new OrderListener(device->hasNewOrder));
@@ -280,8 +286,8 @@ void NativeMembrane::provide(const HelfrichNativePlan& plan) {
     sums->addArg(0);
     ArrayInterface& derivatives =
         cc.getEnergyParamDerivNames().empty() ? cc.getEnergyBuffer() : cc.getEnergyParamDerivBuffer();
-    for (ArrayInterface* array : {device->runs.get(), buffers[resultsBuffer].get(), &cc.getEnergyBuffer(),
-                                  &derivatives, buffers[thinBuffer].get(), device->state.get()})
+    for (ArrayInterface* array : {device->runs.get(), buffers[resultsBuffer].get(), &cc.getEnergyBuffer(), &derivatives,
+                                  buffers[thinBuffer].get(), device->state.get()})
         sums->addArg(*array);
 }
 
@@ -293,8 +299,8 @@ void NativeMembrane::evaluate(const string& subject, ContextImpl& context, const
         hasLooked = true;
     }
     HelfrichNativePlan plan;
-    check(Helfrich_Native_plan(subject.c_str(), native, core, terms.data(), (int64_t) terms.size(),
-                               wantsSums, forces, derivatives.data(), &plan));
+    check(Helfrich_Native_plan(subject.c_str(), native, core, terms.data(), (int64_t) terms.size(), wantsSums, forces,
+                               derivatives.data(), &plan));
     provide(plan);
     int64_t groups = (plan.numVertices + groupSize - 1) / groupSize;
     if (plan.numVertices <= verticesOfOneGroup) {
@@ -344,4 +350,11 @@ void NativeMembrane::checkFaults(const string& subject, ContextImpl& context, co
                               "membrane had no size or one beyond all others; use a smaller time step");
     if (faults & 2)
         throw OpenMMException(subject + ": a target area or volume is too large for the membrane; check its unit");
+    static std::once_flag said;
+    std::call_once(said, [&] {
+        std::cerr
+            << "openmm-helfrich: the height of a triangle is below a thousandth of its longest side, of which single "
+               "precision misses digits (2e-4 of the largest force at 1e-4 of the side); choose the Precision "
+               "\"double\", or the backend \"cpu\"\n";
+    });
 }

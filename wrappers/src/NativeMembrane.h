@@ -15,12 +15,15 @@ namespace HelfrichPlugin {
  * A membrane that OpenMM's platform OpenCL, CUDA or HIP evaluates itself: positions and forces stay on the device.
  *
  * Of these platforms only virtual functions are called, so that neither their libraries nor their makers' headers are
- * needed to build this, and one library serves all of them. What is computed, Rust says (`src/evaluator/gpu/native.rs`).
+ * needed to build this, and one library serves all of them. What is computed, Rust says
+ * (`src/evaluator/gpu/native.rs`).
  */
 class NativeMembrane {
 public:
     /** Why a Context evaluates no membranes itself, or an empty text. */
     static std::string whyNot(OpenMM::ContextImpl& context);
+    /** Whether the device of a Context, for which whyNot() is empty, is the processor. */
+    static bool isOnProcessor(OpenMM::ContextImpl& context);
     /**
      * Compile the kernels.
      *

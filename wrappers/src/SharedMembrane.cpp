@@ -215,6 +215,9 @@ bool SharedMembrane::startNative(const MembraneForce& force, ContextImpl& contex
             throw OpenMMException(force.getTypeName() + ": the backend \"native\" cannot be had here: " + reason);
         return false;
     }
+    // An OpenCL driver that computes on the processor is slower there than our own code.
+    if (!isMust && NativeMembrane::isOnProcessor(context))
+        return false;
     // Borders, contacts and periodic surfaces are for the processor, whatever evaluates the rest.
     if (force.usesPeriodicBoundaryConditions() || !Helfrich_Native_canEvaluate(&term))
         return false;

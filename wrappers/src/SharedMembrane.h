@@ -61,7 +61,8 @@ public:
     /** Add what flips edges, of which there can be one. */
     void join(MonteCarloBondFlipImpl* mover, OpenMM::ContextImpl& context);
     void leave(MonteCarloBondFlipImpl* mover, OpenMM::ContextImpl& context);
-    /** Whether a member is the first whose force group is among those asked for, of those that are evaluated like it. */
+    /** Whether a member is the first whose force group is among those asked for, of those that are evaluated like it.
+     */
     bool isLeader(const MembraneForceImpl& member, int groups) const;
     /**
      * Let the platform evaluate a term of a force that joins, if it can and if that is wanted.

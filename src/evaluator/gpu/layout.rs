@@ -30,7 +30,11 @@ pub fn connectivity(topology: &Topology) -> [(Binding, Vec<u32>); 4] {
 }
 
 /// How many items a buffer has that depends on the mesh only, and what asks for it; `None` for all others.
-pub fn items(binding: Binding, topology: &Topology, precision: Precision) -> Option<(usize, Needs)> {
+pub fn items(
+    binding: Binding,
+    topology: &Topology,
+    precision: Precision,
+) -> Option<(usize, Needs)> {
     let (v, e) = (topology.num_vertices(), topology.edges.len());
     let t = topology.triangles.len();
     let always = Needs::empty();
@@ -104,8 +108,8 @@ pub fn passes(
         }
     };
     let totals = needs.contains(Needs::TOTALS);
-    let (silent, summed) = (Pass::TrianglesForward, Pass::TrianglesForwardSummed);
-    add(true, if totals { summed } else { silent }, if totals { summed } else { silent }, triangles);
+    let first = if totals { Pass::TrianglesForwardSummed } else { Pass::TrianglesForward };
+    add(true, first, first, triangles);
     add(totals, Pass::TotalsForward, Pass::TotalsForward, 1);
     let edges = needs.intersects(Needs::EDGES | Needs::CURVATURES);
     add(edges, Pass::EdgesForward, Pass::EdgesForwardSummed, topology.edges.len());

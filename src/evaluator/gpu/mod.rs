@@ -6,11 +6,17 @@
 //! `lattice.rs` and `frame.rs` bring positions and terms into the shaders' form; `buffers.rs` holds what a mesh
 //! needs on the device, and `evaluator.rs` runs the passes.
 
+#[cfg(feature = "gpu")]
 pub mod adapters;
+#[cfg(feature = "gpu")]
 mod buffers;
+#[cfg(feature = "gpu")]
 pub mod calibration;
+#[cfg(feature = "gpu")]
 pub mod device;
+#[cfg(feature = "gpu")]
 mod evaluator;
+#[cfg(feature = "gpu")]
 pub mod faults;
 mod frame;
 #[allow(dead_code, reason = "build.rs uses the rest")]
@@ -19,6 +25,7 @@ mod lattice;
 mod layout;
 pub mod native;
 
+#[cfg(feature = "gpu")]
 pub use evaluator::{GpuEvaluator, Timings};
 use interface::Sink;
 

@@ -225,7 +225,8 @@ fn target(term: &Term) -> [i32; 4] {
     if !term.potential.needs(term).contains(Needs::TOTALS) {
         return [0; 4];
     }
-    let (factor, power) = match term.potential.parameters().get(1).map(|parameter| parameter.length) {
+    let (factor, power) = match term.potential.parameters().get(1).map(|parameter| parameter.length)
+    {
         Some(2) => (2.0, 2),
         Some(3) => (6.0, 3),
         _ => return [0; 4],

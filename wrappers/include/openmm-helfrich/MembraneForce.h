@@ -111,7 +111,8 @@ public:
      * on the same triangles of one Context are computed together, so those of them that have a choice of
      * their own must have the same one; the others follow.
      *
-     * @param backend  "cpu"; "gpu", or with a precision "gpu:single" or "gpu:double"; "auto", which takes the
+     * @param backend  "cpu"; "native", OpenMM's platform OpenCL, CUDA or HIP itself; "gpu", or with a precision
+     *                 "gpu:single" or "gpu:double"; "auto", which is native on these platforms and elsewhere takes the
      *                 GPU for large meshes if it is faster and the processor if the GPU fails; or empty, the
      *                 default, for what has been chosen for the whole process. "gpu@1" names an adapter. A surface
      *                 that spans a periodic box is computed on the processor in any case.

@@ -1,0 +1,332 @@
+"""Membranes that OpenMM's GPU platforms evaluate themselves, on PoCL.
+
+`test_gpu.py` has the rows of the table of cases; here is what only these platforms have.
+"""
+
+from __future__ import annotations
+
+import copy
+import os
+import subprocess
+import sys
+import textwrap
+
+import numpy as np
+import openmm as mm
+import openmmhelfrich as helfrich
+import pytest
+from meshes import membrane
+from openmm import unit
+from platforms import NATIVE, ON_OPENCL, REFERENCE, Target
+from running import Running, plain
+
+SINGLE, MIXED, DOUBLE = NATIVE
+
+
+def evaluations() -> dict[str, int]:
+    return helfrich.backend.evaluations()
+
+
+def vesicle(num_vertices: int = 252) -> tuple[helfrich.Mesh, list[mm.Force]]:
+    """A vesicle with one force for each kind of element."""
+    mesh = helfrich.Mesh.random_sphere(num_vertices, radius=100.0, seed=1)
+    heights = float(np.sqrt(mesh.area / len(mesh.triangles)))
+    return mesh, [
+        helfrich.BendingForce(mesh, 50),
+        helfrich.SurfaceAreaForce(mesh, 10, mesh.area),
+        helfrich.EnclosedVolumeForce(mesh, 1, 0.9 * mesh.volume),
+        helfrich.TriangleHeightForce(mesh, 0.4 * heights, 10),
+    ]
+
+
+def context_of(target: Target, system: mm.System, forces, integrator: mm.Integrator) -> mm.Context:
+    for force in forces:
+        if target.backend:
+            force.setBackend(target.backend)
+        system.addForce(force)
+    return target.context(system, integrator)
+
+
+def system_of(count: int, mass: float = 50.0) -> mm.System:
+    system = mm.System()
+    for _ in range(count):
+        system.addParticle(mass)
+    return system
+
+
+# --- dynamics ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("target", [MIXED, DOUBLE], ids=str)
+def test_verlet_keeps_its_energy(target: Target):
+    mesh, forces = vesicle()
+    integrator = mm.VerletIntegrator(0.02)
+    context = context_of(target, system_of(mesh.num_vertices), forces, integrator)
+    context.setPositions(mesh.vertices)
+    context.setVelocitiesToTemperature(300, 1)
+    integrator.step(500)
+    energies, kinetic = [], []
+    for _ in range(10):
+        integrator.step(200)
+        state = context.getState(energy=True)
+        kinetic.append(plain(state.getKineticEnergy()))
+        energies.append(plain(state.getPotentialEnergy()) + kinetic[-1])
+    assert np.ptp(energies) < 1e-3 * np.mean(kinetic)
+
+
+def test_the_device_follows_flips():
+    """After rounds of flips its forces are those of the Context's present triangles."""
+    mesh, forces = vesicle()
+    flips = helfrich.MonteCarloBondFlip(mesh, 300, frequency=5)
+    integrator = mm.LangevinMiddleIntegrator(300, 1, 0.01)
+    integrator.setRandomNumberSeed(1)
+    system = system_of(mesh.num_vertices)
+    system.addForce(flips)
+    context = context_of(DOUBLE, system, forces, integrator)
+    context.setPositions(mesh.vertices)
+    context.setVelocitiesToTemperature(300, 1)
+    before = evaluations()["native"]
+    integrator.step(100)
+    assert evaluations()["native"] >= before + 100
+    triangles = forces[0].getTrianglesInContext(context)
+    assert (triangles != mesh.triangles).any()
+    state = context.getState(energy=True, forces=True, positions=True)
+    positions = plain(state.getPositions(asNumpy=True))
+    heights = float(np.sqrt(mesh.area / len(mesh.triangles)))
+    others = [
+        helfrich.BendingForce(triangles, 50),
+        helfrich.SurfaceAreaForce(triangles, 10, mesh.area),
+        helfrich.EnclosedVolumeForce(triangles, 1, 0.9 * mesh.volume),
+        helfrich.TriangleHeightForce(triangles, 0.4 * heights, 10),
+    ]
+    expected = Running(others, mesh.num_vertices, Target("", "Reference", 1e-9, {}, "cpu"))
+    energy, reference = expected.evaluate(positions)
+    assert plain(state.getPotentialEnergy()) == pytest.approx(energy, rel=1e-9)
+    found = plain(state.getForces(asNumpy=True))
+    assert np.abs(found - reference).max() < 1e-8 * np.abs(reference).max()
+
+
+@pytest.mark.parametrize("target", [MIXED, DOUBLE], ids=str)
+def test_in_a_bath_that_openmm_sorts_and_wraps(target: Target):
+    """OpenMM exchanges particles of a bath in memory, and wraps a vesicle on a face of the box."""
+    mesh, forces = vesicle()
+    rng = np.random.default_rng(2)
+    bath = rng.uniform(0, 600, (1000, 3))
+    vertices = mesh.vertices + np.array([600, 300, 0])
+    bath = bath[np.linalg.norm((bath - [600, 300, 0] + 300) % 600 - 300, axis=1) > 130]
+    # The vesicle's particles are in the middle.
+    half = len(bath) // 2
+    positions = np.concatenate([bath[:half], vertices, bath[half:]])
+    system = system_of(len(positions))
+    system.setDefaultPeriodicBoxVectors(*(600 * np.eye(3)))
+    nonbonded = mm.CustomNonbondedForce("10*step(20-r)*(1-r/20)^2")
+    for _ in positions:
+        nonbonded.addParticle()
+    nonbonded.setNonbondedMethod(nonbonded.CutoffPeriodic)
+    nonbonded.setCutoffDistance(25)
+    nonbonded.setForceGroup(1)
+    system.addForce(nonbonded)
+    moved = [
+        type(force)(*arguments, offset=half)
+        for force, arguments in zip(
+            forces,
+            [(mesh, 50), (mesh, 10, mesh.area), (mesh, 1, 0.9 * mesh.volume), (mesh, 5, 10)],
+            strict=True,
+        )
+    ]
+    integrator = mm.LangevinMiddleIntegrator(300, 1, 0.05)
+    integrator.setRandomNumberSeed(1)
+    context = context_of(target, system, moved, integrator)
+    context.setPositions(positions)
+    context.setVelocitiesToTemperature(300, 1)
+    integrator.step(600)
+    state = context.getState(positions=True, forces=True, energy=True, groups={0})
+    reference = Running(
+        [copy.copy(force) for force in moved],
+        len(positions),
+        Target("", "Reference", 1e-9, {}, "cpu"),
+    )
+    expected = reference.evaluate(plain(state.getPositions(asNumpy=True)))
+    found = plain(state.getForces(asNumpy=True))
+    assert plain(state.getPotentialEnergy()) == pytest.approx(expected[0], rel=target.tolerance)
+    largest = np.abs(expected[1]).max()
+    assert largest > 1
+    assert np.abs(found - expected[1]).max() < target.tolerance * largest
+
+
+# --- beside the processor ------------------------------------------------------------------------
+
+
+def test_borders_and_contacts_are_computed_beside_it():
+    """The processor adds them to the same Context, by force groups and all together."""
+    mesh = helfrich.Mesh.disk(8, 100.0)
+    rng = np.random.default_rng(3)
+    positions = mesh.vertices + rng.normal(scale=1.0, size=mesh.vertices.shape)
+
+    def forces():
+        return [
+            helfrich.BendingForce(mesh, 50),
+            helfrich.EdgeTensionForce(mesh, 3.0),
+            helfrich.TriangleAreaForce(mesh, 1.0, mesh.area / len(mesh.triangles)),
+            helfrich.SurfaceRepulsionForce(mesh, 8.0, 5.0),
+        ]
+
+    found = Running(forces(), mesh.num_vertices, DOUBLE)
+    expected = Running(forces(), mesh.num_vertices, REFERENCE)
+    before = evaluations()
+    for group in (-1, 0, 1, 2, 3):
+        energy, of_group = found.evaluate(positions, group)
+        reference = expected.evaluate(positions, group)
+        assert energy == pytest.approx(reference[0], rel=1e-9, abs=1e-12)
+        assert np.abs(of_group - reference[1]).max() <= 1e-9 * max(np.abs(reference[1]).max(), 1)
+    assert evaluations()["native"] == before["native"] + 3
+
+
+def test_a_periodic_surface_is_left_to_the_processor():
+    mesh = helfrich.Mesh.sheet(8, 8, 10.0, periodic=True)
+    force = helfrich.BendingForce(mesh, 50)
+    force.setUsesPeriodicBoundaryConditions(True)
+    system = system_of(mesh.num_vertices)
+    system.setDefaultPeriodicBoxVectors(*mesh.box)
+    context = context_of(DOUBLE, system, [force], mm.VerletIntegrator(0.01))
+    context.setPositions(mesh.vertices)
+    before = evaluations()
+    context.getState(energy=True)
+    assert evaluations()["native"] == before["native"]
+
+
+# --- choice --------------------------------------------------------------------------------------
+
+
+def test_it_is_refused_on_other_platforms():
+    m = membrane("octahedron")
+    force = helfrich.BendingForce(m.triangles, 50)
+    force.setBackend("native")
+    with pytest.raises(
+        mm.OpenMMException,
+        match=r"BendingForce: .*native.*the platform Reference is none of OpenCL",
+    ):
+        Running([force], m.num_particles, REFERENCE)
+
+
+def test_a_driver_on_the_processor_is_taken_only_where_it_is_asked_for():
+    m = membrane("octahedron")
+    before = evaluations()
+    run = Running([helfrich.BendingForce(m.triangles, 50)], m.num_particles, ON_OPENCL[2])
+    run.evaluate(m.positions)
+    assert evaluations()["native"] == before["native"]
+    assert evaluations()["cpu"] > before["cpu"]
+
+
+def test_derivatives_need_it():
+    m = membrane("octahedron")
+    force = helfrich.BendingForce(m.triangles, 50)
+    force.setContextParameter("rigidity", "kappa")
+    force.addEnergyParameterDerivative("kappa")
+    with pytest.raises(mm.OpenMMException, match=r'energy parameter derivatives need .*"native"'):
+        Running([force], m.num_particles, ON_OPENCL[2])
+
+
+def test_an_explosion_is_found_without_energies():
+    """Steps that nobody asks anything of are looked at now and then."""
+    mesh, forces = vesicle()
+    integrator = mm.VerletIntegrator(1e3)
+    context = context_of(SINGLE, system_of(mesh.num_vertices, 1e-3), forces, integrator)
+    context.setPositions(mesh.vertices + np.random.default_rng(1).normal(size=mesh.vertices.shape))
+    with pytest.raises(mm.OpenMMException, match=r"particle|position|triangle"):
+        integrator.step(1100)
+
+
+# --- transfers -----------------------------------------------------------------------------------
+
+COUNTER = r"""
+#include <dlfcn.h>
+#include <stddef.h>
+static long reads, writes;
+long count_reads(void) { return reads; }
+long count_writes(void) { return writes; }
+static void* real(const char* name) {
+    return dlsym(dlopen("libOpenCL.so.1", RTLD_LAZY), name);
+}
+#define TRANSFER(NAME, COUNT) \
+int NAME(void* q, void* b, unsigned w, size_t o, size_t s, void* p, unsigned n, void* l, void* e) \
+{ \
+    COUNT++; \
+    return ((int (*)(void*, void*, unsigned, size_t, size_t, void*, unsigned, void*, void*)) \
+        real(#NAME))(q, b, w, o, s, p, n, l, e); \
+}
+TRANSFER(clEnqueueReadBuffer, reads)
+TRANSFER(clEnqueueWriteBuffer, writes)
+void* clEnqueueMapBuffer(void* q, void* b, unsigned w, unsigned long f, size_t o, size_t s,
+        unsigned n, void* l, void* e, int* r) {
+    reads++;
+    return ((void* (*)(void*, void*, unsigned, unsigned long, size_t, size_t, unsigned, void*,
+        void*, int*)) real("clEnqueueMapBuffer"))(q, b, w, f, o, s, n, l, e, r);
+}
+"""
+
+STEPS = """
+import ctypes, sys
+import openmm as mm
+import openmmhelfrich as helfrich
+
+count = ctypes.CDLL(sys.argv[1])
+mesh = helfrich.Mesh.icosphere(4, 100.0)
+system = mm.System()
+for _ in mesh.vertices:
+    system.addParticle(50)
+if sys.argv[2] != "none":
+    for force in (
+        helfrich.BendingForce(mesh, 50),
+        helfrich.SurfaceAreaForce(mesh, 10, mesh.area),
+        helfrich.EnclosedVolumeForce(mesh, 1, 0.9 * mesh.volume),
+        helfrich.TriangleHeightForce(mesh, 5, 10),
+    ):
+        force.setBackend(sys.argv[2])
+        system.addForce(force)
+integrator = mm.LangevinMiddleIntegrator(300, 1, 0.01)
+platform = mm.Platform.getPlatformByName("OpenCL")
+context = mm.Context(system, integrator, platform, {"Precision": "mixed"})
+context.setPositions(mesh.vertices)
+integrator.step(10)
+context.getState(energy=True)
+integrator.step(1)
+before = count.count_reads(), count.count_writes()
+integrator.step(300)
+print("transfers", count.count_reads() - before[0], count.count_writes() - before[1])
+"""
+
+
+def test_a_step_transfers_nothing(tmp_path):
+    """Counted where OpenCL is called: as many reads and writes as without any force."""
+    DOUBLE.context(system_of(1))
+    source, library = tmp_path / "count.c", tmp_path / "count.so"
+    source.write_text(COUNTER, encoding="ascii")
+    subprocess.run(["cc", "-shared", "-fPIC", "-o", library, source, "-ldl"], check=True)
+
+    def transfers(backend: str) -> list[int]:
+        result = subprocess.run(
+            [sys.executable, "-c", textwrap.dedent(STEPS), library, backend],
+            env={**os.environ, "LD_PRELOAD": str(library)},
+            capture_output=True,
+            text=True,
+            timeout=300,
+            check=True,
+        )
+        line = next(line for line in result.stdout.splitlines() if line.startswith("transfers"))
+        return [int(word) for word in line.split()[1:]]
+
+    assert transfers("native") == transfers("none")
+    assert sum(transfers("cpu")) >= 600
+
+
+def test_units_of_length_do_not_show():
+    """A membrane at two sizes in a ratio of two has the same bits, but for the power of two."""
+    mesh, _ = vesicle()
+    found = []
+    for scale in (1.0, 1024.0):
+        force = helfrich.BendingForce(mesh, 50)
+        run = Running([force], mesh.num_vertices, SINGLE)
+        found.append(run.evaluate(scale * SINGLE.rounded(mesh.vertices)))
+    assert found[0][0] == found[1][0]
+    assert unit.is_quantity(run.context.getState(energy=True).getPotentialEnergy())
