@@ -17,7 +17,7 @@ use std::ffi::CStr;
 /// What one evaluation asks of the device.
 #[derive(Default)]
 pub struct Plan {
-    /// A buffer for each of [`Binding::ALL`].
+    /// A buffer for each of `Binding::ALL`.
     pub buffers: Vec<Buffer>,
     /// The passes, and how many groups each has.
     pub passes: Vec<(&'static CStr, usize)>,
