@@ -198,6 +198,47 @@ def test_wholes_and_parts_agree_about_the_box():
         REFERENCE.context(system)
 
 
+@pytest.mark.parametrize("away", [1.2e9, 3e9, 1e18, 1e300, np.nan, np.inf])
+@pytest.mark.parametrize("own", [False, True], ids=["one radius", "radii"])
+def test_particles_that_are_nowhere_are_named(own, away):
+    """The first of them, on any number of threads; so many that threads share them."""
+    box = BOXES["triclinic"]
+    positions, triangles, _ = facing(box)
+    middle = dyadic(np.random.default_rng(8).uniform([0, 0, 0.09], [1, 1, 0.91], (5000, 3)) @ box)
+    particles = np.arange(len(positions), len(positions) + len(middle))
+    everything = np.vstack([positions, middle])
+    force = helfrich.ParticleSurfaceForce(triangles, particles, 2.0, EPSILON)
+    if own:
+        force.setParticleRadius(np.linspace(0.1, 0.5, len(particles)).tolist())
+    context = start([force], len(everything), box, HELFRICH)
+    before = evaluate(context, everything)
+    assert before[0] > 0
+    lost = everything.copy()
+    for particle in particles[[4000, 1234]]:
+        lost[particle, particle % 3] = away * box[particle % 3, particle % 3]
+    told = "not finite" if not np.isfinite(away) else "more than a billion periodic boxes away"
+    for _ in range(3):
+        with pytest.raises(
+            mm.OpenMMException, match=rf"^ParticleSurfaceForce: particle {particles[1234]} .*{told}"
+        ):
+            evaluate(context, lost)
+    again = evaluate(context, everything)
+    assert again[0] == before[0] and again[1].tobytes() == before[1].tobytes()
+
+
+@pytest.mark.parametrize("kind", [0, 1], ids=["surface", "particles"])
+def test_vertices_that_are_nowhere_are_named(kind):
+    box = BOXES["triclinic"]
+    positions, triangles, particles = facing(box)
+    context = start([forces_on(triangles, particles)[kind]], len(positions), box)
+    evaluate(context, positions)
+    for away, told in ((1.2e9, "a billion"), (1e300, "a billion"), (np.nan, "not finite")):
+        lost = positions.copy()
+        lost[17] += away * box[1]
+        with pytest.raises(mm.OpenMMException, match=rf"Force: particle 17 is at .*{told}"):
+            evaluate(context, lost)
+
+
 def test_twin_and_box_agree_where_nothing_crosses():
     """A box much larger than the membrane changes nothing."""
     membrane = crumpled()
