@@ -1,16 +1,20 @@
-"""Contacts across the faces of a periodic box: wrapped, against a tiling, and their virial."""
+"""Contacts across the faces of a periodic box: against a tiling, and what is nowhere.
+
+The table of cases holds them against brute force, wraps them and has their virial.
+"""
 
 from __future__ import annotations
 
 import itertools
 
-import contact_twin as twin
+import meshes
 import numpy as np
 import openmm as mm
 import openmmhelfrich as helfrich
 import pytest
+from cases import beads
 from platforms import HELFRICH, REFERENCE
-from test_contact import DISTANCE, EPSILON, beads, crumpled, particle_force
+from test_contact import DISTANCE, EPSILON, particle_force
 
 # Positions and boxes are on a grid of dyadic fractions, nm, so that wrapping is exact.
 BOXES = {
@@ -85,19 +89,6 @@ def evaluate(context, positions):
 
 
 @every_box
-@pytest.mark.parametrize("target", [REFERENCE, HELFRICH], ids=str)
-def test_wrapping_changes_no_bit(box, target):
-    positions, triangles, particles = facing(box)
-    context = start(forces_on(triangles, particles), len(positions), box, target)
-    energy, forces = evaluate(context, positions)
-    assert np.abs(forces[particles]).max() > 1
-    for seed in range(3):
-        images = np.random.default_rng(seed).integers(-3, 4, positions.shape)
-        again, same = evaluate(context, positions + images @ box)
-        assert (again, same.tobytes()) == (energy, forces.tobytes())
-
-
-@every_box
 @pytest.mark.parametrize("kind", [0, 1], ids=["surface", "particles"])
 def test_a_tiling_without_a_box_has_the_same_forces(box, kind):
     positions, triangles, particles = facing(box)
@@ -133,38 +124,10 @@ def test_a_tiling_without_a_box_has_the_same_forces(box, kind):
         assert np.abs(forces[first:]).max() > 1
 
 
-def slope_along(energy, step):
-    def slope(h):
-        return (energy(h) - energy(-h)) / (2 * h)
-
-    return (4 * slope(step) - slope(2 * step)) / 3
-
-
-@every_box
-@pytest.mark.parametrize("kind", [0, 1], ids=["surface", "particles"])
-def test_the_virial_is_the_slope_along_a_strain(box, kind):
-    positions, triangles, particles = facing(box)
-    context = start([forces_on(triangles, particles)[kind]], len(positions), box)
-    context.setPositions(positions)
-    found = helfrich.virial(context)
-    largest = np.abs(found).max()
-    assert largest > 1
-    np.testing.assert_allclose(found, found.T, atol=1e-9 * largest)
-    # OpenMM's form of a box leaves six strains.
-    strain = np.triu(np.random.default_rng(7).uniform(-1, 1, (3, 3)))
-
-    def energy(h):
-        map_ = np.eye(3) + h * strain
-        context.setPeriodicBoxVectors(*(box @ map_.T))
-        return evaluate(context, positions @ map_.T)[0]
-
-    assert abs(slope_along(energy, 1e-5) - np.sum(found * strain)) < 1e-6 * largest
-
-
 @pytest.mark.parametrize("kind", [0, 1], ids=["surface", "particles"])
 def test_the_virial_without_a_box(kind):
-    membrane = crumpled()
-    positions, particles = beads(membrane)
+    membrane = meshes.membrane("crumpled")
+    positions, (particles, _) = membrane.positions, beads(membrane)
     force = [
         helfrich.SurfaceRepulsionForce(membrane.triangles, DISTANCE, EPSILON),
         particle_force(membrane, particles),
@@ -237,13 +200,3 @@ def test_vertices_that_are_nowhere_are_named(kind):
         lost[17] += away * box[1]
         with pytest.raises(mm.OpenMMException, match=rf"Force: particle 17 is at .*{told}"):
             evaluate(context, lost)
-
-
-def test_twin_and_box_agree_where_nothing_crosses():
-    """A box much larger than the membrane changes nothing."""
-    membrane = crumpled()
-    force = helfrich.SurfaceRepulsionForce(membrane.triangles, DISTANCE, EPSILON)
-    context = start([force], membrane.num_particles, np.diag([1000.0] * 3))
-    energy, _ = evaluate(context, membrane.positions)
-    expected = twin.surface_repulsion(membrane.positions, membrane.triangles, DISTANCE, EPSILON)
-    assert energy == pytest.approx(expected, rel=1e-10)
