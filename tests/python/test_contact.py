@@ -6,6 +6,7 @@ The table of cases holds their energies and forces against brute force, on all p
 from __future__ import annotations
 
 import copy
+import re
 
 import contact_twin as twin
 import meshes
@@ -182,11 +183,38 @@ def test_a_triangle_without_area_is_an_edge_to_particles(membrane, attraction):
     np.testing.assert_allclose(forces, others, atol=1e-6 * np.abs(others).max())
 
 
-def test_a_surface_that_touches_itself_is_an_error(membrane):
-    """The energy is infinite where vertices and triangles or edges meet."""
-    repulsion = helfrich.SurfaceRepulsionForce(membrane.triangles, DISTANCE, EPSILON)
-    positions = membrane.positions.copy()
-    a, b, _ = membrane.triangles[17]
-    positions[a] = positions[b]
-    with pytest.raises(mm.OpenMMException, match=r"^SurfaceRepulsionForce: .*start from positions"):
-        evaluate(repulsion, positions)
+# A triangle, and others that meet it: in a corner, and in the middle of edges.
+FIRST = [[-1, 0, 0], [1, 0, 0], [0, 0, -3]]
+MEETING = {
+    "corner": (
+        [[0, 0, -3], [1, 3, -5], [-1, 3, -5]],
+        r"particle (2|3) lies on the triangle \((.*)\)",
+    ),
+    "edges": ([[0, -1, 0], [0, 1, 0], [0, 0, 3]], r"the edges \(0, 1\) and \(3, 4\) meet"),
+}
+
+
+@pytest.mark.parametrize("how", MEETING)
+@pytest.mark.parametrize("between", [False, True])
+def test_surfaces_that_meet_are_named(how, between):
+    """Where vertices and triangles or edges meet the energy is infinite."""
+    second, told = MEETING[how]
+    triangles = [[0, 1, 2], [3, 4, 5]]
+
+    def force():
+        repulsion = helfrich.SurfaceRepulsionForce(triangles, 0.5, EPSILON)
+        repulsion.setOnlyBetweenParts(between)
+        return repulsion
+
+    positions = np.array([*FIRST, *second], dtype=float)
+    with pytest.raises(mm.OpenMMException, match=f"^SurfaceRepulsionForce: {told}") as error:
+        evaluate(force(), positions)
+    if how == "corner":
+        particle, corners = re.search(told, str(error.value)).groups()
+        assert set(map(int, corners.split(", "))) == ({3, 4, 5} if particle == "2" else {0, 1, 2})
+    positions[3:, 2] += 0.4 if how == "edges" else -0.4
+    energy, _ = evaluate(force(), positions)
+    assert energy == pytest.approx(
+        twin.surface_repulsion(positions, np.array(triangles), 0.5, EPSILON)
+    )
+    assert energy > 0
