@@ -6,7 +6,9 @@ The table of cases holds their energies and forces against brute force, on all p
 from __future__ import annotations
 
 import copy
+import os
 import re
+import sys
 
 import contact_twin as twin
 import meshes
@@ -50,25 +52,41 @@ def evaluate(force, positions):
     return state.getPotentialEnergy().value_in_unit(unit), forces
 
 
+def num_threads() -> int:
+    return len(os.listdir("/proc/self/task"))
+
+
 def test_neither_threads_nor_the_age_of_lists_show(membrane):
-    """A walk that comes back, on one thread and two, and a new Context, have the same bits."""
-    positions, (particles, _) = membrane.positions, beads(membrane)
+    """A walk that comes back, on some threads, and a new Context, have the same bits.
+
+    There are so many pairs that threads are made for them, which are counted to be sure of it.
+    """
+    copies, size = 12, membrane.num_particles
+    shifts = 400.0 * np.arange(copies)[:, None, None] * [1, 0, 0]
+    positions = (membrane.positions + shifts).reshape(-1, 3)
+    triangles = np.vstack([membrane.triangles + size * k for k in range(copies)])
+    many = meshes.Membrane("many", positions, triangles)
+    particles = np.concatenate([beads(membrane)[0] + size * k for k in range(copies)])
     rng = np.random.default_rng(3)
-    walk = [positions + s * rng.normal(size=positions.shape) for s in (0, 0.01, 1.5, 0.3, 0)]
+    radii = rng.uniform(0, 0.3, len(particles))
+    walk = [positions + s * rng.normal(size=positions.shape) for s in (0, 0.01, 0.8, 0.3, 0)]
     seen = []
-    for threads in ("1", "2"):
+    for threads in (1, 2, 3):
         system = mm.System()
         for _ in positions:
             system.addParticle(1.0)
-        system.addForce(helfrich.SurfaceRepulsionForce(membrane.triangles, DISTANCE, EPSILON))
-        system.addForce(particle_force(membrane, particles))
-        platform = mm.Platform.getPlatformByName("Helfrich")
-        context = mm.Context(system, mm.VerletIntegrator(0.001), platform, {"Threads": threads})
-        for there in [*walk, *walk]:
+        system.addForce(helfrich.SurfaceRepulsionForce(triangles, DISTANCE, EPSILON))
+        system.addForce(particle_force(many, particles, radius=radii))
+        target = platforms.Target("", "Helfrich", 0, {"Threads": str(threads)})
+        context = target.context(system)
+        before = num_threads()
+        for there in [*walk, *walk, *walk]:
             context.setPositions(there)
             state = context.getState(energy=True, forces=True)
             forces = state.getForces(asNumpy=True)
             seen.append((state.getPotentialEnergy()._value, forces._value.tobytes()))
+        if sys.platform == "linux":
+            assert num_threads() - before == threads - 1
     assert seen[0] != seen[1]
     for start in range(5):
         assert len(set(seen[start::5])) == 1
