@@ -139,27 +139,3 @@ def particle_surface(
             away = np.linalg.norm(np.einsum("k,ptkx->ptx", weights, seen), axis=2) - radius
             energy -= adhesion * (area / 6 * _phi(away / distance, attraction)).sum()
     return float(energy)
-
-
-def crossings(positions: np.ndarray, triangles: np.ndarray) -> list[tuple[int, int, int]]:
-    """Edges that pass through triangles with which they share no corner: (end, end, triangle)."""
-    edges = _edges(triangles)
-    found = []
-    a, b, c = (positions[triangles[:, k]] for k in range(3))
-    low = np.minimum(np.minimum(a, b), c)
-    high = np.maximum(np.maximum(a, b), c)
-    normal = np.cross(b - a, c - a)
-    for p, q in edges:
-        start, end = positions[p], positions[q]
-        near = ((np.minimum(start, end) <= high) & (np.maximum(start, end) >= low)).all(axis=1)
-        near &= ~np.isin(triangles, (p, q)).any(axis=1)
-        t = np.flatnonzero(near)
-        before = np.einsum("tx,tx->t", start - a[t], normal[t])
-        after = np.einsum("tx,tx->t", end - a[t], normal[t])
-        t, before, after = (x[before * after < 0] for x in (t, before, after))
-        at = start + (before / (before - after))[:, None] * (end - start)
-        for one, other in ((a, b), (b, c), (c, a)):
-            keep = np.einsum("tx,tx->t", np.cross(other[t] - one[t], at - one[t]), normal[t]) > 0
-            t, at = t[keep], at[keep]
-        found += [(int(p), int(q), int(triangle)) for triangle in t]
-    return found
