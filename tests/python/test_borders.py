@@ -19,6 +19,7 @@ from meshes import Membrane, membrane
 from openmmhelfrich.mesh import Mesh, MeshError
 from platforms import ON_GPU, ON_OPENCL, ON_PROCESSOR, REFERENCE, Target
 from running import Running
+from string_forces import BENDING_SCHEMES
 from test_forces import rotation
 
 PLACES = (*meshes.HANDLE_NAMES, *meshes.OPEN_NAMES)
@@ -147,6 +148,16 @@ def test_nothing_bends_a_flat_disk():
         energy, forces = Running([force], m.num_particles, REFERENCE).evaluate(flat)
         assert abs(energy) < 1e-20
         assert np.abs(forces).max() < 1e-10
+
+
+@pytest.mark.parametrize("where", meshes.OPEN_NAMES)
+def test_there_is_no_curvature_at_borders(where: str):
+    m = membrane(where)
+    mesh = Mesh(m.positions[m.members], np.searchsorted(m.members, m.triangles))
+    border = np.isin(np.arange(mesh.num_vertices), np.concatenate(mesh.border_loops))
+    for scheme in BENDING_SCHEMES:
+        curvature = helfrich.analysis.mean_curvature(mesh, mesh.triangles, scheme)
+        np.testing.assert_array_equal(np.isnan(curvature), border)
 
 
 def test_line_tension_pulls_a_flat_disk_together():
