@@ -101,11 +101,17 @@ pub enum Error {
     )]
     NonFiniteEnergy { force: &'static str, energy: f64 },
 
-    /// Two things that repel each other are in one place.
+    /// Things that repel each other are so near that the sum of their energies is not finite.
     #[error(
-        "the energy of {force} is not finite: a vertex or particle lies on a triangle that it should keep away from, or a triangle cuts a particle; start from positions that do not touch, or use a smaller time step"
+        "the energy of {force} is not finite: particles are too near to triangles that they should keep away from; start from positions that do not touch, or use a smaller time step"
     )]
     Touching { force: &'static str },
+
+    /// A vertex and a triangle, or two edges, are in one place.
+    #[error(
+        "{}, so that the energy of {force} is not finite; start from positions that do not touch, or use a smaller time step", meeting(.particles, *.are_edges)
+    )]
+    TouchingSurface { force: &'static str, particles: [u32; 4], are_edges: bool },
 
     /// A particle is in one place with a triangle that keeps it away.
     #[error(
@@ -173,6 +179,7 @@ impl Error {
             | Self::Border { force, .. }
             | Self::Spanning { force, .. }
             | Self::Touching { force }
+            | Self::TouchingSurface { force, .. }
             | Self::TouchingParticle { force, .. } => Some(force),
             _ => None,
         }
@@ -188,6 +195,15 @@ impl Error {
                 | Self::OutOfDeviceMemory { .. }
                 | Self::DeviceFailure { .. }
         )
+    }
+}
+
+/// What meets: a particle and the corners of a triangle, or the ends of two edges.
+fn meeting([a, b, c, d]: &[u32; 4], are_edges: bool) -> String {
+    if are_edges {
+        format!("the edges ({a}, {b}) and ({c}, {d}) meet")
+    } else {
+        format!("particle {a} lies on the triangle ({b}, {c}, {d})")
     }
 }
 

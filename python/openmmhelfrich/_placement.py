@@ -9,10 +9,11 @@ from openmm import unit
 from .forces import MembraneForce, MonteCarloBondFlip
 from .mesh import Mesh
 
-__all__ = ["Placement", "groups_for"]
+__all__ = ["NUM_GROUPS", "Placement", "groups_for"]
 
 _ENERGY = unit.kilojoule_per_mole
-_NUM_GROUPS = 32
+#: Force groups that OpenMM has.
+NUM_GROUPS = 32
 
 
 @dataclass(frozen=True)
@@ -70,16 +71,16 @@ def groups_for(forces, system, wanted=None):
     count = len(forces)
     if wanted is None:
         used = {force.getForceGroup() for force in system.getForces()}
-        wanted = [group for group in range(_NUM_GROUPS) if group not in used][:count]
+        wanted = [group for group in range(NUM_GROUPS) if group not in used][:count]
         if len(wanted) < count:
             raise ValueError(
-                f"Vesicle: the System's forces use {len(used)} of the {_NUM_GROUPS} force "
+                f"Vesicle: the System's forces use {len(used)} of the {NUM_GROUPS} force "
                 f"groups, and {count} are needed; pass force_groups to share some"
             )
     groups = [int(group) for group in wanted]
-    if len(groups) != count or not all(0 <= group < _NUM_GROUPS for group in groups):
+    if len(groups) != count or not all(0 <= group < NUM_GROUPS for group in groups):
         raise ValueError(
-            f"Vesicle: force_groups needs {count} groups of 0 to {_NUM_GROUPS - 1}, "
+            f"Vesicle: force_groups needs {count} groups of 0 to {NUM_GROUPS - 1}, "
             f"got {list(wanted)}"
         )
     return groups

@@ -37,8 +37,9 @@ def save_state(context, path) -> None:
     `load_state` restores them to the last bit of what OpenMM hands out: of all digits on the
     platforms Reference, CPU and Helfrich, and elsewhere in the precision of the platform. What
     bond flips and a `MonteCarloMembraneTension` have come to, with their random numbers and their
-    statistics, is among it; the random numbers of integrators are not (checkpoints of platform
-    Helfrich have them too).
+    statistics, is among it; the random numbers of integrators are not, so a run under
+    LangevinMiddle goes on along another path of the same ensemble, where one from a checkpoint of
+    platform Helfrich goes on with the same bits.
 
     Parameters
     ----------
@@ -79,6 +80,9 @@ def save_state(context, path) -> None:
 
 def load_state(context, path) -> None:
     """Restore what `save_state` has saved, the connectivity too.
+
+    Under integrators that draw random numbers, as LangevinMiddle, the run does not go on with the
+    same bits, as it does from a checkpoint of platform Helfrich.
 
     Parameters
     ----------

@@ -151,7 +151,15 @@ impl Contacts {
         }
         for ((place, term), sum) in surface.iter().chain(&particles).zip(&sums) {
             if !sum.energy.is_finite() {
-                return Err(Error::Touching { force: term.potential.name() });
+                let force = term.potential.name();
+                let is_of_particles = force == particle_surface::NAME;
+                let nearest = (!is_of_particles).then(|| self.surface.nearest(mesh, term));
+                return Err(match nearest.flatten() {
+                    Some((particles, are_edges)) => {
+                        Error::TouchingSurface { force, particles, are_edges }
+                    }
+                    None => Error::Touching { force },
+                });
             }
             if let Some(contribution) = contributions.get_mut(*place) {
                 *contribution += *sum;

@@ -2,10 +2,14 @@
 
 use crate::dynamics::instructions::{Arithmetic, Kernel, run};
 use crate::mesh::Cell;
+use crate::mesh::cell::MOST_BOXES;
 use crate::mesh::geometry::Vec3;
 
 /// Positions whose boxes are found together, in lanes.
 pub const TOGETHER: usize = 64;
+
+/// How many periodic boxes away positions are found: a little more than vertices may be, since lists aim ahead of them.
+const FARTHEST: f64 = 1.05 * MOST_BOXES;
 
 /// No box.
 pub const NOWHERE: u32 = u32::MAX;
@@ -83,7 +87,8 @@ impl Grid {
         self.rows.map(|row| row.dot(&from))
     }
 
-    /// The box that a position is in, if there is one.
+    /// The box that a position is in, if there is one: over a periodic box only positions have none that are not finite or a
+    /// billion boxes away.
     #[inline]
     pub fn home(&self, position: &Vec3) -> Option<usize> {
         let home = self.home_of([position.x, position.y, position.z]);
@@ -116,6 +121,7 @@ impl Grid {
             let (row, count) = (&self.rows[k], self.counts[k] as f64);
             let mut place = (row.x * x + row.y * y + row.z * z).floor();
             if self.periodic {
+                is_inside &= place.abs() < FARTHEST * count;
                 place -= (place / count).floor() * count;
             }
             is_inside &= (place >= 0.0) & (place < count);

@@ -9,7 +9,8 @@
 
 use super::spheres::{Search, Sphere, Spheres};
 use crate::dynamics::instructions::{Arithmetic, Kernel, run};
-use crate::error::{Error, Result};
+use crate::error::Result;
+use crate::mesh::cell::nowhere;
 use crate::mesh::geometry::Vec3;
 use crate::mesh::{Cell, Triangulation};
 use crate::team::Team;
@@ -96,7 +97,7 @@ impl Lists {
     /// different parts of the surface.
     ///
     /// # Errors
-    /// A position that is not finite; a box that is too small.
+    /// A position that is not finite or too many boxes away; a box that is too small.
     pub fn refresh(
         &mut self,
         mesh: &Triangulation,
@@ -129,9 +130,8 @@ impl Lists {
         }
         self.made_for = None;
         for (position, particle) in self.positions.iter().zip(mesh.particles()) {
-            if !position.iter().all(|x| x.is_finite()) {
-                let (particle, position) = (*particle, (*position).into());
-                return Err(Error::NonFinitePosition { particle, position });
+            if let Some(reason) = nowhere(cell, *particle, position) {
+                return Err(reason);
             }
         }
         let made = self.make(mesh, cell, (reach, between_parts), team)?;

@@ -7,6 +7,7 @@ use super::closest::{Arms, difference};
 use super::grid::{Grid, NOWHERE, TOGETHER, bounds};
 use super::reach::{Map, Reach, SKIN};
 use crate::error::{Error, Result};
+use crate::mesh::cell::nowhere;
 use crate::mesh::geometry::Vec3;
 use crate::mesh::{Cell, Triangulation};
 use crate::potentials::particle_surface::{self, RADIUS};
@@ -38,7 +39,7 @@ pub struct ParticleContacts {
 #[derive(Default)]
 struct Found {
     touches: Vec<Touch>,
-    /// A particle whose position is not finite.
+    /// The first particle whose position is not finite, or too many periodic boxes away.
     lost: Option<u32>,
 }
 
@@ -82,7 +83,7 @@ impl ParticleContacts {
     /// Add the energy of a term, and forces (kJ/mol/nm) to those of all particles.
     ///
     /// # Errors
-    /// A position that is not finite, a box that is too small, a particle that touches a triangle.
+    /// A position that is not finite or too many boxes away, a box that is too small, a particle that touches a triangle.
     pub fn evaluate(
         &mut self,
         (mesh, cell): (&Triangulation, Option<&Cell>),
@@ -112,7 +113,7 @@ impl ParticleContacts {
                         found.touches.push(Touch { place, triangle, pair });
                     });
                     if lost {
-                        found.lost = Some(place);
+                        found.lost.get_or_insert(place);
                     }
                 });
             }
@@ -154,10 +155,11 @@ impl ParticleContacts {
             }
         }
         self.found = found;
-        lost.map_or(Ok(()), |place| {
+        let reason = lost.and_then(|place| {
             let (particle, (at, _)) = (term.particles[place as usize], of(term, positions, place));
-            Err(Error::NonFinitePosition { particle, position: at.into() })
-        })
+            nowhere(cell, particle, &at)
+        });
+        reason.map_or(Ok(()), Err)
     }
 
     /// Take the positions of the vertices, and have maps for particles of all radii.
@@ -173,9 +175,8 @@ impl ParticleContacts {
         self.positions.clear();
         self.positions.extend(mesh.particles().iter().map(|particle| at(*particle)));
         for (position, particle) in self.positions.iter().zip(mesh.particles()) {
-            if !position.iter().all(|x| x.is_finite()) {
-                let (particle, position) = (*particle, (*position).into());
-                return Err(Error::NonFinitePosition { particle, position });
+            if let Some(reason) = nowhere(cell, *particle, position) {
+                return Err(reason);
             }
         }
         let mut largest = 0.0;
@@ -246,7 +247,7 @@ impl ParticleContacts {
         }
     }
 
-    /// Go through the triangles that a particle may feel, ascending; true if its position is not finite.
+    /// Go through the triangles that a particle may feel, ascending; true if its position is not finite or too far away.
     #[inline]
     fn each_near(
         &self,
@@ -257,7 +258,7 @@ impl ParticleContacts {
         mut visit: impl FnMut(u32),
     ) -> bool {
         if home == NOWHERE {
-            return !at.iter().all(|x| x.is_finite());
+            return nowhere(self.cell.as_ref(), 0, at).is_some();
         }
         let grid = &self.maps[reach.class(radius)].grid;
         let own = reach.from_rim + radius;

@@ -129,6 +129,15 @@ impl SurfaceContacts {
         self.hits = hits;
     }
 
+    /// Of the pairs of a term that the last evaluation found, the particles of the nearest one, and whether it is one of edges.
+    pub fn nearest(&self, mesh: &Triangulation, term: &Term) -> Option<([u32; 4], bool)> {
+        let hits = self.hits.iter().flatten().flatten();
+        let acting = hits.filter(|hit| self.acts(term, hit.vertices));
+        let nearest = acting.min_by(|one, other| one.squared.total_cmp(&other.squared))?;
+        let particles = nearest.vertices.map(|vertex| mesh.particles()[vertex as usize]);
+        Some((particles, nearest.are_edges))
+    }
+
     /// Be ready for flips at the positions of [`Self::prepare`].
     pub fn prepare_flips(&mut self, terms: &[&Term], team: &mut Team) {
         let Some((reach, _)) = range(terms) else { return };

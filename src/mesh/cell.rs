@@ -13,9 +13,8 @@ pub struct Cell {
     half_width: f64,
 }
 
-/// How many boxes away positions may be; an [`Image`] has room for twice as many, of which leaning vectors and the ways
-/// from one vertex to the next need some.
-const MOST_BOXES: f64 = 1e9;
+/// How many boxes away positions may be: an [`Image`] has room for the ways from one to another.
+pub const MOST_BOXES: f64 = 1e9;
 
 /// How many times each of the box vectors.
 pub type Image = [i32; 3];
@@ -86,10 +85,14 @@ impl Cell {
 
     /// Whether a position is so many boxes away that the numbers of its image do not fit.
     pub fn is_too_far(&self, position: &Vec3) -> bool {
-        self.vectors
-            .iter()
-            .enumerate()
-            .any(|(axis, vector)| position[axis].abs() >= vector[axis] * MOST_BOXES)
+        let [a, b, c] = &self.vectors;
+        // Coordinates along c, b and a, times what they would be divided by.
+        let z = position.z;
+        let y = position.y * c.z - z * c.y;
+        let x = (position.x * c.z - z * c.x) * b.y - y * b.x;
+        z.abs() >= MOST_BOXES * c.z
+            || y.abs() >= MOST_BOXES * (b.y * c.z)
+            || x.abs() >= MOST_BOXES * (a.x * b.y * c.z)
     }
 
     #[inline]
@@ -103,6 +106,16 @@ impl Cell {
         let i = count(rest.x / a.x);
         [i as i32, j as i32, k as i32]
     }
+}
+
+/// Why a particle is nowhere, if it is: its position is not finite, or too many boxes away.
+#[inline]
+pub fn nowhere(cell: Option<&Cell>, particle: u32, position: &Vec3) -> Option<Error> {
+    if !position.iter().all(|x| x.is_finite()) {
+        return Some(Error::NonFinitePosition { particle, position: (*position).into() });
+    }
+    let is_far = cell.is_some_and(|cell| cell.is_too_far(position));
+    is_far.then(|| Error::FarPosition { particle, position: (*position).into() })
 }
 
 #[cfg(test)]
@@ -132,6 +145,19 @@ mod tests {
             for axis in 0..3 {
                 let share = inside[axis] / cell.vectors()[axis][axis];
                 prop_assert!((-1e-12..1.0 + 1e-12).contains(&share), "{inside}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_a_billion_boxes_away_is_too_far() {
+        let cell = Cell::new(TRICLINIC).unwrap();
+        for axis in 0..3 {
+            for away in [1e3, 0.999e9, 1.001e9, 1e20, 1e300] {
+                for sign in [1.0, -1.0] {
+                    let at = cell.vectors()[axis] * (sign * away) + Vec3::new(1.0, 2.0, 3.0);
+                    assert_eq!(cell.is_too_far(&at), away > 1e9, "{at}");
+                }
             }
         }
     }

@@ -9,7 +9,7 @@
 //! comes out is a function of positions, box and connectivity, whatever was there before. Every edge need not be looked at
 //! again before vertices have moved so far that one could have grown too long.
 
-use super::cell::{Cell, Image, minus, plus};
+use super::cell::{Cell, Image, minus, nowhere, plus};
 use super::geometry::Vec3;
 use super::triangulation::Triangulation;
 use crate::error::{Error, Result};
@@ -233,12 +233,9 @@ fn position(mesh: &Triangulation, positions: &[f64], vertex: usize) -> Vec3 {
 /// Why an edge is not short enough.
 fn too_long(edge: [u32; 2], length: f64, positions: &[f64], cell: &Cell) -> Error {
     for particle in edge {
-        let position = positions.as_chunks::<3>().0[particle as usize];
-        if !position.iter().all(|x| x.is_finite()) {
-            return Error::NonFinitePosition { particle, position };
-        }
-        if cell.is_too_far(&position.into()) {
-            return Error::FarPosition { particle, position };
+        let position = positions.as_chunks::<3>().0[particle as usize].into();
+        if let Some(reason) = nowhere(Some(cell), particle, &position) {
+            return reason;
         }
     }
     let vectors = cell.vectors().map(<[f64; 3]>::from);

@@ -9,8 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cache
 from typing import Any
 
+import contact_twin
 import meshes
 import numpy as np
 import numpy_energies
@@ -41,12 +43,14 @@ class Case:
     force: the class in openmmhelfrich
     arguments: the constructor's scalars, for a membrane
     energy: the same energy by numpy, in kJ/mol
-    strings: energy and forces by string forces in a style
+    strings: energy and forces by string forces in a style; none of contacts, since no string force
+        finds the nearest point of a triangle
     compiles: whether OpenMM compiles these string forces in reasonable time
     step: for finite differences, in mean edge lengths
     variant: keyword and name of the class's constant, e.g. ("scheme", "Julicher")
     settings: setters to call after construction, with their values
-    surface: "closed" or "open" if the force needs one, or has none on the other
+    surface: "closed", "open" or "parts" if the force needs one, or has none on others
+    others: the particles beside the vertices that it acts on
     invalid: listed once for each class
     """
 
@@ -54,21 +58,44 @@ class Case:
     force: str
     arguments: Callable[[Membrane], dict[str, Any]]
     energy: Callable[[Membrane, Arguments], float]
-    strings: Callable[[Membrane, Arguments, str], Result]
+    strings: Callable[[Membrane, Arguments, str], Result] | None = None
     compiles: Callable[[Membrane, str], bool] = field(default=lambda membrane, style: True)
     step: float = 3e-4
     variant: tuple[str, str] | None = None
     settings: Callable[[Membrane], dict[str, Any]] = field(default=lambda membrane: {})
     surface: str = "any"
+    others: Callable[[Membrane], np.ndarray] | None = None
     invalid: tuple[Invalid, ...] = ()
+
+    @property
+    def is_contact(self) -> bool:
+        """Whether it acts on pairs of what is near, and not on the elements of a mesh."""
+        return self.force in CONTACTS
 
     def acts_on(self, where: str) -> bool:
         """Whether the force can act on a membrane of this name."""
-        return self.surface in ("any", "open" if where in meshes.OPEN_NAMES else "closed")
+        if where in meshes.TOUCHING_NAMES and not self.is_contact:
+            return False
+        fits = {
+            "any": True,
+            "open": where in meshes.OPEN_NAMES,
+            "closed": where not in meshes.OPEN_NAMES,
+            "parts": where in meshes.PARTS_NAMES,
+        }
+        return fits[self.surface]
 
     def place(self, usual: str) -> str:
         """The name of a membrane that the force acts on: the usual one if it does."""
-        return usual if self.acts_on(usual) else "holed"
+        return usual if self.acts_on(usual) else {"open": "holed", "parts": "mixed"}[self.surface]
+
+    def acted_on(self, membrane: Membrane) -> np.ndarray:
+        """The particles that feel the force."""
+        others = [] if self.others is None else self.others(membrane)
+        return np.union1d(membrane.members, others).astype(int)
+
+    def strangers(self, membrane: Membrane) -> np.ndarray:
+        """The particles that do not."""
+        return np.setdiff1d(np.arange(membrane.num_particles), self.acted_on(membrane))
 
     @property
     def exists(self) -> bool:
@@ -81,12 +108,18 @@ class Case:
 
     def make(self, membrane: Membrane, **replaced: Any) -> mm.Force:
         """The plugin's force on a membrane."""
+        return self.make_on(membrane.triangles, membrane, **replaced)
+
+    def make_on(self, triangles, membrane: Membrane, shift: int = 0, **replaced: Any) -> mm.Force:
+        """The same on other triangles; other particles are `shift` beyond those of the membrane."""
         cls = getattr(helfrich, self.force)
         arguments = {**self.arguments(membrane), **replaced}
         if self.variant is not None:
             keyword, constant = self.variant
             arguments[keyword] = getattr(cls, constant)
-        force = cls(membrane.triangles, **arguments)
+        if self.others is not None:
+            arguments["particles"] = self.others(membrane) + shift
+        force = cls(triangles, **arguments)
         for setter, value in self.settings(membrane).items():
             getattr(force, setter)(value)
         return force
@@ -429,6 +462,111 @@ def _bendings() -> list[Case]:
     return rows
 
 
+# --- contacts ----------------------------------------------------------------------------------
+
+CONTACTS = ("SurfaceRepulsionForce", "ParticleSurfaceForce")
+
+
+@cache
+def _pairs(m: Membrane, between: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Distances and weights of the pairs of a surface that are nearer than two edges are long."""
+    part = m.parts if between else None
+    return contact_twin.surface_pairs(m.positions, m.triangles, 2 * m.mean_edge, part)
+
+
+def _surface_repulsion() -> list[Case]:
+    def arguments(m: Membrane, between: bool) -> dict[str, Any]:
+        gaps, _ = _pairs(m, between)
+        nearest = gaps.min() if len(gaps) else m.mean_edge
+        return {"distance": 1.3 * float(nearest), "epsilon": 2.5}
+
+    def energy(m: Membrane, a: Arguments, between: bool) -> float:
+        gaps, weights = _pairs(m, between)
+        return float((weights * contact_twin.core(gaps, **a)).sum())
+
+    return [
+        Case(
+            name=f"repulsion, {word}",
+            force="SurfaceRepulsionForce",
+            arguments=lambda m, between=between: arguments(m, between),
+            energy=lambda m, a, between=between: energy(m, a, between),
+            # The second derivative jumps at the cutoff: no large steps across it.
+            step=2e-5,
+            settings=lambda m, between=between: {"setOnlyBetweenParts": True} if between else {},
+            surface="parts" if between else "any",
+            invalid=invalid,
+        )
+        for word, between, invalid in (
+            (
+                "all pairs",
+                False,
+                _never_below("distance", zero=False) + _never_below("epsilon", zero=True),
+            ),
+            ("between parts", True, ()),
+        )
+    ]
+
+
+@cache
+def beads(m: Membrane) -> tuple[np.ndarray, np.ndarray]:
+    """The half of the foreign particles that is nearest to the surface, in some order, and how far
+    they are from it.
+    """
+    gaps = contact_twin.particle_gaps(m.positions, m.triangles, m.foreign).min(axis=1)
+    chosen = np.argsort(gaps)[: (len(gaps) + 1) // 2]
+    chosen = np.random.default_rng(19).permutation(chosen)
+    return m.foreign[chosen], gaps[chosen]
+
+
+def _particle_surface() -> list[Case]:
+    def bare(m: Membrane) -> dict[str, Any]:
+        return {"distance": 1.3 * float(beads(m)[1].min()), "epsilon": 2.5}
+
+    def of_one_radius(m: Membrane) -> dict[str, Any]:
+        nearest = float(beads(m)[1].min())
+        sizes = {"distance": 0.84 * nearest, "radius": 0.3 * nearest}
+        return {**sizes, "epsilon": 2.5, "adhesion": 0.02}
+
+    def of_radii(m: Membrane) -> dict[str, Any]:
+        """Those touch that are not far."""
+        _, gaps = beads(m)
+        # No gap is at the cutoff.
+        distance = 1.1 * float(gaps.min())
+        left = distance * np.random.default_rng(20).uniform(0.85, 2.0, len(gaps))
+        left = np.minimum(gaps, left)
+        radii = np.minimum(gaps - left, 0.6 * m.mean_edge)
+        return {"distance": distance, "epsilon": 2.5, "adhesion": 0.03, "radius": radii}
+
+    return [
+        Case(
+            name=f"particles, {word}",
+            force="ParticleSurfaceForce",
+            variant=("attraction", attraction),
+            arguments=arguments,
+            energy=lambda m, a, attraction=attraction: contact_twin.particle_surface(
+                m.positions, m.triangles, beads(m)[0], attraction=attraction, **a
+            ),
+            # The second derivative jumps at the cutoff: no large steps across it.
+            step=2e-5,
+            others=lambda m: beads(m)[0],
+            invalid=invalid,
+        )
+        for word, attraction, arguments, invalid in (
+            (
+                "WCA",
+                "WCA",
+                bare,
+                _never_below("distance", zero=False)
+                + _never_below("epsilon", zero=True)
+                + _never_below("adhesion", zero=True)
+                + _never_below("radius", zero=True),
+            ),
+            ("LennardJones", "LennardJones", of_one_radius, ()),
+            ("NineThree, a radius each", "NineThree", of_radii, ()),
+        )
+    ]
+
+
 CASES = [
     *_surface_area(),
     *_enclosed_volume(),
@@ -439,5 +577,7 @@ CASES = [
     *_triangle_area_repulsion(),
     *_plaquette_area(),
     *_borders(),
+    *_surface_repulsion(),
+    *_particle_surface(),
 ]
 PRESENT = [case for case in CASES if case.exists]

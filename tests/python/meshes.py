@@ -13,6 +13,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, cached_property
 
+import contact_twin
 import numpy as np
 
 FOREIGN_PARTICLES = 9
@@ -41,6 +42,18 @@ class Membrane:
     @cached_property
     def foreign(self) -> np.ndarray:
         return np.setdiff1d(np.arange(self.num_particles), self.members)
+
+    @cached_property
+    def parts(self) -> np.ndarray:
+        """For each particle the lowest vertex that it is connected with, or itself."""
+        labels = np.arange(self.num_particles)
+        while True:
+            lowest = labels[self.triangles].min(axis=1)
+            updated = labels.copy()
+            np.minimum.at(updated, self.triangles, lowest[:, None])
+            if (updated == labels).all():
+                return labels
+            labels = updated
 
     @cached_property
     def max_degree(self) -> int:
@@ -205,11 +218,13 @@ def rough(surface: Surface, rng: np.random.Generator, fraction: float) -> Surfac
     return vertices + fraction * edge * rng.uniform(-1, 1, vertices.shape), triangles
 
 
-def embedded(name: str, surface: Surface, seed: int) -> Membrane:
+def embedded(
+    name: str, surface: Surface, seed: int, num_foreign: int = FOREIGN_PARTICLES
+) -> Membrane:
     """The surface among particles that belong to no membrane, everything in random order."""
     rng = np.random.default_rng(seed)
     vertices, triangles = surface
-    total = len(vertices) + FOREIGN_PARTICLES
+    total = len(vertices) + num_foreign
     # Particle 0 and the last one stay foreign.
     index = 1 + rng.permutation(total - 2)[: len(vertices)]
     positions = rng.uniform(-200, 200, (total, 3))
@@ -343,6 +358,26 @@ def _mixed() -> Surface:
     return disjoint(closed, moved(rough(annulus, rng, 0.1), (70, 80, 60), (70, 0, 0)))
 
 
+def _crumpled() -> Membrane:
+    """A disk so thin that its sides touch, and a small sphere beside it that touches, too.
+
+    30 particles beside it are near, some inside.
+    """
+    rng = np.random.default_rng(4)
+    vertices, triangles = icosphere(4)
+    thickness = 2.0 + 60 * (vertices[:, :2] ** 2).sum(axis=1)
+    vertices = vertices * np.stack([np.full(162, 50), np.full(162, 60), thickness], axis=1)
+    disk = rough((vertices, triangles), rng, 0.08)
+    small = rough(icosphere(1), rng, 0.08)
+    surface = disjoint(disk, moved(small, scale=(12, 12, 12), shift=(10, 5, 23)))
+    result = embedded("crumpled", surface, 4, 60)
+    tried = result.positions[rng.choice(result.members, 300)] + rng.uniform(-9, 9, (300, 3))
+    near = contact_twin.nearest(tried, result.positions[result.triangles])
+    gaps = np.linalg.norm(near, axis=2).min(axis=1)
+    result.positions[result.foreign[::2]] = tried[(gaps > 4) & (gaps < 9)][:30]
+    return result
+
+
 _MAKERS: dict[str, Callable[[], Surface]] = {
     "jittered": _jittered,
     "stretched": _stretched,
@@ -366,12 +401,19 @@ _OPEN = {
 _MAKERS |= _WITH_HANDLES | _OPEN
 HANDLE_NAMES = tuple(_WITH_HANDLES)
 OPEN_NAMES = tuple(_OPEN)
+# For contacts: what is no neighbour is near.
+TOUCHING_NAMES = ("crumpled",)
+# Of several parts.
+PARTS_NAMES = ("two parts", "mixed", "crumpled")
 
 
 @cache
 def membrane(name: str) -> Membrane:
     """One of these names; the same object each time, its arrays read-only."""
-    result = embedded(name, _MAKERS[name](), seed=100 + list(_MAKERS).index(name))
+    if name in TOUCHING_NAMES:
+        result = _crumpled()
+    else:
+        result = embedded(name, _MAKERS[name](), seed=100 + list(_MAKERS).index(name))
     result.positions.flags.writeable = False
     result.triangles.flags.writeable = False
     return result

@@ -127,6 +127,18 @@ def _spanning() -> Surface:
     return spread(sheet(7, 8, rng), schwarz_p(4, rng), tube(8, 7, rng))
 
 
+def _facing() -> Surface:
+    """Two sheets that face each other across a face of the box, and cross nothing."""
+    rng = np.random.default_rng(25)
+    sheets = [sheet(12, 13, rng), sheet(13, 12, rng)]
+    return meshes.disjoint(
+        *(
+            meshes.moved(s, (1, 1, 0.4), (0, 0, z))
+            for s, z in zip(sheets, (0.04, 0.96), strict=True)
+        )
+    )
+
+
 def _torn() -> Surface:
     """With holes, one of them across a face."""
     rng = np.random.default_rng(24)
@@ -138,6 +150,7 @@ _MAKERS = {
     "spanning": _spanning,
     "torn": _torn,
     "vesicle": lambda: vesicle(np.random.default_rng(23)),
+    "facing": _facing,
 }
 NAMES = tuple(_MAKERS)
 

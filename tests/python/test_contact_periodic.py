@@ -1,16 +1,20 @@
-"""Contacts across the faces of a periodic box: wrapped, against a tiling, and their virial."""
+"""Contacts across the faces of a periodic box: against a tiling, and what is nowhere.
+
+The table of cases holds them against brute force, wraps them and has their virial.
+"""
 
 from __future__ import annotations
 
 import itertools
 
-import contact_twin as twin
+import meshes
 import numpy as np
 import openmm as mm
 import openmmhelfrich as helfrich
 import pytest
+from cases import beads
 from platforms import HELFRICH, REFERENCE
-from test_contact import DISTANCE, EPSILON, beads, crumpled, particle_force
+from test_contact import DISTANCE, EPSILON, particle_force
 
 # Positions and boxes are on a grid of dyadic fractions, nm, so that wrapping is exact.
 BOXES = {
@@ -85,19 +89,6 @@ def evaluate(context, positions):
 
 
 @every_box
-@pytest.mark.parametrize("target", [REFERENCE, HELFRICH], ids=str)
-def test_wrapping_changes_no_bit(box, target):
-    positions, triangles, particles = facing(box)
-    context = start(forces_on(triangles, particles), len(positions), box, target)
-    energy, forces = evaluate(context, positions)
-    assert np.abs(forces[particles]).max() > 1
-    for seed in range(3):
-        images = np.random.default_rng(seed).integers(-3, 4, positions.shape)
-        again, same = evaluate(context, positions + images @ box)
-        assert (again, same.tobytes()) == (energy, forces.tobytes())
-
-
-@every_box
 @pytest.mark.parametrize("kind", [0, 1], ids=["surface", "particles"])
 def test_a_tiling_without_a_box_has_the_same_forces(box, kind):
     positions, triangles, particles = facing(box)
@@ -133,38 +124,10 @@ def test_a_tiling_without_a_box_has_the_same_forces(box, kind):
         assert np.abs(forces[first:]).max() > 1
 
 
-def slope_along(energy, step):
-    def slope(h):
-        return (energy(h) - energy(-h)) / (2 * h)
-
-    return (4 * slope(step) - slope(2 * step)) / 3
-
-
-@every_box
-@pytest.mark.parametrize("kind", [0, 1], ids=["surface", "particles"])
-def test_the_virial_is_the_slope_along_a_strain(box, kind):
-    positions, triangles, particles = facing(box)
-    context = start([forces_on(triangles, particles)[kind]], len(positions), box)
-    context.setPositions(positions)
-    found = helfrich.virial(context)
-    largest = np.abs(found).max()
-    assert largest > 1
-    np.testing.assert_allclose(found, found.T, atol=1e-9 * largest)
-    # OpenMM's form of a box leaves six strains.
-    strain = np.triu(np.random.default_rng(7).uniform(-1, 1, (3, 3)))
-
-    def energy(h):
-        map_ = np.eye(3) + h * strain
-        context.setPeriodicBoxVectors(*(box @ map_.T))
-        return evaluate(context, positions @ map_.T)[0]
-
-    assert abs(slope_along(energy, 1e-5) - np.sum(found * strain)) < 1e-6 * largest
-
-
 @pytest.mark.parametrize("kind", [0, 1], ids=["surface", "particles"])
 def test_the_virial_without_a_box(kind):
-    membrane = crumpled()
-    positions, particles = beads(membrane)
+    membrane = meshes.membrane("crumpled")
+    positions, (particles, _) = membrane.positions, beads(membrane)
     force = [
         helfrich.SurfaceRepulsionForce(membrane.triangles, DISTANCE, EPSILON),
         particle_force(membrane, particles),
@@ -198,11 +161,42 @@ def test_wholes_and_parts_agree_about_the_box():
         REFERENCE.context(system)
 
 
-def test_twin_and_box_agree_where_nothing_crosses():
-    """A box much larger than the membrane changes nothing."""
-    membrane = crumpled()
-    force = helfrich.SurfaceRepulsionForce(membrane.triangles, DISTANCE, EPSILON)
-    context = start([force], membrane.num_particles, np.diag([1000.0] * 3))
-    energy, _ = evaluate(context, membrane.positions)
-    expected = twin.surface_repulsion(membrane.positions, membrane.triangles, DISTANCE, EPSILON)
-    assert energy == pytest.approx(expected, rel=1e-10)
+@pytest.mark.parametrize("away", [1.2e9, 3e9, 1e18, 1e300, np.nan, np.inf])
+@pytest.mark.parametrize("own", [False, True], ids=["one radius", "radii"])
+def test_particles_that_are_nowhere_are_named(own, away):
+    """The first of them, on any number of threads; so many that threads share them."""
+    box = BOXES["triclinic"]
+    positions, triangles, _ = facing(box)
+    middle = dyadic(np.random.default_rng(8).uniform([0, 0, 0.09], [1, 1, 0.91], (5000, 3)) @ box)
+    particles = np.arange(len(positions), len(positions) + len(middle))
+    everything = np.vstack([positions, middle])
+    force = helfrich.ParticleSurfaceForce(triangles, particles, 2.0, EPSILON)
+    if own:
+        force.setParticleRadius(np.linspace(0.1, 0.5, len(particles)).tolist())
+    context = start([force], len(everything), box, HELFRICH)
+    before = evaluate(context, everything)
+    assert before[0] > 0
+    lost = everything.copy()
+    for particle in particles[[4000, 1234]]:
+        lost[particle, particle % 3] = away * box[particle % 3, particle % 3]
+    told = "not finite" if not np.isfinite(away) else "more than a billion periodic boxes away"
+    for _ in range(3):
+        with pytest.raises(
+            mm.OpenMMException, match=rf"^ParticleSurfaceForce: particle {particles[1234]} .*{told}"
+        ):
+            evaluate(context, lost)
+    again = evaluate(context, everything)
+    assert again[0] == before[0] and again[1].tobytes() == before[1].tobytes()
+
+
+@pytest.mark.parametrize("kind", [0, 1], ids=["surface", "particles"])
+def test_vertices_that_are_nowhere_are_named(kind):
+    box = BOXES["triclinic"]
+    positions, triangles, particles = facing(box)
+    context = start([forces_on(triangles, particles)[kind]], len(positions), box)
+    evaluate(context, positions)
+    for away, told in ((1.2e9, "a billion"), (1e300, "a billion"), (np.nan, "not finite")):
+        lost = positions.copy()
+        lost[17] += away * box[1]
+        with pytest.raises(mm.OpenMMException, match=rf"Force: particle 17 is at .*{told}"):
+            evaluate(context, lost)

@@ -42,7 +42,7 @@ def on(*names: str):
     return pytest.mark.parametrize(("case", "where"), rows)
 
 
-every_place = on(*meshes.NAMES)
+every_place = on(*meshes.NAMES, *meshes.TOUCHING_NAMES)
 on_processor = pytest.mark.parametrize("target", ON_PROCESSOR, ids=str)
 
 
@@ -61,14 +61,16 @@ def test_every_force_class_has_a_row():
         for name, value in vars(helfrich).items()
         if isinstance(value, type) and issubclass(value, helfrich.MembraneForce)
     }
-    # The base class is not for users to make; forces of pairs have test_contact.py, since no string
-    # force finds the nearest point of a triangle.
-    others = {"MembraneForce", "SurfaceRepulsionForce", "ParticleSurfaceForce"}
-    assert classes - others == {case.force for case in PRESENT}
+    # The base class is not for users to make.
+    assert classes - {"MembraneForce"} == {case.force for case in PRESENT}
 
 
 def test_every_variant_has_a_row():
-    for keyword, force in (("scheme", "BendingForce"), ("form", "DihedralForce")):
+    for keyword, force in (
+        ("scheme", "BendingForce"),
+        ("form", "DihedralForce"),
+        ("attraction", "ParticleSurfaceForce"),
+    ):
         cls = getattr(helfrich, force, None)
         if cls is None:
             continue
@@ -127,7 +129,7 @@ def test_forces_are_the_gradient_by_coordinate(case: Case, where: str, target: T
     _, forces = run.evaluate(m.positions)
     measured = np.zeros_like(forces)
     direction = np.zeros_like(forces)
-    for particle in m.members:
+    for particle in case.acted_on(m):
         for axis in range(3):
             direction[particle, axis] = 1
             measured[particle, axis] = -_slope(run, m.positions, direction, case.step * m.mean_edge)
@@ -135,7 +137,7 @@ def test_forces_are_the_gradient_by_coordinate(case: Case, where: str, target: T
     assert np.abs(measured - forces).max() <= 1e-6 * np.abs(forces).max()
 
 
-@on("jittered", "stretched", "concave", "two parts")
+@on("jittered", "stretched", "concave", "two parts", *meshes.TOUCHING_NAMES)
 @on_processor
 def test_forces_are_the_gradient_along_directions(case: Case, where: str, target: Target):
     """Random directions, of which each sees every particle; the larger membranes' share."""
@@ -143,9 +145,10 @@ def test_forces_are_the_gradient_along_directions(case: Case, where: str, target
     run = running(case.name, where, target)
     _, forces = run.evaluate(m.positions)
     rng = np.random.default_rng(23)
+    moving = case.acted_on(m)
     for _ in range(6):
         direction = np.zeros_like(forces)
-        direction[m.members] = rng.uniform(-1, 1, (len(m.members), 3))
+        direction[moving] = rng.uniform(-1, 1, (len(moving), 3))
         measured = _slope(run, m.positions, direction, case.step * m.mean_edge)
         assert abs(measured + np.sum(forces * direction)) <= 1e-6 * np.abs(forces).max()
 
@@ -179,7 +182,7 @@ def test_no_net_force_and_no_net_torque(case: Case, where: str, target: Target):
 def test_particles_of_no_membrane_feel_nothing(case: Case, where: str, target: Target):
     m = membrane(where)
     _, forces = running(case.name, where, target).evaluate(m.positions)
-    assert not forces[m.foreign].any()
+    assert not forces[case.strangers(m)].any()
 
 
 @every_place
@@ -214,7 +217,7 @@ def test_order_of_triangles_and_corners_does_not_matter(case: Case, target: Targ
     assert np.abs(other_forces - forces).max() <= 1e-10 * np.abs(forces).max()
 
 
-@on("concave", "mixed")
+@on("concave", "mixed", *meshes.TOUCHING_NAMES)
 def test_the_same_positions_give_the_same_bits(case: Case, where: str):
     m = membrane(where)
     run = running(case.name, where, REFERENCE)
@@ -228,7 +231,7 @@ def test_the_same_positions_give_the_same_bits(case: Case, where: str):
 # --- OpenCL --------------------------------------------------------------------------------------
 
 
-@on("jittered", "concave")
+@on("jittered", "concave", *meshes.TOUCHING_NAMES)
 @pytest.mark.parametrize("target", ON_OPENCL, ids=str)
 def test_opencl(case: Case, where: str, target: Target):
     """Each row alone, by its force group, among all others in the Context."""
@@ -240,7 +243,7 @@ def test_opencl(case: Case, where: str, target: Target):
     assert energy == pytest.approx(other_energy, rel=max(target.tolerance, 1e-9))
     largest = np.abs(other_forces).max()
     assert np.abs(forces - other_forces).max() <= target.tolerance * largest
-    assert not forces[m.foreign].any()
+    assert not forces[case.strangers(m)].any()
 
 
 @pytest.mark.parametrize("target", [*ON_PROCESSOR, *ON_OPENCL], ids=str)
@@ -330,14 +333,22 @@ VALUES = [
         [np.nan, np.inf, -np.inf],
     ),
     ("TriangleAreaForce", "target", "setTriangleTargets", [np.nan, np.inf, -1.0, 0.0]),
+    ("ParticleSurfaceForce", "radius", "setParticleRadius", [np.nan, np.inf, -1.0]),
 ]
+
+
+def _num_elements(case: Case, m: Membrane) -> int:
+    """Of how many things each has a value of its own."""
+    if case.others is not None:
+        return len(case.others(m))
+    return len(m.members) if case.force == "BendingForce" else len(m.triangles)
 
 
 @pytest.mark.parametrize(("force", "argument", "setter", "refused"), VALUES)
 def test_one_bad_value_of_many(force: str, argument: str, setter: str, refused: list[float]):
     case = next(case for case in PRESENT if case.force == force)
     m = membrane("octahedron")
-    count = len(m.members) if force == "BendingForce" else len(m.triangles)
+    count = _num_elements(case, m)
     for value in refused:
         values = [1.0] * count
         values[4] = value
@@ -355,7 +366,7 @@ def test_values_by_element(force: str, argument: str, setter: str, refused: list
     """By keyword, by setter and by update; an empty list goes back to the scalar."""
     case = next(case for case in PRESENT if case.force == force)
     m = membrane("octahedron")
-    count = len(m.members) if force == "BendingForce" else len(m.triangles)
+    count = _num_elements(case, m)
     rng = np.random.default_rng(41)
     values = rng.uniform(0.01, 0.02, count)
     first = Running([case.make(m, **{argument: values})], m.num_particles, REFERENCE)

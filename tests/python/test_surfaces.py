@@ -11,7 +11,10 @@ import pytest
 from openmmhelfrich.mesh import Mesh
 
 SURFACES = Path(__file__).parents[2] / "examples" / "surfaces"
-MODULES = ("membranes", "reports", "tube", "minimal", "sheet_spectrum", "closing", "wrapping")
+MODULES = (
+    *("membranes", "reports", "tube", "minimal", "sheet_spectrum", "closing", "wrapping"),
+    "crossing",
+)
 
 
 @pytest.fixture(autouse=True)
@@ -142,3 +145,40 @@ def test_beads_are_wrapped_where_adhesion_pays():
 
     found = script.energies(2.0, 1.0)
     assert found["transition"] == pytest.approx(1, abs=0.05)
+
+
+@needs("SurfaceRepulsionForce", "ParticleSurfaceForce")
+class TestCrossing:
+    """What `docs/contact.md` guarantees, by `analysis.crossings`, which knows nothing of forces."""
+
+    @pytest.mark.parametrize(
+        ("how", "point"),
+        [
+            ("pressed", {"n": 3, "force": 40.0, "steps": 4000}),
+            ("pressed", {"n": 4, "force": 80.0, "steps": 2000}),
+            ("ramp", {"n": 4, "steps": 50}),
+        ],
+    )
+    def test_nothing_crosses_but_without_contact(self, how, point):
+        import crossing as script
+
+        run = getattr(script, how)
+        for seed in (1, 2):
+            assert not run(**point, contact=True, seed=seed)["crossings"].any()
+            assert run(**point, contact=False, seed=seed)["crossings"][-1] > 10
+
+    @pytest.mark.parametrize(("edge", "radius"), [(2.0, 1e5), (2.0, 18.0), (0.5, 18.0)])
+    def test_adhesion_is_the_energy_by_area(self, edge, radius):
+        import crossing as script
+
+        assert script.adhesion(edge, radius)["ratio"] == pytest.approx(1, abs=3e-5)
+
+    @pytest.mark.parametrize("box", [None, 400.0])
+    def test_particles_stay_on_their_side(self, box):
+        import crossing as script
+
+        run = script.crowd(4, 3000, 100.0, 1, box)
+        assert run["through"] == run["escaped"] == 0
+        assert run["within"] > 100 and run["moved"] > 25
+        # Many have touched, and energy is conserved.
+        assert run["potential"] > 0.05 and run["scatter"] < 1e-3

@@ -289,6 +289,15 @@ class TestStart:
         message = folder.message("-Membrane 0\nMeshFile mesh.xyz\n")
         assert "key MeshFile: expected a .ply, .msh or .obj file, got 'mesh.xyz'" in message
 
+    def test_mesh_in_a_periodic_box(self, folder, lumpy):
+        """VCM's membranes know no box; cut open at its faces they would be other surfaces."""
+        box = 3 * np.ptp(lumpy.vertices) * np.eye(3)
+        Mesh(lumpy.vertices, lumpy.triangles, box).write(folder.path / "mesh.ply")
+        message = folder.refused()
+        assert message.startswith("config.txt:4: key MeshFile: mesh.ply has a periodic box")
+        Mesh(*Mesh.read(folder.path / "mesh.ply").unfolded()).write(folder.path / "mesh.ply")
+        assert folder.read().meshes[0].volume == pytest.approx(lumpy.volume, rel=1e-12)
+
     @about("NodeMass", "FreezeSubLattice")
     def test_mass(self, folder):
         def masses(text):

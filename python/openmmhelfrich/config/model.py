@@ -12,6 +12,7 @@ import openmm
 from openmm import unit
 
 from .. import platforms, vcm
+from .._placement import NUM_GROUPS
 from ..errors import MeshError
 from ..forces import MonteCarloMembraneTension, SurfaceRepulsionForce
 from ..mesh import Mesh
@@ -28,8 +29,6 @@ __all__ = ["Configuration", "VesicleMembrane", "read", "read_any"]
 
 _TABLES = ("simulation", "integrator", "output", "box", "vesicle", "tension", "repulsion")
 _MAX_SEED = 2**31 - 1
-# Group 31 is left to what a user adds.
-_NUM_GROUPS = 31
 
 
 @dataclass(frozen=True)
@@ -125,7 +124,8 @@ class Configuration(vcm.Config):
         """
         result = openmm.System()
         kinds = list(dict.fromkeys(kind for names in self._kinds for kind in names))
-        apart = sum(map(len, self._kinds)) < _NUM_GROUPS
+        # One more is for a repulsion, and the last is left to what a user adds.
+        apart = sum(map(len, self._kinds)) + 1 < NUM_GROUPS
         self._terms, used = {}, 0
         for membrane, names in zip(self.membranes, self._kinds, strict=True):
             groups = [used + i if apart else kinds.index(kind) for i, kind in enumerate(names)]

@@ -15,6 +15,7 @@ import openmm
 from openmm import app, unit
 
 from .. import platforms
+from .._placement import NUM_GROUPS
 from . import connectivity, interactions, membrane_forces, springs
 
 if TYPE_CHECKING:
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Term", "energies", "integrator", "plan", "simulation", "system", "topology"]
 
-_NUM_GROUPS = 32
 _ENERGY = unit.kilojoule_per_mole
 
 
@@ -56,8 +56,8 @@ def plan(cfg: Config) -> tuple[Term, ...]:
         found += [(kind, kind + suffix, make) for kind, make in makers.items()]
     found += [(kind, kind, make) for kind, make in interactions.makers(cfg).items()]
     _check_general(cfg)
-    # Group 31 is left to what a user adds.
-    if len(found) < _NUM_GROUPS:
+    # The last group is left to what a user adds.
+    if len(found) < NUM_GROUPS:
         return tuple(Term(name, group, make) for group, (_, name, make) in enumerate(found))
     kinds = list(dict.fromkeys(kind for kind, _, _ in found))
     return tuple(Term(kind, kinds.index(kind), make) for kind, _, make in found)

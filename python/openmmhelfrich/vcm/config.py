@@ -259,7 +259,13 @@ def _start_mesh(settings: Settings, folder: Path, random) -> tuple[Mesh, int]:
     if path.suffix.lower() not in (".ply", ".msh", ".obj"):
         raise settings.error("MeshFile", f"expected a .ply, .msh or .obj file, got {path.name!r}")
     try:
-        vertices, triangles, _ = files.read(path)
+        vertices, triangles, box = files.read(path)
+        if box is not None:
+            raise MeshError(
+                f"{path.name} has a periodic box, which a membrane of VCM cannot have; write "
+                "Mesh(*mesh.unfolded()), whose triangles are whole, or take a TOML file, where "
+                "surfaces may span their box"
+            )
         mesh = Mesh(vertices, triangles)
         num_reversed = _reversals(triangles, mesh.triangles)
         mesh = mesh.scaled(settings["Scale"]).scaled(settings["XYZscale"])

@@ -169,7 +169,13 @@ KEYS: tuple[Key, ...] = (
         "single",
         "Of the GPU platforms, and of the numbers in binary files (double, or else single).",
     ),
-    Key(MEMBRANE, "MeshFile", p.one_word, "", "The mesh, beside the configuration: PLY, msh, OBJ."),
+    Key(
+        MEMBRANE,
+        "MeshFile",
+        p.one_word,
+        "",
+        "The mesh, beside the configuration: PLY, msh, OBJ; not one in a periodic box.",
+    ),
     Key(MEMBRANE, "NodeMass", _POSITIVE, "1", "Mass of a vertex, amu."),
     Key(
         MEMBRANE,
