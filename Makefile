@@ -15,10 +15,10 @@ SOURCES := Cargo.toml Cargo.lock build.rs setup.py python/forces.i \
            $(wildcard src/*.rs src/*/*.rs src/*/*/*.rs shaders/* shaders/*/* $(foreach any,wrappers/* wrappers/*/* wrappers/*/*/*,$(any)/*))
 CPP := $(wildcard $(foreach any,wrappers/* wrappers/*/* wrappers/*/*/* tests/cpp examples,\
            $(any)/*.h $(any)/*.c $(any)/*.cpp))
-PY := $(wildcard setup.py python tests examples benches)
+PY := $(wildcard .ci setup.py python tests examples benches)
 
 .DEFAULT_GOAL := build
-.PHONY: build test lint format demo paper bench clean help check-tools test-rust test-package test-python FORCE
+.PHONY: build test lint format wheel demo paper bench clean help check-tools test-rust test-package test-python FORCE
 
 build: $(VENV)/.installed ## build everything and install it in .venv (the default)
 	@echo "openmm-helfrich is installed in .venv; try: make demo"
@@ -49,6 +49,12 @@ test-rust: $(VENV)/.requirements # Rust's tests
 test-package: $(VENV)/.requirements # `pip install .` where nothing else is
 	@echo "== A clean installation"
 	@CARGO_TARGET_DIR=$(TARGET) $(SHELL) .ci/check-package.sh $(VENV)/bin/python
+
+wheel: $(VENV)/.requirements ## build a wheel in dist/ that installs without Rust and compilers, and try it there
+	@echo "== A wheel"
+	@CARGO_TARGET_DIR=$(TARGET)/wheel $(SHELL) .ci/build-wheel.sh $(VENV)/bin/python
+	@$(SHELL) .ci/check-wheel.sh $(VENV)/bin/python
+	@ls dist
 
 test-python: build # what a user sees
 	@echo "== Python"

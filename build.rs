@@ -72,10 +72,14 @@ fn main() {
 
     println!("cargo:rustc-link-search=native={}", lib.display());
     println!("cargo:rustc-link-lib=dylib=OpenMM");
-    if env::var("CARGO_CFG_TARGET_OS").as_deref() == Ok("linux") {
+    if target("OS") == "linux" {
         println!("cargo:rustc-cdylib-link-arg=-Wl,-soname,libOpenMMHelfrich.so");
         // From openmmhelfrich/lib to the wheel's libraries, and from OpenMM's plugin folder up.
         println!("cargo:rustc-cdylib-link-arg=-Wl,-rpath,$ORIGIN/../../OpenMM.libs/lib:$ORIGIN/..");
+        if target("ENV") == "gnu" && target("ARCH") == "x86_64" {
+            // See wrappers/src/OldHypot.cpp.
+            println!("cargo:rustc-cdylib-link-arg=-Wl,--wrap=hypot,--wrap=hypotf");
+        }
         // Tests and benches run where they were built; a package must not know that place.
         if env::var_os("HELFRICH_PACKAGE").is_none() {
             println!("cargo:rustc-link-arg=-Wl,-rpath,{}", lib.display());
@@ -96,6 +100,11 @@ fn fail(message: &str) -> ! {
 
 fn out_dir() -> PathBuf {
     PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"))
+}
+
+/// What cargo says of the machine that the library is for.
+fn target(what: &str) -> String {
+    env::var(format!("CARGO_CFG_TARGET_{what}")).unwrap_or_default()
 }
 
 /// Where the chosen Python keeps its packages, if it has OpenMM.

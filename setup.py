@@ -13,6 +13,8 @@ from setuptools.command.build_ext import build_ext
 
 ROOT = Path(__file__).resolve().parent
 LIBRARY = "libOpenMMHelfrich.so"
+# The extension keeps to the stable ABI of this Python, so that all later ones load it too.
+OLDEST_PYTHON = (3, 10)
 
 
 def find_openmm() -> Path:
@@ -81,6 +83,9 @@ class BuildPlugin(build_ext):
         generated = Path(self.build_temp)
         generated.mkdir(parents=True, exist_ok=True)
         wrapper = generated / "forces_wrap.cpp"
+        # Python prefers one that was made for it alone.
+        for extension in package.glob("_forces*.so"):
+            extension.unlink()
         includes = [str(ROOT / "wrappers" / "include"), str(openmm / "include")]
         # The disabled warnings are about OpenMM's own declarations.
         options = ["-python", "-c++", "-doxygen", "-w314,325,453"]
@@ -98,8 +103,14 @@ forces = Extension(
     [],
     language="c++",
     libraries=["OpenMMHelfrich", "OpenMM"],
+    define_macros=[("Py_LIMITED_API", "0x{:02x}{:02x}0000".format(*OLDEST_PYTHON))],
+    py_limited_api=True,
     extra_compile_args=["-std=c++17", "-O2", "-g0", "-w"],
     extra_link_args=["-Wl,-rpath,$ORIGIN/lib:$ORIGIN/../OpenMM.libs/lib"],
 )
 
-setup(ext_modules=[forces], cmdclass={"build_ext": BuildPlugin})
+setup(
+    ext_modules=[forces],
+    cmdclass={"build_ext": BuildPlugin},
+    options={"bdist_wheel": {"py_limited_api": "cp{}{}".format(*OLDEST_PYTHON)}},
+)

@@ -13,7 +13,6 @@ using namespace HelfrichPlugin;
 %include <std_string.i>
 %include <std_vector.i>
 %include <exception.i>
-%include <pybuffer.i>
 %import(module="openmm") "swig/OpenMMSwigHeaders.i"
 
 /* Errors of the core arrive as openmm.OpenMMException, like OpenMM's own. */
@@ -34,7 +33,13 @@ using namespace HelfrichPlugin;
 }
 
 %apply int& OUTPUT { int& particle1, int& particle2, int& particle3 };
-%pybuffer_binary(const char* data, size_t size);
+/* Not SWIG's pybuffer.i: before Python 3.11 the stable ABI has no buffers. */
+%typemap(in) (const char* data, size_t size) (char* bytes, Py_ssize_t length) {
+    if (PyBytes_AsStringAndSize($input, &bytes, &length) != 0)
+        SWIG_fail;
+    $1 = bytes;
+    $2 = static_cast<size_t>(length);
+}
 
 /* Arrays come as one buffer, through _arguments.py; numbers go by the setters, which know units. */
 %ignore HelfrichPlugin::TriangulatedForce::addTriangles;

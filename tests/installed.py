@@ -1,6 +1,7 @@
 """What must hold in an environment into which nothing but the package was installed.
 
-`make test` runs this after `pip install .` there, so it needs no test framework.
+`make test` runs this after `pip install .` there and `make wheel` after installing the wheel, so it
+needs no test framework.
 """
 
 import re
@@ -27,6 +28,7 @@ def main():
 
     (extension,) = package.glob("_forces*.so")
     for binary in (library, extension):
+        check_alone(binary)
         check_rpath(binary)
 
     simulate()
@@ -34,6 +36,12 @@ def main():
     print(f"openmmhelfrich {helfrich.__version__} installs and runs on Python "
           f"{sys.version_info.major}.{sys.version_info.minor}, numpy {np.__version__}, "
           f"OpenMM {openmm.Platform.getOpenMMVersion()}")  # fmt: skip
+
+
+def check_alone(binary):
+    """It finds OpenMM's libraries where nothing else has loaded them, as in a C++ program."""
+    script = "import ctypes, sys; ctypes.CDLL(sys.argv[1])"
+    subprocess.run([sys.executable, "-c", script, binary], check=True)
 
 
 def check_rpath(binary):

@@ -74,7 +74,7 @@ def accept_units(force: type) -> None:
             self._setElementValues(s.name, list_)
             # The scalar is not used beside them; their mean is what a reader would expect.
             getattr(self, "set" + capitalised(s.name))(float(np.mean(list_)))
-        self._addTriangleBuffer(corners.data)
+        self._addTriangleBuffer(corners.tobytes())
         if getattr(arguments["triangles"], "box", None) is not None:
             self.setUsesPeriodicBoundaryConditions(True)
 
@@ -155,7 +155,7 @@ def _accept_particles(force: type) -> None:
         TypeError, ValueError
             If they are not integers in one list.
         """
-        self._setParticleBuffer(particles(force.__name__, given).data)
+        self._setParticleBuffer(particles(force.__name__, given).tobytes())
 
     def get_particles(self):
         """The indices of the particles that the surface acts on, shape (num_particles,)."""
@@ -204,7 +204,7 @@ def accept_arrays(force: type) -> None:
         TypeError, ValueError
             If the indices are not integers in triples.
         """
-        self._addTriangleBuffer(triangles(type(self).__name__, given, offset).data)
+        self._addTriangleBuffer(triangles(type(self).__name__, given, offset).tobytes())
 
     give_method(force, "addTriangles", add_triangles)
 
@@ -263,7 +263,7 @@ def accept_arrays(force: type) -> None:
             If the indices are not integers in triples.
         """
         corners = triangles(type(self).__name__, given, offset)
-        self._setTrianglesInContext(context, corners.data)
+        self._setTrianglesInContext(context, corners.tobytes())
 
     give_method(force, "getTrianglesInContext", get_triangles_in_context)
     give_method(force, "setTrianglesInContext", set_triangles_in_context)

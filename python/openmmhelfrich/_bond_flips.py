@@ -60,7 +60,7 @@ def _accept_in_constructor(force: type, readers: dict, defaults: dict) -> None:
     def start(self, swig_init, given):
         corners = triangles(_NAME, given["triangles"], given["offset"])
         swig_init(self, [], *(readers[name](given[name]) for name in _ORDER))
-        self._addTriangleBuffer(corners.data)
+        self._addTriangleBuffer(corners.tobytes())
 
     accept_in_constructor(force, parameters, start)
 
