@@ -33,6 +33,15 @@ pub fn write(module: &Module, info: &ModuleInfo) -> Text {
             text += &definition;
         }
     }
+    // The host's own kernels read some of the constants.
+    for (_, constant) in module.constants.iter() {
+        if let (Some(name), Expression::Literal(literal)) =
+            (&constant.name, &module.global_expressions[constant.init])
+            && let Ok(number) = number(literal)
+        {
+            let _ = writeln!(text, "#define H_{name} {number}");
+        }
+    }
     for (handle, function) in module.functions.iter() {
         let name = name_of(&function.name);
         text += &Writer { module, info: &info[handle], all: info, function }.function(&name)?;

@@ -78,7 +78,7 @@ fn load_triangle(triangle: u32) -> TriangleGeometry {
     );
 }
 
-// Normal and twice the area; counts the triangle if it is too thin.
+// Normal and twice the area; counts the triangle if it is too thin or too large.
 fn new_triangle(triangle: u32) -> vec4r {
     let a = corner_vertex(triangle, 0u);
     let ab = separation(a, corner_vertex(triangle, 1u));
@@ -86,7 +86,7 @@ fn new_triangle(triangle: u32) -> vec4r {
     let normal = cross(ab, ac);
     let twice_area = root(dot(normal, normal));
     let longest = max(max(dot(ab, ab), dot(ac, ac)), dot(ab - ac, ab - ac));
-    if !(twice_area > real(THINNEST) * longest) {
+    if !(twice_area > real(THINNEST) * longest) || longest >= real(frame.longest_squared) {
         atomicAdd(&thin_triangles, 1u);
     }
     return vec4r(normal, twice_area);

@@ -115,11 +115,12 @@ DEVICE h_u32_4 h_shifted(mm_ulong m, int shift) {
 
 // Positions relative to anchors: in single precision on a lattice of 2³⁰ steps across the largest part, whose spacing is a
 // power of two, so that they are exact; in double precision in the module's unit of length, 2 to `unit`.
-DEVICE void h_place_vertices(h_u32 extent, int first, int step, int vertices, int unit, GLOBAL const real4* posq,
+// In a periodic box they are those of the image that is nearest to the anchor, and the lattice reaches over the box.
+DEVICE void h_place_vertices(int exponent, int first, int step, int vertices, int unit, GLOBAL const real4* posq,
         GLOBAL const real4* correction, GLOBAL const int* slots, GLOBAL const int* anchors, GLOBAL const h_i32* targets,
-        GLOBAL h_u32* state, GLOBAL h_Frame* frame, GLOBAL H_COORDINATE* positions) {
-    int exponent = (int) (extent >> 23) - 126;
+        GLOBAL h_u32* state, GLOBAL h_Frame* frame, GLOBAL H_COORDINATE* positions, GLOBAL const H_COORDINATE* box) {
     bool isSane = exponent > -90 && exponent < 90;
+    bool isPeriodic = (frame->h_needs & H_PERIODIC) != 0;
     if (!isSane)
         exponent = 0;
     if (first == 0 && !isSane)
@@ -129,8 +130,16 @@ DEVICE void h_place_vertices(h_u32 extent, int first, int step, int vertices, in
     for (int vertex = first; vertex < vertices; vertex += step) {
         h_Place place = h_load_place(slots[vertex], posq, correction);
         h_Place anchor = h_load_place(anchors[vertex], posq, correction);
+        double way[3];
         for (int k = 0; k < 3; k++)
-            positions[3*vertex + k] = (place.c[k] - anchor.c[k])*scale;
+            way[k] = (place.c[k] - anchor.c[k])*scale;
+        for (int i = 2; isPeriodic && i >= 0; i--) {
+            double times = rint(way[i]/box[4*i]);
+            for (int k = 0; k < 3; k++)
+                way[k] -= times*box[3*i + k];
+        }
+        for (int k = 0; k < 3; k++)
+            positions[3*vertex + k] = way[k];
     }
 #else
     if (first == 0) {
@@ -152,27 +161,45 @@ DEVICE void h_place_vertices(h_u32 extent, int first, int step, int vertices, in
     for (int vertex = first; vertex < vertices; vertex += step) {
         h_Place place = h_load_place(slots[vertex], posq, correction);
         h_Place anchor = h_load_place(anchors[vertex], posq, correction);
+        mm_long way[3];
         for (int k = 0; k < 3; k++) {
             h_place_t here = place.c[k]*steps, there = anchor.c[k]*steps;
             // Whole numbers of 64 bits hold both where they differ by less than 2³⁰ and anything is left of the digits.
             bool fits = here < 4e18f && here > -4e18f && there < 4e18f && there > -4e18f;
             if (!fits && isSane)
                 state[H_FAULT] |= H_FAULT_POSITION;
-            positions[3*vertex + k] = fits ? (h_i32) ((mm_long) rint(here) - (mm_long) rint(there)) : 0;
+            way[k] = fits ? (mm_long) rint(here) - (mm_long) rint(there) : 0;
         }
+        for (int i = 2; isPeriodic && i >= 0; i--) {
+            mm_long times = (mm_long) rint((h_place_t) way[i]/(h_place_t) box[4*i]);
+            for (int k = 0; k < 3; k++)
+                way[k] -= times*box[3*i + k];
+        }
+        for (int k = 0; k < 3; k++)
+            positions[3*vertex + k] = (h_i32) way[k];
     }
 #endif
 }
 
 #define H_PLACEMENT GLOBAL const real4* RESTRICT posq, GLOBAL const real4* RESTRICT correction, \
         GLOBAL const int* RESTRICT slots, GLOBAL const int* RESTRICT anchors, GLOBAL const h_i32* RESTRICT targets, \
-        GLOBAL h_u32* RESTRICT state, GLOBAL h_Frame* RESTRICT frame, GLOBAL H_COORDINATE* RESTRICT positions
+        GLOBAL h_u32* RESTRICT state, GLOBAL h_Frame* RESTRICT frame, GLOBAL H_COORDINATE* RESTRICT positions, \
+        GLOBAL const H_COORDINATE* RESTRICT box
 
-KERNEL void h_place(int vertices, int turn, int unit, H_PLACEMENT) {
-    if (GLOBAL_ID == 0)
-        state[1 - turn] = 0;
-    h_place_vertices(state[turn], GLOBAL_ID, GLOBAL_SIZE, vertices, unit, posq, correction, slots, anchors, targets,
-            state, frame, positions);
+// What the bits of an extent are below.
+DEVICE int h_exponent(h_u32 extent) {
+    return (int) (extent >> 23) - 126;
+}
+
+// With an extent that is known, or with what has been found before.
+KERNEL void h_place(int vertices, int extent, int unit, int turn, H_PLACEMENT) {
+    if (turn >= 0) {
+        if (GLOBAL_ID == 0)
+            state[1 - turn] = 0;
+        extent = h_exponent(state[turn]);
+    }
+    h_place_vertices(extent, GLOBAL_ID, GLOBAL_SIZE, vertices, unit, posq, correction, slots, anchors, targets,
+            state, frame, positions, box);
 }
 
 // Both for small meshes, with one group.
@@ -180,8 +207,8 @@ KERNEL void h_find_extent_and_place(int vertices, int unit, H_PLACEMENT) {
     LOCAL h_u32 largest[256];
     h_u32 mine = h_extent(LOCAL_ID, LOCAL_SIZE, vertices, posq, correction, slots, anchors);
     H_LARGEST_OF_GROUP(largest, mine)
-    h_place_vertices(largest[0], LOCAL_ID, LOCAL_SIZE, vertices, unit, posq, correction, slots, anchors, targets, state,
-            frame, positions);
+    h_place_vertices(h_exponent(largest[0]), LOCAL_ID, LOCAL_SIZE, vertices, unit, posq, correction, slots, anchors,
+            targets, state, frame, positions, box);
 }
 
 // Add the forces to OpenMM's.

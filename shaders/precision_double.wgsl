@@ -12,9 +12,22 @@ fn position(vertex: u32) -> vec3r {
     return vec3r(positions[3u * vertex], positions[3u * vertex + 1u], positions[3u * vertex + 2u]);
 }
 
-// The vector from one vertex to another of the same part of the mesh.
+fn box_vector(k: u32) -> vec3r {
+    return vec3r(box_vectors[3u * k], box_vectors[3u * k + 1u], box_vectors[3u * k + 2u]);
+}
+
+// The vector from one vertex to another of the same part of the mesh; in a periodic box its shortest image.
 fn separation(start: u32, end: u32) -> vec3r {
-    return position(end) - position(start);
+    var way = position(end) - position(start);
+    if is_needed(PERIODIC) {
+        let a = box_vector(0u);
+        let b = box_vector(1u);
+        let c = box_vector(2u);
+        way -= c * round(way.z / c.z);
+        way -= b * round(way.y / b.y);
+        way -= a * round(way.x / a.x);
+    }
+    return way;
 }
 
 // Vulkan promises no more than single precision for the square root of a double; a step of Newton's

@@ -15,9 +15,31 @@ fn lattice_position(vertex: u32) -> vec3<i32> {
     return vec3<i32>(positions[3u * vertex], positions[3u * vertex + 1u], positions[3u * vertex + 2u]);
 }
 
-// The vector from one vertex to another of the same part of the mesh.
+fn box_vector(k: u32) -> vec3<i32> {
+    return vec3<i32>(box_vectors[3u * k], box_vectors[3u * k + 1u], box_vectors[3u * k + 2u]);
+}
+
+// How many times a length goes into another, rounded.
+fn times(length: i32, side: i32) -> i32 {
+    return i32(round(real(length) / real(side)));
+}
+
+// The vector from one vertex to another of the same part of the mesh, in steps; in a periodic box its shortest image.
+fn lattice_separation(start: u32, end: u32) -> vec3<i32> {
+    var way = lattice_position(end) - lattice_position(start);
+    if is_needed(PERIODIC) {
+        let a = box_vector(0u);
+        let b = box_vector(1u);
+        let c = box_vector(2u);
+        way -= c * times(way.z, c.z);
+        way -= b * times(way.y, b.y);
+        way -= a * times(way.x, a.x);
+    }
+    return way;
+}
+
 fn separation(start: u32, end: u32) -> vec3r {
-    return vec3r(lattice_position(end) - lattice_position(start)) * frame.quantum;
+    return vec3r(lattice_separation(start, end)) * frame.quantum;
 }
 
 fn root(x: real) -> real {

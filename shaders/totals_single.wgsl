@@ -155,8 +155,8 @@ fn sum_triangle(triangle: u32, exists: bool, geometry: vec4r, lane: u32, group: 
     var volume = vec4<u32>();
     if exists {
         let a = lattice_position(corner_vertex(triangle, 0u));
-        let u = lattice_position(corner_vertex(triangle, 1u)) - a;
-        let v = lattice_position(corner_vertex(triangle, 2u)) - a;
+        let u = lattice_separation(corner_vertex(triangle, 0u), corner_vertex(triangle, 1u));
+        let v = lattice_separation(corner_vertex(triangle, 0u), corner_vertex(triangle, 2u));
         let x = component(u.y, v.z, u.z, v.y);
         let y = component(u.z, v.x, u.x, v.z);
         let z = component(u.x, v.y, u.y, v.x);

@@ -76,7 +76,7 @@ pub fn comparison() -> String {
         text += &structure!(
             NativePlan,
             "HelfrichNativePlan",
-            num_buffers num_passes num_targets num_runs targets runs version unit num_vertices particles anchors
+            num_buffers num_passes num_targets num_runs targets runs version extent unit num_vertices particles anchors
         );
     }
     text

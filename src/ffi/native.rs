@@ -1,6 +1,6 @@
 //! The C interface to [`crate::evaluator::gpu::native`]: evaluations by OpenMM's own GPU platforms.
 
-use super::membrane::read_terms;
+use super::membrane::{cell, read_terms};
 use super::{NativeBuffer, NativePass, NativePlan, TermInput, guarded, slice, text};
 use crate::evaluator::gpu::Precision;
 use crate::evaluator::gpu::native::{self, Native};
@@ -23,8 +23,11 @@ pub extern "C" fn Helfrich_Native_source(is_double: c_int) -> *const c_char {
 /// # Safety
 /// `term` must be readable with its fields.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn Helfrich_Native_canEvaluate(term: *const TermInput) -> c_int {
-    c_int::from(native::is_native(&unsafe { (*term).term() }))
+pub unsafe extern "C" fn Helfrich_Native_canEvaluate(
+    term: *const TermInput,
+    is_periodic: c_int,
+) -> c_int {
+    c_int::from(native::is_native(&unsafe { (*term).term() }, is_periodic != 0))
 }
 
 /// Plans for a membrane in one precision.
@@ -57,14 +60,17 @@ pub unsafe extern "C" fn Helfrich_Native_look(
     num_terms: i64,
     num_particles: i64,
     positions: *const f64,
+    box_vectors: *const [[f64; 3]; 3],
 ) -> c_int {
     guarded(unsafe { text(subject) }, || {
         let terms = unsafe { read_terms(terms, num_terms) };
         let positions = unsafe { slice(positions, 3 * num_particles as usize) };
         let (native, membrane) = unsafe { (&mut *native, &mut *membrane) };
         let mut forces = vec![0.0; positions.len()];
-        membrane.look(&terms, Configuration::new(positions, None), &mut forces)?;
-        native.set_unit(membrane.mesh(), positions);
+        let cell = unsafe { cell(box_vectors) }?;
+        let at = Configuration::new(positions, cell.as_ref());
+        membrane.look(&terms, at, &mut forces)?;
+        native.set_unit(membrane.mesh(), at);
         Ok(())
     })
 }
@@ -79,6 +85,7 @@ pub unsafe extern "C" fn Helfrich_Native_plan(
     subject: *const c_char,
     native: *mut Native,
     membrane: *const Membrane,
+    box_vectors: *const [[f64; 3]; 3],
     terms: *const TermInput,
     num_terms: i64,
     energies: c_int,
@@ -95,7 +102,8 @@ pub unsafe extern "C" fn Helfrich_Native_plan(
         }
         let (energies, forces) = (energies != 0, forces != 0);
         let generation = membrane.generation();
-        native.plan(membrane.mesh(), generation, &terms, energies, forces, derivatives)?;
+        let cell = unsafe { cell(box_vectors) }?;
+        native.plan(membrane.mesh(), generation, cell.as_ref(), &terms, energies, forces, derivatives)?;
         let (particles, anchors) = native.vertices();
         let made = native.last_plan();
         unsafe {
@@ -107,6 +115,7 @@ pub unsafe extern "C" fn Helfrich_Native_plan(
                 targets: made.targets.as_ptr(),
                 runs: made.runs.as_ptr(),
                 version: made.version,
+                extent: made.extent,
                 unit: native.unit(),
                 num_vertices: particles.len() as i64,
                 particles: particles.as_ptr(),

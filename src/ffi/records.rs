@@ -79,6 +79,8 @@ pub struct NativePlan {
     pub(super) targets: *const [c_int; 4],
     pub(super) runs: *const [c_int; 4],
     pub(super) version: u64,
+    /// The lattice reaches 2 to this power to both sides, nm; the least number where the device has to find out.
+    pub(super) extent: c_int,
     /// The unit of length as a power of two, nm.
     pub(super) unit: c_int,
     pub(super) num_vertices: i64,

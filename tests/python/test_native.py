@@ -182,17 +182,24 @@ def test_borders_and_contacts_are_computed_beside_it():
     assert evaluations()["native"] == before["native"] + 3
 
 
-def test_a_periodic_surface_is_left_to_the_processor():
-    mesh = helfrich.Mesh.sheet(8, 8, 10.0, periodic=True)
-    force = helfrich.BendingForce(mesh, 50)
-    force.setUsesPeriodicBoundaryConditions(True)
+def test_a_volume_in_a_periodic_box_is_left_to_the_processor():
+    """It needs the surface in one piece; `test_periodic.py` has the other forces."""
+    mesh, forces = vesicle()
+    for force in forces:
+        force.setUsesPeriodicBoundaryConditions(True)
     system = system_of(mesh.num_vertices)
-    system.setDefaultPeriodicBoxVectors(*mesh.box)
-    context = context_of(DOUBLE, system, [force], mm.VerletIntegrator(0.01))
-    context.setPositions(mesh.vertices)
+    system.setDefaultPeriodicBoxVectors(*(500 * np.eye(3)))
+    context = context_of(DOUBLE, system, forces, mm.VerletIntegrator(0.01))
+    # On a corner of the box, wrapped into it vertex by vertex.
+    context.setPositions(mesh.vertices % 500)
     before = evaluations()
-    context.getState(energy=True)
-    assert evaluations()["native"] == before["native"]
+    state = context.getState(energy=True, forces=True)
+    grown = {name for name, count in evaluations().items() if count > before[name]}
+    assert grown == {"native", "cpu"}
+    expected = Running(vesicle()[1], mesh.num_vertices, REFERENCE).evaluate(mesh.vertices)
+    assert plain(state.getPotentialEnergy()) == pytest.approx(expected[0], rel=1e-9)
+    found = plain(state.getForces(asNumpy=True))
+    assert np.abs(found - expected[1]).max() < 1e-9 * np.abs(expected[1]).max()
 
 
 # --- choice --------------------------------------------------------------------------------------

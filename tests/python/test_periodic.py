@@ -19,7 +19,7 @@ import string_forces
 from cases import PRESENT, Case
 from openmm import unit
 from periodic_meshes import BOXES, Positions, in_box, periodic, wrapped
-from platforms import CPU, HELFRICH, ON_GPU, ON_OPENCL, REFERENCE, Target
+from platforms import CPU, HELFRICH, NATIVE, ON_DEVICE, ON_GPU, ON_OPENCL, REFERENCE, Target
 from running import plain
 
 SHAPES = tuple(BOXES)
@@ -142,6 +142,42 @@ def test_wrapping_changes_no_bit(case: Case, target: Target):
         assert (again, same.tobytes()) == (energy, forces.tobytes())
 
 
+@pytest.mark.parametrize("target", NATIVE[1:], ids=str)
+def test_wrapping_changes_no_bit_on_a_gpu_platform(target: Target):
+    m = periodic("spanning", "triclinic")
+    cases = [case for case in PRESENT if where(case) == "spanning"][::3]
+    run = Running([make(case, "spanning", "triclinic") for case in cases], m.num_particles, target)
+    energy, forces = run.evaluate(m.positions)
+    for seed in range(3):
+        again, same = run.evaluate(wrapped(m.positions, seed))
+        assert (again, same.tobytes()) == (energy, forces.tobytes())
+
+
+@pytest.mark.parametrize("target", NATIVE, ids=str)
+def test_gpu_platforms_follow_the_box(target: Target):
+    """Boxes that change while the Context lives, up to one that is too narrow for an edge."""
+    m = periodic("spanning", "triclinic")
+
+    def force() -> mm.Force:
+        force = helfrich.BendingForce(m.triangles, 50.0)
+        force.setUsesPeriodicBoundaryConditions(True)
+        return force
+
+    found = Running([force()], m.num_particles, target)
+    expected = Running([force()], m.num_particles, REFERENCE)
+    for scale in (1.0, 1.1, 1.7, 0.9):
+        box = scale * m.positions.box
+        positions = in_box(target.rounded(scale * np.asarray(m.positions)), box)
+        energy, forces = expected.evaluate(positions)
+        other, pushes = found.evaluate(positions)
+        assert other == pytest.approx(energy, rel=10 * target.tolerance)
+        assert np.abs(pushes - forces).max() <= 10 * target.tolerance * np.abs(forces).max()
+    narrow = m.positions.box * np.array([[1.0], [1.0], [1e-3]])
+    for run in (expected, found):
+        with pytest.raises(mm.OpenMMException, match="half of"):
+            run.evaluate(in_box(np.asarray(m.positions), narrow))
+
+
 # --- other implementations -----------------------------------------------------------------------
 
 
@@ -202,7 +238,8 @@ def test_a_tiling_has_the_same_forces(shape: str):
 
 # What OpenCL adds is how positions come to the processor; surfaces differ on the GPU.
 PLACES = [
-    *((name, target) for target in [CPU, HELFRICH, *ON_GPU] for name in ("torn", "vesicle")),
+    *((name, target) for target in [CPU, HELFRICH, *ON_DEVICE] for name in ("torn", "vesicle")),
+    *(("spanning", target) for target in NATIVE),
     *(("facing", target) for target in [CPU, HELFRICH, ON_OPENCL[1]]),
     ("spanning", ON_OPENCL[1]),
 ]
@@ -219,7 +256,8 @@ def test_platforms_and_backends_agree(name: str, target: Target):
         [make(case, name, "triclinic") for case in cases], m.num_particles, REFERENCE
     )
     found = Running([make(case, name, "triclinic") for case in cases], m.num_particles, target)
-    energy, forces = expected.evaluate(m.positions)
+    rounded = in_box(target.rounded(np.asarray(m.positions)), m.positions.box)
+    energy, forces = expected.evaluate(rounded)
     before = helfrich.backend.evaluations()
     other, pushes = found.evaluate(m.positions)
     after = helfrich.backend.evaluations()
@@ -227,6 +265,8 @@ def test_platforms_and_backends_agree(name: str, target: Target):
         # What spans the box is computed on the processor whichever backend is chosen.
         grown = [kind for kind in after if after[kind] > before[kind]]
         assert grown == ["gpu" if name == "vesicle" else "cpu"]
+    if target in NATIVE:
+        assert after["native"] > before["native"]
     assert other == pytest.approx(energy, rel=10 * target.tolerance)
     assert np.abs(pushes - forces).max() <= 10 * target.tolerance * np.abs(forces).max()
 

@@ -10,6 +10,7 @@
 #include <openmm/opencl/OpenCLPlatform.h>
 
 #include <algorithm>
+#include <climits>
 #include <iostream>
 #include <map>
 #include <mutex>
@@ -45,8 +46,8 @@ const int evaluationsBetweenChecks = 1000;
 /** Words of the kernels' state: two extents that take turns, faults, and one that nobody uses. */
 const int stateSize = 4;
 /** Buffers, as src/evaluator/gpu/interface.rs numbers them. */
-const int frameBuffer = 0, positionsBuffer = 1, ringsBuffer = 5, cornerForcesBuffer = 11, resultsBuffer = 13,
-          thinBuffer = 14;
+const int frameBuffer = 0, positionsBuffer = 1, boxBuffer = 2, ringsBuffer = 6, cornerForcesBuffer = 12,
+          resultsBuffer = 14, thinBuffer = 15;
 /** Below so many vertices one group is faster than two kernels. */
 const int64_t verticesOfOneGroup = 2048;
 
@@ -202,11 +203,12 @@ int NativeMembrane::findDerivative(const string& parameter) const {
     return (int) (std::find(names.begin(), names.end(), parameter) - names.begin());
 }
 
-void NativeMembrane::look(const string& subject, ContextImpl& context, const vector<HelfrichTerm>& terms) {
+void NativeMembrane::look(const string& subject, ContextImpl& context, const vector<HelfrichTerm>& terms,
+                          const double* box) {
     vector<Vec3> positions;
     context.getPositions(positions);
     check(Helfrich_Native_look(subject.c_str(), native, core, terms.data(), (int64_t) terms.size(),
-                               (int64_t) positions.size(), reinterpret_cast<const double*>(positions.data())));
+                               (int64_t) positions.size(), reinterpret_cast<const double*>(positions.data()), box));
 }
 
 void NativeMembrane::provide(const HelfrichNativePlan& plan) {
@@ -266,12 +268,13 @@ void NativeMembrane::provide(const HelfrichNativePlan& plan) {
     ComputeKernel place = device->kernels["h_place"], both = device->kernels["h_find_extent_and_place"];
     place->addArg(vertices);
     place->addArg(0);
+    place->addArg(0);
     both->addArg(vertices);
     for (const ComputeKernel& kernel : {place, both}) {
         kernel->addArg(0);
-        for (ArrayInterface* array :
-             {&posq, &correction, device->slots.get(), device->anchors.get(), device->targets.get(),
-              device->state.get(), buffers[frameBuffer].get(), buffers[positionsBuffer].get()})
+        for (ArrayInterface* array : {&posq, &correction, device->slots.get(), device->anchors.get(),
+                                      device->targets.get(), device->state.get(), buffers[frameBuffer].get(),
+                                      buffers[positionsBuffer].get(), buffers[boxBuffer].get()})
             kernel->addArg(*array);
     }
     ComputeKernel forces = device->kernels["h_add_forces"];
@@ -292,28 +295,33 @@ void NativeMembrane::provide(const HelfrichNativePlan& plan) {
 }
 
 void NativeMembrane::evaluate(const string& subject, ContextImpl& context, const vector<HelfrichTerm>& terms,
-                              const vector<int>& derivatives, bool forces, bool wantsSums) {
+                              const vector<int>& derivatives, bool forces, bool wantsSums, const double* box) {
     ContextSelector selector(device->cc);
     if (!hasLooked) {
-        look(subject, context, terms);
+        look(subject, context, terms, box);
         hasLooked = true;
     }
     HelfrichNativePlan plan;
-    check(Helfrich_Native_plan(subject.c_str(), native, core, terms.data(), (int64_t) terms.size(), wantsSums, forces,
-                               derivatives.data(), &plan));
+    check(Helfrich_Native_plan(subject.c_str(), native, core, box, terms.data(), (int64_t) terms.size(), wantsSums,
+                               forces, derivatives.data(), &plan));
     provide(plan);
     int64_t groups = (plan.numVertices + groupSize - 1) / groupSize;
-    if (plan.numVertices <= verticesOfOneGroup) {
+    ComputeKernel place = device->kernels["h_place"];
+    if (plan.extent == INT_MIN && plan.numVertices <= verticesOfOneGroup) {
         device->kernels["h_find_extent_and_place"]->setArg(1, plan.unit);
         int threads = device->cc.getMaxThreadBlockSize() < 256 ? groupSize : 256;
         device->kernels["h_find_extent_and_place"]->execute(threads, threads);
     } else {
-        device->kernels["h_find_extent"]->setArg(1, turn);
-        device->run("h_find_extent", groups);
-        device->kernels["h_place"]->setArg(1, turn);
-        device->kernels["h_place"]->setArg(2, plan.unit);
+        place->setArg(1, plan.extent);
+        place->setArg(2, plan.unit);
+        place->setArg(3, -1);
+        if (plan.extent == INT_MIN) {
+            device->kernels["h_find_extent"]->setArg(1, turn);
+            device->run("h_find_extent", groups);
+            place->setArg(3, turn);
+            turn = 1 - turn;
+        }
         device->run("h_place", groups);
-        turn = 1 - turn;
     }
     for (int64_t i = 0; i < plan.numPasses; i++) {
         HelfrichNativePass pass = Helfrich_Native_pass(native, i);
@@ -331,10 +339,11 @@ void NativeMembrane::evaluate(const string& subject, ContextImpl& context, const
     }
     Helfrich_Native_count();
     if (wantsSums || ++unchecked >= evaluationsBetweenChecks)
-        checkFaults(subject, context, terms);
+        checkFaults(subject, context, terms, box);
 }
 
-void NativeMembrane::checkFaults(const string& subject, ContextImpl& context, const vector<HelfrichTerm>& terms) {
+void NativeMembrane::checkFaults(const string& subject, ContextImpl& context, const vector<HelfrichTerm>& terms,
+                                 const double* box) {
     unchecked = 0;
     int state[stateSize];
     device->state->download(state);
@@ -343,7 +352,7 @@ void NativeMembrane::checkFaults(const string& subject, ContextImpl& context, co
         return;
     const int none = 0;
     device->state->uploadSubArray(&none, 2, 1);
-    look(subject, context, terms);
+    look(subject, context, terms, box);
     // What the processor has no complaint about now may have been otherwise before.
     if (faults & 1)
         throw OpenMMException(subject + ": since the energy was asked for last, a position was not finite, or the " +

@@ -50,18 +50,21 @@ public:
      * @param derivatives  for each scalar of each term the number of the derivative that it adds to, or -1
      * @param wantsSums    whether energies or derivatives are wanted
      * @param forces       whether forces are wanted
+     * @param box          the vectors of the periodic box, nm, or null
      */
     void evaluate(const std::string& subject, OpenMM::ContextImpl& context, const std::vector<HelfrichTerm>& terms,
-                  const std::vector<int>& derivatives, bool forces, bool wantsSums);
+                  const std::vector<int>& derivatives, bool forces, bool wantsSums, const double* box);
 
 private:
     struct Device;
     /** Evaluate on the processor, which names what is wrong. */
-    void look(const std::string& subject, OpenMM::ContextImpl& context, const std::vector<HelfrichTerm>& terms);
+    void look(const std::string& subject, OpenMM::ContextImpl& context, const std::vector<HelfrichTerm>& terms,
+              const double* box);
     /** Bring to the device what it lacks. */
     void provide(const HelfrichNativePlan& plan);
     /** Look at what the kernels could not say. */
-    void checkFaults(const std::string& subject, OpenMM::ContextImpl& context, const std::vector<HelfrichTerm>& terms);
+    void checkFaults(const std::string& subject, OpenMM::ContextImpl& context, const std::vector<HelfrichTerm>& terms,
+                     const double* box);
 
     HelfrichMembrane* core;
     HelfrichNative* native;

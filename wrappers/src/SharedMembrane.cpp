@@ -218,8 +218,8 @@ bool SharedMembrane::startNative(const MembraneForce& force, ContextImpl& contex
     // An OpenCL driver that computes on the processor is slower there than our own code.
     if (!isMust && NativeMembrane::isOnProcessor(context))
         return false;
-    // Borders, contacts and periodic surfaces are for the processor, whatever evaluates the rest.
-    if (force.usesPeriodicBoundaryConditions() || !Helfrich_Native_canEvaluate(&term))
+    // Borders, contacts and volumes in a periodic box are for the processor, whatever evaluates the rest.
+    if (!Helfrich_Native_canEvaluate(&term, force.usesPeriodicBoundaryConditions()))
         return false;
     if (native != nullptr)
         return true;
@@ -253,7 +253,15 @@ void SharedMembrane::evaluateNatively(const string& subject, ContextImpl& contex
             active[i]->findDerivatives(*native, &derivativeNumbers[HELFRICH_MAX_PARAMETERS * i]);
             wantsSums = true;
         }
-    native->evaluate(subject, context, terms, derivativeNumbers, forces, wantsSums);
+    native->evaluate(subject, context, terms, derivativeNumbers, forces, wantsSums, findBox(context));
+    noteSpanning(subject, context);
+}
+
+void SharedMembrane::noteSpanning(const string& subject, ContextImpl& context) {
+    if (spans || !Helfrich_Membrane_spans(core))
+        return;
+    refuseTearing(subject, context.getSystem());
+    spans = true;
 }
 
 void SharedMembrane::collect(ContextImpl& context, int groups, Which which) {
@@ -283,10 +291,7 @@ double SharedMembrane::evaluate(const string& subject, ContextImpl& context, int
                                      findBox(context),
                                      includeEnergy || wantsDerivatives ? contributions.data() : nullptr,
                                      forces == nullptr ? nullptr : reinterpret_cast<double*>(forces->data())));
-    if (!spans && Helfrich_Membrane_spans(core)) {
-        refuseTearing(subject, context.getSystem());
-        spans = true;
-    }
+    noteSpanning(subject, context);
     double energy = 0;
     for (size_t i = 0; i < active.size(); i++) {
         energy += contributions[i].energy;

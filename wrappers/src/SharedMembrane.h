@@ -220,6 +220,8 @@ private:
     enum class Which { Native, Others, All };
     /** Note the members in some force groups, and their terms. */
     void collect(OpenMM::ContextImpl& context, int groups, Which which = Which::All);
+    /** Refuse barostats that would tear a membrane that has been found to span the box. */
+    void noteSpanning(const std::string& subject, OpenMM::ContextImpl& context);
     /** The vectors of the box that the members live in, nm, or null. */
     const double* findBox(OpenMM::ContextImpl& context);
     Connectivity getConnectivity() const;

@@ -4,7 +4,7 @@ use super::buffers::{Buffers, Demand, TAIL};
 use super::device::Device;
 use super::faults::{Fault, strikes};
 use super::frame::{Frame, groups};
-use super::interface::{Binding, GROUPS_ACROSS, Sink};
+use super::interface::{Binding, GROUPS_ACROSS, Sink, Wishes};
 use super::lattice::{Lattice, Scale};
 use super::layout::passes;
 use super::{Bytes, Precision, Reals};
@@ -137,7 +137,8 @@ impl GpuEvaluator {
         let start = Instant::now();
         let Some(scale) = self.lattice.place(&self.topology, positions) else { return Ok(false) };
         let (topology, precision) = (self.topology.clone(), self.precision);
-        if !self.frame.fill(&topology, precision, scale, terms, forces.is_some()) {
+        let wishes = if forces.is_some() { Wishes::FORCES } else { Wishes::empty() };
+        if !self.frame.fill(&topology, precision, scale, terms, wishes, f64::INFINITY) {
             return Ok(false);
         }
         let real = precision.size();

@@ -63,19 +63,20 @@ impl Frame {
         }
     }
 
-    /// Write down the terms. False if a value does not fit the device's numbers.
+    /// Write down the terms; `longest` is a length that no side of a triangle may have, in the device's units. False if a
+    /// value does not fit the device's numbers.
     pub fn fill(
         &mut self,
         topology: &Topology,
         precision: Precision,
         scale: Scale,
         terms: &[Term],
-        forces: bool,
+        wishes: Wishes,
+        longest: f64,
     ) -> bool {
         self.update_fields(terms);
         self.needs =
             terms.iter().fold(Needs::empty(), |all, term| all | term.potential.needs(term));
-        let wishes = if forces { Wishes::FORCES } else { Wishes::empty() };
         self.bytes.clear();
         FrameRecord {
             num_vertices: topology.num_vertices() as u32,
@@ -84,7 +85,9 @@ impl Frame {
             needs: self.needs.bits() | wishes.bits(),
             num_terms: terms.len() as u32,
             quantum: scale.quantum as f32,
-            padding: [0; 2],
+            // Where the processor looks at edges, their lengths have no bound here.
+            longest_squared: (longest * longest).min(f64::from(f32::MAX)) as f32,
+            padding: 0,
         }
         .put(&mut Bytes { precision, bytes: &mut self.bytes });
         self.sums.clear();

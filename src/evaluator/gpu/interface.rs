@@ -11,6 +11,8 @@ bitflags! {
     /// What is wanted of a term or an evaluation, as bits beside those of [`Needs`].
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub struct Wishes: u32 {
+        /// Separations are those of nearest images in [`Binding::BoxVectors`].
+        const PERIODIC = 1 << 28;
         /// Energy of the vertices that are on no border only.
         const INNER = 1 << 29;
         /// The derivatives with respect to the scalars.
@@ -142,8 +144,10 @@ record! {
         num_terms: u32,
         /// The spacing of the lattice on which positions are whole numbers (single precision).
         quantum: f32,
+        /// The square of a length that no side of a triangle may have.
+        longest_squared: f32,
         /// Terms begin at a multiple of the size of four doubles.
-        padding: [u32; 2],
+        padding: u32,
     }
 }
 
@@ -240,6 +244,8 @@ bindings! {
     Frame: "read" Frame;
     /// Three a vertex.
     Positions: "read" Coordinate;
+    /// Of the periodic box a, b and c, in the units of positions.
+    BoxVectors: "read" Coordinate;
     /// Corner 3 t + k is the k-th corner of triangle t; here is the vertex there.
     CornerVertices: "read" Word;
     /// The edge from each corner to the next.

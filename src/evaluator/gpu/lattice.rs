@@ -9,7 +9,7 @@ use crate::mesh::Topology;
 
 /// Half of the steps across the widest part: the sides of triangles stay below 2³⁰ steps, so that the products
 /// of two fit 62 bits and their differences 63.
-const HALF_WIDTH_BITS: i32 = 29;
+pub const HALF_WIDTH_BITS: i32 = 29;
 
 /// Adding it to a number below 2³¹ leaves the number, rounded, in the last bits of the sum.
 const ROUNDER: f64 = 6_755_399_441_055_744.0;

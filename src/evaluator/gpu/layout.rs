@@ -40,6 +40,7 @@ pub fn items(
     let always = Needs::empty();
     Some(match binding {
         Binding::Positions => (3 * v, always),
+        Binding::BoxVectors => (9, always),
         Binding::CornerVertices | Binding::CornerEdges => (3 * t, always),
         Binding::EdgeCorners => (e, always),
         Binding::Rings => (v + 1 + 3 * t, always),

@@ -5,12 +5,14 @@
 //! is in them and which passes run; `wrappers/src/NativeMembrane.cpp` does it.
 
 use super::frame::{Frame, groups};
-use super::interface::Binding;
-use super::lattice::{Scale, connected_parts};
+use super::interface::{Binding, Wishes};
+use super::lattice::{HALF_WIDTH_BITS, Scale, connected_parts};
 use super::layout::{Pass, connectivity, items, passes};
 use super::{Bytes, Precision, Sink, shaders};
 use crate::error::{Error, Result};
-use crate::mesh::{Topology, Triangulation};
+use crate::membrane::Configuration;
+use crate::mesh::geometry::Vec3;
+use crate::mesh::{Cell, Topology, Triangulation};
 use crate::potentials::{MAX_PARAMETERS, Needs, Term};
 use std::ffi::CStr;
 
@@ -24,11 +26,16 @@ pub struct Plan {
     /// A target of each term: its lower and its higher half, its power of two, and the power of lengths that it is;
     /// all 0 if there is none.
     pub targets: Vec<[i32; 4]>,
+    /// The lattice reaches 2 to this power to both sides, nm; [`BY_POSITIONS`] where the device has to find out.
+    pub extent: i32,
     /// Sums in the results: first, length, the derivative or −1 for the energy, and a power of two to multiply with.
     pub runs: Vec<[i32; 4]>,
     /// Changes with `targets` and `runs`.
     pub version: u64,
 }
+
+/// In place of a power of two that depends on positions.
+pub const BY_POSITIONS: i32 = i32::MIN;
 
 /// A buffer of a device.
 #[derive(Default)]
@@ -76,9 +83,11 @@ pub fn source(precision: Precision) -> &'static CStr {
     }
 }
 
-/// Whether a platform can evaluate a term: those of borders and contacts are computed on the processor.
-pub fn is_native(term: &Term) -> bool {
+/// Whether a platform can evaluate a term: those of borders and contacts are computed on the processor, and in a periodic
+/// box volumes, for which a surface has to be in one piece.
+pub fn is_native(term: &Term, is_periodic: bool) -> bool {
     !term.potential.needs(term).intersects(Needs::BORDERS | Needs::CONTACTS)
+        && !(is_periodic && term.potential.needs_outside())
 }
 
 impl Native {
@@ -98,16 +107,17 @@ impl Native {
 
     /// Choose the unit of length by the positions of all particles: a power of two near the mean edge, so that no square of
     /// a square leaves the range of single precision. As it is a power of two, no bit depends on it.
-    pub fn set_unit(&mut self, mesh: &Triangulation, positions: &[f64]) {
+    pub fn set_unit(&mut self, mesh: &Triangulation, at: Configuration) {
         let position = |vertex: u32| {
             let first = 3 * mesh.particles()[vertex as usize] as usize;
-            [positions[first], positions[first + 1], positions[first + 2]]
+            Vec3::from_column_slice(&at.positions[first..][..3])
         };
         let mut sum = 0.0;
         for half in mesh.edges() {
             let (a, b) = (mesh.origin(half), mesh.origin(crate::mesh::triangulation::next(half)));
-            let (a, b) = (position(a), position(b));
-            sum += (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
+            let way = position(b) - position(a);
+            let shift = at.cell.map(|cell| cell.shift(cell.nearest(&way)));
+            sum += (way + shift.unwrap_or_default()).norm();
         }
         let mean = sum / mesh.num_edges().max(1) as f64;
         if (1e-20..1e20).contains(&mean) {
@@ -125,7 +135,7 @@ impl Native {
         (&self.particles, &self.anchors)
     }
 
-    /// Say what an evaluation of terms takes. `generation` changes with the connectivity of the mesh; `derivatives` has
+    /// Say what an evaluation of terms takes, in a periodic box or none. `generation` changes with the connectivity of the mesh; `derivatives` has
     /// for each scalar of each term the number of the derivative that it adds to, or −1.
     ///
     /// # Errors
@@ -134,6 +144,7 @@ impl Native {
         &mut self,
         mesh: &Triangulation,
         generation: u64,
+        cell: Option<&Cell>,
         terms: &[Term],
         energies: bool,
         forces: bool,
@@ -148,7 +159,12 @@ impl Native {
         };
         // The device finds the spacing of its lattice by itself.
         let scale = Scale { unit: 2f64.powi(*unit), quantum: 1.0 };
-        if !frame.fill(topology, *precision, scale, terms, forces) {
+        let mut wishes = Wishes::empty();
+        wishes.set(Wishes::FORCES, forces);
+        wishes.set(Wishes::PERIODIC, cell.is_some());
+        // What is flagged here the processor looks at, with the exact bound.
+        let longest = cell.map_or(f64::INFINITY, |cell| 0.999 * cell.half_width() / scale.unit);
+        if !frame.fill(topology, *precision, scale, terms, wishes, longest) {
             let names: Vec<_> = terms.iter().map(|term| term.potential.name()).collect();
             return Err(Error::Contract(format!(
                 "a target area or volume of {} is too large for a GPU platform; check its unit, or set the backend \
@@ -174,6 +190,11 @@ impl Native {
             buffer.items = buffer.items.max(1);
         }
         plan.buffers[Binding::Frame as usize].set(&frame.bytes);
+        plan.extent = cell.map_or(BY_POSITIONS, extent);
+        if let Some(cell) = cell {
+            let buffer = &mut plan.buffers[Binding::BoxVectors as usize];
+            buffer.set(&box_vectors(cell, *precision, *unit));
+        }
         if std::mem::take(&mut frame.fields_changed) && !frame.fields.is_empty() {
             let mut bytes = Vec::with_capacity(frame.fields.len() * real);
             let mut sink = Bytes { precision: *precision, bytes: &mut bytes };
@@ -217,6 +238,27 @@ impl Native {
         }
         self.particles.clone_from(&topology.particles);
         self.topology = Some(topology);
+    }
+}
+
+/// The power of two that half of the box' sides are below, nm: positions are taken where they are that near.
+fn extent(cell: &Cell) -> i32 {
+    let [a, b, c] = cell.vectors();
+    (0.5 * a.x.max(b.y).max(c.z)).log2().floor() as i32 + 1
+}
+
+/// The vectors of a box as shaders read them.
+fn box_vectors(cell: &Cell, precision: Precision, unit: i32) -> Vec<u8> {
+    let components = cell.vectors().iter().flat_map(|vector| vector.iter());
+    match precision {
+        Precision::Single => {
+            let steps = 2f64.powi(HALF_WIDTH_BITS - extent(cell));
+            components.flat_map(|x| ((x * steps).round() as i32).to_ne_bytes()).collect()
+        }
+        Precision::Double => {
+            let scale = 2f64.powi(-unit);
+            components.flat_map(|x| (x * scale).to_ne_bytes()).collect()
+        }
     }
 }
 

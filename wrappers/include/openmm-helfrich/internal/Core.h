@@ -67,6 +67,8 @@ struct HelfrichNativePlan {
     const int *targets, *runs;
     /** Changes with the targets and runs. */
     uint64_t version;
+    /** The lattice reaches 2 to this power to both sides, nm; INT_MIN where the device has to find out. */
+    int extent;
     /** The unit of length as a power of two, nm. */
     int unit;
     int64_t numVertices;
@@ -125,16 +127,17 @@ int Helfrich_Membrane_choose(const char* subject, HelfrichMembrane* membrane, co
 int Helfrich_Membrane_wishesNative(const HelfrichMembrane* membrane);
 int Helfrich_checkBackend(const char* subject, const char* backend);
 const char* Helfrich_Native_source(int isDouble);
-int Helfrich_Native_canEvaluate(const HelfrichTerm* term);
+int Helfrich_Native_canEvaluate(const HelfrichTerm* term, int isPeriodic);
 HelfrichNative* Helfrich_Native_create(int isDouble);
 void Helfrich_Native_destroy(HelfrichNative* native);
 /** Evaluate on the processor, for its errors, and choose the unit of length. */
 int Helfrich_Native_look(const char* subject, HelfrichNative* native, HelfrichMembrane* membrane,
-                         const HelfrichTerm* terms, int64_t numTerms, int64_t numParticles, const double* positions);
+                         const HelfrichTerm* terms, int64_t numTerms, int64_t numParticles, const double* positions,
+                         const double* boxVectors);
 /** For each scalar of each term, `derivatives` has the number of the derivative that it adds to, or -1. */
 int Helfrich_Native_plan(const char* subject, HelfrichNative* native, const HelfrichMembrane* membrane,
-                         const HelfrichTerm* terms, int64_t numTerms, int energies, int forces, const int* derivatives,
-                         HelfrichNativePlan* plan);
+                         const double* boxVectors, const HelfrichTerm* terms, int64_t numTerms, int energies, int forces,
+                         const int* derivatives, HelfrichNativePlan* plan);
 HelfrichNativeBuffer Helfrich_Native_buffer(const HelfrichNative* native, int64_t number);
 HelfrichNativePass Helfrich_Native_pass(const HelfrichNative* native, int64_t number);
 /** Note that a GPU platform has evaluated. */
