@@ -170,6 +170,11 @@ fn store_vertex(index: u32, slopes: VertexSlopes) {
     }
 }
 
+// Whether a side of a triangle has no other triangle.
+fn is_border_side(triangle: u32, side: u32) -> bool {
+    return edge_corners[corner_edges[3u * triangle + side]].y == NO_CORNER;
+}
+
 // Whether a vertex is on a border: one of the edges that leave it has one triangle only.
 fn is_on_border(index: u32) -> bool {
     if 2u * frame.num_edges == 3u * frame.num_triangles {

@@ -103,7 +103,15 @@ pub unsafe extern "C" fn Helfrich_Native_plan(
         let (energies, forces) = (energies != 0, forces != 0);
         let generation = membrane.generation();
         let cell = unsafe { cell(box_vectors) }?;
-        native.plan(membrane.mesh(), generation, cell.as_ref(), &terms, energies, forces, derivatives)?;
+        native.plan(
+            membrane.mesh(),
+            generation,
+            cell.as_ref(),
+            &terms,
+            energies,
+            forces,
+            derivatives,
+        )?;
         let (particles, anchors) = native.vertices();
         let made = native.last_plan();
         unsafe {

@@ -78,6 +78,24 @@ def test_every_row_is_that_of_the_processor(case: Case, where: str, target: Targ
     assert not found[1][m.foreign].any()
 
 
+OPEN = [case for case in PRESENT if case.surface != "closed" and not case.is_contact]
+
+
+@pytest.mark.parametrize("where", ["holed", "disk"])
+@pytest.mark.parametrize("target", NATIVE, ids=str)
+def test_rows_on_surfaces_with_borders(where: str, target: Target):
+    """GPU platforms compute borders themselves, others leave them to the processor."""
+    m = membrane(where)
+    for first in range(0, len(OPEN), 32):
+        cases = OPEN[first : first + 32]
+        run = Running([case.make(m) for case in cases], m.num_particles, target)
+        for group, case in enumerate(cases):
+            found = only_on(target, lambda run=run, k=group: run.evaluate(m.positions, k))
+            reference = running(case.name, where, REFERENCE).evaluate(target.rounded(m.positions))
+            is_blunt = "unsigned" in case.name and not target.name.endswith("double")
+            compare(found, reference, 1e-4 if is_blunt else target.tolerance)
+
+
 @pytest.mark.parametrize("radius", [10.0, 100.0, 1000.0, 10_000.0])
 @pytest.mark.parametrize("distance", [0.0, 1e6])
 @on_device

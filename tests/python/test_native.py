@@ -157,7 +157,7 @@ def test_in_a_bath_that_openmm_sorts_and_wraps(target: Target):
 # --- beside the processor ------------------------------------------------------------------------
 
 
-def test_borders_and_contacts_are_computed_beside_it():
+def test_contacts_are_computed_beside_it():
     """The processor adds them to the same Context, by force groups and all together."""
     mesh = helfrich.Mesh.disk(8, 100.0)
     rng = np.random.default_rng(3)
@@ -179,7 +179,7 @@ def test_borders_and_contacts_are_computed_beside_it():
         reference = expected.evaluate(positions, group)
         assert energy == pytest.approx(reference[0], rel=1e-9, abs=1e-12)
         assert np.abs(of_group - reference[1]).max() <= 1e-9 * max(np.abs(reference[1]).max(), 1)
-    assert evaluations()["native"] == before["native"] + 3
+    assert evaluations()["native"] == before["native"] + 4
 
 
 def test_a_volume_in_a_periodic_box_is_left_to_the_processor():

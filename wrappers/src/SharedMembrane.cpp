@@ -218,7 +218,7 @@ bool SharedMembrane::startNative(const MembraneForce& force, ContextImpl& contex
     // An OpenCL driver that computes on the processor is slower there than our own code.
     if (!isMust && NativeMembrane::isOnProcessor(context))
         return false;
-    // Borders, contacts and volumes in a periodic box are for the processor, whatever evaluates the rest.
+    // Contacts and volumes in a periodic box are for the processor, whatever evaluates the rest.
     if (!Helfrich_Native_canEvaluate(&term, force.usesPeriodicBoundaryConditions()))
         return false;
     if (native != nullptr)

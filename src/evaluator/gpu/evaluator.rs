@@ -68,7 +68,7 @@ impl GpuEvaluator {
         }
         let buffers = Buffers::new(&device, &topology, precision)?;
         let lattice = Lattice::new(&topology, precision);
-        let frame = Frame::new();
+        let frame = Frame::new(false);
         Ok(Self { topology, device, precision, lattice, frame, buffers, stopwatch: None })
     }
 

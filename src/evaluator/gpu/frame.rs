@@ -49,10 +49,12 @@ pub struct Frame {
     pub fields: Vec<f64>,
     /// Whether `fields` differ from those of the last evaluation.
     pub fields_changed: bool,
+    /// Whether the device computes the terms of borders too, triangle by triangle; otherwise the processor does.
+    has_borders: bool,
 }
 
 impl Frame {
-    pub fn new() -> Self {
+    pub fn new(has_borders: bool) -> Self {
         Self {
             bytes: Vec::new(),
             needs: Needs::empty(),
@@ -60,6 +62,7 @@ impl Frame {
             sums: Vec::new(),
             fields: Vec::new(),
             fields_changed: true,
+            has_borders,
         }
     }
 
@@ -75,8 +78,7 @@ impl Frame {
         longest: f64,
     ) -> bool {
         self.update_fields(terms);
-        self.needs =
-            terms.iter().fold(Needs::empty(), |all, term| all | term.potential.needs(term));
+        self.needs = terms.iter().fold(Needs::empty(), |all, term| all | self.needs_of(term));
         self.bytes.clear();
         FrameRecord {
             num_vertices: topology.num_vertices() as u32,
@@ -98,6 +100,15 @@ impl Frame {
             fits &= self.put_term(topology, precision, scale, term, &mut field_start);
         }
         fits
+    }
+
+    /// What a term needs here.
+    fn needs_of(&self, term: &Term) -> Needs {
+        let mut needs = term.potential.needs(term);
+        if needs.contains(Needs::BORDERS) && self.has_borders {
+            needs |= Needs::TRIANGLES;
+        }
+        needs
     }
 
     /// Take over the values of single elements, if they are others than before.
@@ -126,7 +137,7 @@ impl Frame {
         term: &Term,
         field_start: &mut usize,
     ) -> bool {
-        let needs = term.potential.needs(term);
+        let needs = self.needs_of(term);
         let mut wishes = Wishes::empty();
         wishes.set(Wishes::DERIVATIVES, term.wants_derivatives);
         wishes.set(Wishes::INNER, !term.potential.acts_at_borders());

@@ -113,9 +113,8 @@ mod tests {
         let is_for_device = |potential: &&dyn Potential| {
             let name = potential.name();
             let values = vec![1.0; potential.parameters().len()];
-            // Borders and contacts are computed on the processor.
             let needs = potential.needs(&Term::new(name, 0, &values).unwrap());
-            !needs.intersects(Needs::BORDERS | Needs::CONTACTS)
+            !needs.contains(Needs::CONTACTS)
         };
         let potentials: Vec<_> = REGISTRY.into_iter().filter(is_for_device).collect();
         assert_eq!(shaders::POTENTIALS.len(), potentials.len());

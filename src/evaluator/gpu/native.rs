@@ -83,10 +83,10 @@ pub fn source(precision: Precision) -> &'static CStr {
     }
 }
 
-/// Whether a platform can evaluate a term: those of borders and contacts are computed on the processor, and in a periodic
-/// box volumes, for which a surface has to be in one piece.
+/// Whether a platform can evaluate a term: those of contacts are computed on the processor, and in a periodic box volumes,
+/// for which a surface has to be in one piece.
 pub fn is_native(term: &Term, is_periodic: bool) -> bool {
-    !term.potential.needs(term).intersects(Needs::BORDERS | Needs::CONTACTS)
+    !term.potential.needs(term).contains(Needs::CONTACTS)
         && !(is_periodic && term.potential.needs_outside())
 }
 
@@ -97,7 +97,7 @@ impl Native {
             precision,
             topology: None,
             generation: 0,
-            frame: Frame::new(),
+            frame: Frame::new(true),
             unit: 0,
             plan: Plan::default(),
             particles: Vec::new(),

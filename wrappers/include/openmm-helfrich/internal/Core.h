@@ -136,8 +136,8 @@ int Helfrich_Native_look(const char* subject, HelfrichNative* native, HelfrichMe
                          const double* boxVectors);
 /** For each scalar of each term, `derivatives` has the number of the derivative that it adds to, or -1. */
 int Helfrich_Native_plan(const char* subject, HelfrichNative* native, const HelfrichMembrane* membrane,
-                         const double* boxVectors, const HelfrichTerm* terms, int64_t numTerms, int energies, int forces,
-                         const int* derivatives, HelfrichNativePlan* plan);
+                         const double* boxVectors, const HelfrichTerm* terms, int64_t numTerms, int energies,
+                         int forces, const int* derivatives, HelfrichNativePlan* plan);
 HelfrichNativeBuffer Helfrich_Native_buffer(const HelfrichNative* native, int64_t number);
 HelfrichNativePass Helfrich_Native_pass(const HelfrichNative* native, int64_t number);
 /** Note that a GPU platform has evaluated. */
