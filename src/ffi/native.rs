@@ -3,7 +3,7 @@
 use super::membrane::{cell, read_terms};
 use super::{NativeBuffer, NativePass, NativePlan, TermInput, guarded, slice, text};
 use crate::evaluator::gpu::Precision;
-use crate::evaluator::gpu::native::{self, Native};
+use crate::evaluator::gpu::native::{self, Native, Wanted};
 use crate::membrane::{Configuration, Membrane};
 use crate::potentials::MAX_PARAMETERS;
 use std::ffi::{c_char, c_int};
@@ -100,18 +100,14 @@ pub unsafe extern "C" fn Helfrich_Native_plan(
         for term in &terms {
             membrane.check(term)?;
         }
-        let (energies, forces) = (energies != 0, forces != 0);
-        let generation = membrane.generation();
         let cell = unsafe { cell(box_vectors) }?;
-        native.plan(
-            membrane.mesh(),
-            generation,
-            cell.as_ref(),
-            &terms,
-            energies,
-            forces,
+        let wanted = Wanted {
+            cell: cell.as_ref(),
+            energies: energies != 0,
+            forces: forces != 0,
             derivatives,
-        )?;
+        };
+        native.plan(membrane.mesh(), membrane.generation(), &terms, &wanted)?;
         let (particles, anchors) = native.vertices();
         let made = native.last_plan();
         unsafe {

@@ -37,6 +37,18 @@ pub struct Plan {
 /// In place of a power of two that depends on positions.
 pub const BY_POSITIONS: i32 = i32::MIN;
 
+/// What is asked of an evaluation.
+pub struct Wanted<'a> {
+    /// The periodic box, if there is one.
+    pub cell: Option<&'a Cell>,
+    /// Energies, or derivatives with respect to scalars.
+    pub energies: bool,
+    /// Forces.
+    pub forces: bool,
+    /// For each scalar of each term the number of the derivative that it adds to, or −1.
+    pub derivatives: &'a [[i32; MAX_PARAMETERS]],
+}
+
 /// A buffer of a device.
 #[derive(Default)]
 pub struct Buffer {
@@ -86,8 +98,8 @@ pub fn source(precision: Precision) -> &'static CStr {
 /// Whether a platform can evaluate a term: those of contacts are computed on the processor, and in a periodic box volumes,
 /// for which a surface has to be in one piece.
 pub fn is_native(term: &Term, is_periodic: bool) -> bool {
-    !term.potential.needs(term).contains(Needs::CONTACTS)
-        && !(is_periodic && term.potential.needs_outside())
+    let wants_one_piece = is_periodic && term.potential.needs_outside();
+    !wants_one_piece && !term.potential.needs(term).contains(Needs::CONTACTS)
 }
 
 impl Native {
@@ -135,8 +147,7 @@ impl Native {
         (&self.particles, &self.anchors)
     }
 
-    /// Say what an evaluation of terms takes, in a periodic box or none. `generation` changes with the connectivity of the mesh; `derivatives` has
-    /// for each scalar of each term the number of the derivative that it adds to, or −1.
+    /// Say what an evaluation of terms takes. `generation` changes with the connectivity of the mesh.
     ///
     /// # Errors
     /// A target of a total is beyond all sizes.
@@ -144,12 +155,10 @@ impl Native {
         &mut self,
         mesh: &Triangulation,
         generation: u64,
-        cell: Option<&Cell>,
         terms: &[Term],
-        energies: bool,
-        forces: bool,
-        derivatives: &[[i32; MAX_PARAMETERS]],
+        wanted: &Wanted,
     ) -> Result<()> {
+        let &Wanted { cell, energies, forces, derivatives } = wanted;
         if self.topology.is_none() || self.generation != generation {
             self.set_topology(Topology::of(mesh));
             self.generation = generation;
