@@ -175,7 +175,8 @@ impl Writer<'_> {
         })
     }
 
-    /// A kernel with all buffers as parameters, whose groups take turns: OpenMM may start fewer than there are.
+    /// A kernel with all buffers as parameters. A block of OpenMM's has room for several groups, and blocks take turns, since
+    /// OpenMM may start fewer than are asked for.
     fn kernel(&self, name: &str) -> Text {
         let mut parameters = Vec::new();
         for (handle, variable) in self.module.global_variables.iter() {
@@ -185,13 +186,15 @@ impl Writer<'_> {
         }
         let mut text = format!("KERNEL void {name}(int h_groups, {}) {{\n", parameters.join(", "));
         let mut arguments = Vec::new();
+        let mut id = "";
         for argument in &self.function.arguments {
             match argument.binding {
                 Some(naga::Binding::BuiltIn(BuiltIn::WorkGroupId)) => {
-                    arguments.push("h_id".to_owned())
+                    id = "h_u32_3 h_id = {{(h_u32) (first + h_part), 0, 0}};\n        ";
+                    arguments.push("h_id".to_owned());
                 }
                 Some(naga::Binding::BuiltIn(BuiltIn::LocalInvocationIndex)) => {
-                    arguments.push("LOCAL_ID".to_owned());
+                    arguments.push("LOCAL_ID%H_GROUP_SIZE".to_owned());
                 }
                 _ => return Err(format!("{name} has an argument that OpenMM's kernels lack")),
             }
@@ -204,22 +207,20 @@ impl Writer<'_> {
             }
             let item = self.item_type(handle)?;
             let ty = self.module.global_variables[handle].ty;
-            if let TypeInner::Array { size: ArraySize::Constant(size), .. } =
-                self.module.types[ty].inner
-            {
-                let _ = writeln!(text, "    LOCAL {item} {variable}[{size}];");
-                arguments.push(variable);
-            } else {
-                let _ = writeln!(text, "    LOCAL {item} {variable};");
-                arguments.push(format!("&{variable}"));
-            }
+            let size = match self.module.types[ty].inner {
+                TypeInner::Array { size: ArraySize::Constant(size), .. } => size.get(),
+                _ => 1,
+            };
+            let _ = writeln!(text, "    LOCAL {item} {variable}[H_GROUPS_OF_BLOCK*{size}];");
+            arguments.push(format!("{variable} + {size}*h_part"));
         }
         let _ = write!(
             text,
-            "    for (int group = GROUP_ID; group < h_groups; group += NUM_GROUPS) {{\n\
-             \x20       h_u32_3 h_id = {{{{(h_u32) group, 0, 0}}}};\n\
-             \x20       h_{name}_of_group({});\n\
+            "    const int h_part = LOCAL_ID/H_GROUP_SIZE, h_parts = LOCAL_SIZE/H_GROUP_SIZE;\n\
+             \x20   for (int first = GROUP_ID*h_parts; first < h_groups; first += NUM_GROUPS*h_parts) {{\n\
+             \x20       {}h_{name}_of_group({});\n\
              \x20       SYNC_THREADS\n    }}\n}}\n\n",
+            id,
             arguments.join(", ")
         );
         Ok(text)

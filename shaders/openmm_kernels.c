@@ -77,7 +77,7 @@ DEVICE h_u32 h_extent(int first, int step, int vertices, GLOBAL const real4* pos
 KERNEL void h_find_extent(int vertices, int turn, GLOBAL const real4* RESTRICT posq,
         GLOBAL const real4* RESTRICT correction, GLOBAL const int* RESTRICT slots, GLOBAL const int* RESTRICT anchors,
         GLOBAL h_u32* RESTRICT state) {
-    LOCAL h_u32 largest[64];
+    LOCAL h_u32 largest[H_GROUPS_OF_BLOCK*H_GROUP_SIZE];
     h_u32 mine = h_extent(GLOBAL_ID, GLOBAL_SIZE, vertices, posq, correction, slots, anchors);
     H_LARGEST_OF_GROUP(largest, mine)
     if (LOCAL_ID == 0)
@@ -204,7 +204,7 @@ KERNEL void h_place(int vertices, int extent, int unit, int turn, H_PLACEMENT) {
 
 // Both for small meshes, with one group.
 KERNEL void h_find_extent_and_place(int vertices, int unit, H_PLACEMENT) {
-    LOCAL h_u32 largest[256];
+    LOCAL h_u32 largest[H_GROUPS_OF_BLOCK*H_GROUP_SIZE];
     h_u32 mine = h_extent(LOCAL_ID, LOCAL_SIZE, vertices, posq, correction, slots, anchors);
     H_LARGEST_OF_GROUP(largest, mine)
     h_place_vertices(h_exponent(largest[0]), LOCAL_ID, LOCAL_SIZE, vertices, unit, posq, correction, slots, anchors,

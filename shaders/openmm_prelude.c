@@ -8,6 +8,9 @@ typedef float h_f32;
 typedef double h_f64;
 #endif
 
+// The most groups of a module that share a block of threads.
+#define H_GROUPS_OF_BLOCK 4
+
 #ifdef __OPENCL_VERSION__
 #define H_VECTOR(NAME, ITEM, SIZE, ALIGN) typedef struct { ITEM c[SIZE]; } __attribute__((aligned(ALIGN))) NAME;
 #define H_AS_UINT(x) as_uint(x)

@@ -39,8 +39,8 @@ bool ComputeForceInfo::areGroupsIdentical(int, int) {
 
 namespace {
 
-/** Threads of a group, as src/evaluator/gpu/interface.rs has it. */
-const int groupSize = 64;
+/** Threads of a group, as src/evaluator/gpu/interface.rs has it, and of the largest block, as the kernels have it. */
+const int groupSize = 64, largestBlock = 256;
 /** Without a wish for energies, faults are looked for after so many evaluations. */
 const int evaluationsBetweenChecks = 1000;
 /** Words of the kernels' state: two extents that take turns, faults, and one that nobody uses. */
@@ -145,8 +145,14 @@ struct NativeMembrane::Device {
         if (items > 0)
             array->uploadSubArray(data, 0, (int) items);
     }
+    /** OpenMM starts so many blocks at most; where there are more groups, blocks have several of them. */
     void run(const char* kernel, int64_t groups) {
-        kernels.at(kernel)->execute((int) groups * groupSize, groupSize);
+        int blockSize = groups > cc.getNumThreadBlocks() ? getLargestBlock() : groupSize;
+        kernels.at(kernel)->execute((int) groups * groupSize, blockSize);
+    }
+    int getLargestBlock() const {
+        // A processor has no use for more threads at once.
+        return cc.getIsCPU() || cc.getMaxThreadBlockSize() < largestBlock ? groupSize : largestBlock;
     }
 };
 
@@ -309,7 +315,7 @@ void NativeMembrane::evaluate(const string& subject, ContextImpl& context, const
     ComputeKernel place = device->kernels["h_place"];
     if (plan.extent == INT_MIN && plan.numVertices <= verticesOfOneGroup) {
         device->kernels["h_find_extent_and_place"]->setArg(1, plan.unit);
-        int threads = device->cc.getMaxThreadBlockSize() < 256 ? groupSize : 256;
+        int threads = device->getLargestBlock();
         device->kernels["h_find_extent_and_place"]->execute(threads, threads);
     } else {
         place->setArg(1, plan.extent);
