@@ -2,8 +2,8 @@
 //!
 //! Vectors and arrays become structures around arrays of C, and operations on vectors one of each component, since
 //! OpenCL and CUDA have no vectors in common. Buffers and the memory of workgroups are handed from function to
-//! function, because OpenCL has no variables of programs. `shaders/openmm.c` begins each program with what differs
-//! between the three, and has the kernels that only OpenMM's platforms need.
+//! function, because OpenCL has no variables of programs. `openmm_prelude.c` begins each program with what differs
+//! between the three, and `openmm_kernels.c` ends it with the kernels that only OpenMM's platforms need.
 
 use naga::valid::{FunctionInfo, ModuleInfo};
 use naga::{

@@ -7,8 +7,8 @@ alias vec3r = vec3<f32>;
 alias vec4r = vec4<f32>;
 alias coordinate = i32;
 
-// A triangle whose height is a smaller share of its longest side is left to the processor: the digits that its normal has
-// lost in single precision are missed in the forces (2e-4 of the largest at a share of 1e-4).
+// A triangle whose height is a smaller share of its longest side is left to the processor, or on OpenMM's platforms reported:
+// the digits that its normal has lost in single precision are missed in the forces (2e-4 of the largest at a share of 1e-4).
 const THINNEST = 1e-3;
 
 fn lattice_position(vertex: u32) -> vec3<i32> {

@@ -1,5 +1,5 @@
-// Sums over a workgroup, as trees of fixed shape: the same bits every time. The host adds up the groups,
-// in double precision and in order.
+// Sums over a workgroup, as trees of fixed shape: the same bits every time. The groups are added
+// up in order: by the host in double precision, or by OpenMM's platforms in theirs.
 
 var<workgroup> shares: array<real, GROUP_SIZE>;
 

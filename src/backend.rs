@@ -13,7 +13,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// What shall compute.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// The GPU for large meshes, if it is faster; the processor for all others, and when the GPU fails.
+    /// OpenMM's GPU platforms themselves where the device is a GPU; elsewhere a GPU for large meshes, if it is faster, and
+    /// the processor for all others, and when the GPU fails.
     Auto,
     /// The processor.
     Cpu,

@@ -1,7 +1,7 @@
 //! Fluid membranes in OpenMM: energies and forces of triangulated vesicles.
 //!
-//! The crate has three layers. [`mesh`] validates a closed triangulated surface and holds its
-//! geometry; [`potentials`] state energies of geometric quantities; [`evaluator`] runs both over a
+//! The crate has three layers. [`mesh`] validates a triangulated surface, closed or with borders,
+//! and holds its geometry; [`potentials`] state energies of geometric quantities; [`evaluator`] runs both over a
 //! mesh and turns the potentials' partial derivatives into forces. [`membrane`] lets the forces of one
 //! OpenMM Context that live on the same mesh share one evaluation, and [`ffi`] hands it all to C++.
 //!

@@ -1,4 +1,5 @@
-//! The energy of borders, in one pass beside whatever evaluator does the rest: they are few.
+//! The energy of borders, in one pass beside whatever evaluator does the rest: they are few. Only OpenMM's GPU platforms
+//! compute it themselves, triangle by triangle, so that nothing travels.
 
 use super::checks::check_energies;
 use crate::error::Result;

@@ -1,6 +1,7 @@
 //! How potentials see elements of the mesh: a formula for one triangle, edge or vertex. [`super::runs`] applies it to many.
 //!
-//! A formula is generic over [`Real`], so it is written once for both.
+//! A formula is generic over [`Real`], so it is written once for lanes and for single numbers. Those of dihedral angles,
+//! with their sines and exponentials, take one number at a time.
 
 use super::{Needs, Term};
 use crate::mesh::geometry::VertexGeometry;

@@ -1,5 +1,6 @@
 //! Positions as the shaders take them: relative to the middle of each connected part of the mesh, in units of a
-//! power of two near the mean edge, and in single precision as whole numbers.
+//! power of two near the mean edge, so that no size of mesh leaves the range of a float, and in single precision as whole
+//! numbers. (OpenMM's platforms do this on the device, relative to the first vertex of each part: `openmm_kernels.c`.)
 //!
 //! The difference of two whole numbers is exact. So the sides of triangles, from which all forces come, are as
 //! precise as their lengths allow, and not as the mesh's size does.

@@ -1,4 +1,6 @@
 //! What passes hand to potentials: the quantities of some elements, column by column.
+//!
+//! A potential gets a whole tile by one dynamic call, or a block of rings where it acts on angles.
 
 use super::instructions::{Level, WithLanes, dispatch};
 use super::lanes::Lane;

@@ -112,10 +112,11 @@ public:
      * their own must have the same one; the others follow.
      *
      * @param backend  "cpu"; "native", OpenMM's platform OpenCL, CUDA or HIP itself; "gpu", or with a precision
-     *                 "gpu:single" or "gpu:double"; "auto", which is native on these platforms and elsewhere takes the
-     *                 GPU for large meshes if it is faster and the processor if the GPU fails; or empty, the
-     *                 default, for what has been chosen for the whole process. "gpu@1" names an adapter. Contacts, and
-     * on "gpu" a surface that spans a periodic box, are computed on the processor in any case.
+     *                 "gpu:single" or "gpu:double"; "auto", which is native on these platforms where the device is a
+     *                 GPU, and elsewhere takes the GPU for large meshes if it is faster and the processor if the GPU
+     *                 fails; or empty, the default, for what has been chosen for the whole process. "gpu@1" names an
+     *                 adapter. Contacts, and on "gpu" a surface that spans a periodic box, are computed on the
+     *                 processor in any case.
      */
     void setBackend(const std::string& backend);
     /**
