@@ -70,8 +70,8 @@ def set_backend(backend: str, *, precision: str = "auto", adapter: int | None = 
         ``"gpu"``: a GPU. That there is none, or that it fails, is an error.
 
         ``"native"``: OpenMM's platform OpenCL, CUDA or HIP itself, in its own precision: positions
-        and forces stay on its device. A Context on another platform is an error. Forces of contacts,
-        and volumes in a periodic box, are computed on the processor beside the others.
+        and forces stay on its device. A Context on another platform is an error. Forces of
+        contacts, and volumes in a periodic box, are computed on the processor beside the others.
 
         ``"auto"``, the default: on OpenMM's GPU platforms as ``"native"``, if the kernels can be
         compiled. Elsewhere a GPU for meshes of 20 000 vertices and more if it is faster than the
