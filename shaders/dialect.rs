@@ -112,8 +112,10 @@ fn definition(module: &Module, handle: Handle<Type>, inner: &TypeInner, align: u
         }
         _ => return Ok(String::new()),
     };
-    let _ =
-        writeln!(text, "DEVICE {name} h_zero_{name}(void) {{ {name} zero = {{0}}; return zero; }}");
+    let _ = writeln!(
+        text,
+        "DEVICE {name} h_zero_{name}(void) {{ {name} zero = H_ZERO; return zero; }}"
+    );
     Ok(text)
 }
 
@@ -176,10 +178,12 @@ impl Writer<'_> {
         }
         let mut text = format!("KERNEL void {name}(int h_groups, {}) {{\n", parameters.join(", "));
         let mut arguments = Vec::new();
+        let mut id = "";
         for argument in &self.function.arguments {
             match argument.binding {
                 Some(naga::Binding::BuiltIn(BuiltIn::WorkGroupId)) => {
-                    arguments.push("h_id".to_owned())
+                    id = "        h_u32_3 h_id = {{(h_u32) group, 0, 0}};\n";
+                    arguments.push("h_id".to_owned());
                 }
                 Some(naga::Binding::BuiltIn(BuiltIn::LocalInvocationIndex)) => {
                     arguments.push("LOCAL_ID".to_owned());
@@ -208,8 +212,7 @@ impl Writer<'_> {
         let _ = write!(
             text,
             "    for (int group = GROUP_ID; group < h_groups; group += NUM_GROUPS) {{\n\
-             \x20       h_u32_3 h_id = {{{{(h_u32) group, 0, 0}}}};\n\
-             \x20       h_{name}_of_group({});\n\
+             {id}        h_{name}_of_group({});\n\
              \x20       SYNC_THREADS\n    }}\n}}\n\n",
             arguments.join(", ")
         );
@@ -269,6 +272,13 @@ impl Writer<'_> {
         self.inner(handle).pointer_space().is_some()
     }
 
+    /// Whether a value is of use where it is computed: what a variable begins as is written there.
+    fn is_used(&self, handle: Handle<Expression>) -> bool {
+        let variables = self.function.local_variables.iter();
+        let begins = variables.filter(|(_, variable)| variable.init == Some(handle)).count();
+        self.info[handle].ref_count > begins
+    }
+
     /// How many components a value has, if it is a vector.
     fn components(&self, handle: Handle<Expression>) -> Option<u8> {
         match self.inner(handle) {
@@ -294,7 +304,7 @@ impl Writer<'_> {
         match statement {
             Statement::Emit(range) => {
                 for handle in range.clone() {
-                    if !self.is_pointer(handle) {
+                    if !self.is_pointer(handle) && self.is_used(handle) {
                         line(self.baked(handle)?);
                     }
                 }
@@ -373,12 +383,12 @@ impl Writer<'_> {
                 );
                 let call = format!("{}({});", name_of(&callee.name), values.join(", "));
                 match result {
-                    Some(result) => line(format!(
+                    Some(result) if self.is_used(*result) => line(format!(
                         "const {} h_e{} = {call}",
                         self.type_of(*result)?,
                         result.index()
                     )),
-                    None => line(call),
+                    _ => line(call),
                 }
             }
             other => return Err(format!("OpenMM's dialect has no statement {other:?}")),
