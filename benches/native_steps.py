@@ -15,6 +15,7 @@ import itertools
 import json
 import math
 import os
+import signal
 import subprocess
 import sys
 from dataclasses import dataclass
@@ -60,7 +61,6 @@ def main(arguments=None):
     if options.quick:
         sizes, options.repeats, options.seconds = sizes[:1], 2, 0.03
     where = f"{options.platform} in {options.precision} precision"
-    kind = "" if by_itself == "native" else ", which computes on the processor"
     sides, missing = _sides(target, where)
     found = {
         "platform": options.platform, "precision": options.precision, "device": device,
@@ -70,27 +70,43 @@ def main(arguments=None):
         "microseconds": {}, "missing": missing,
     }  # fmt: skip
     labels = {side.name: side.label for side in sides}
-    for n in sizes:
-        found["microseconds"][str(n)] = _race(n, sides, labels, options, missing)
+    # What was measured before a time limit is worth having.
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit("native_steps: stopped before the end"))
+    try:
+        if not options.no_bath:
+            found["bath"] = _bath(target, options)
+        for n in sizes:
+            found["microseconds"][str(n)] = _race(n, sides, labels, options, missing)
+    finally:
+        _write(found, labels, options)
+
+
+def _write(found, labels, options):
+    """Print the tables, and write what was asked for."""
+    where = f"{found['platform']} in {found['precision']} precision"
+    kind = ", which computes on the processor" if found["on the processor"] else ""
     lines = [
-        f"LangevinMiddle on {where}, µs per step, minimum of {options.repeats} runs of "
-        f"{options.seconds:g} s in turns.",
+        f"LangevinMiddle on {where}, µs per step, minimum of {found['repeats']} runs of "
+        f"{found['seconds']:g} s in turns.",
         "",
-        f"- device: {device}{kind}; the backend `auto` takes `{by_itself}` on it",
+        f"- device: {found['device']}{kind}; the backend `auto` takes `{found['auto']}` on it",
         *(f"- {name}: {value}" for name, value in found["machine"].items()),
         "- " + ", ".join(f"{name} {value}" for name, value in found["versions"].items()),
         "",
         *_table(found["microseconds"], labels),
-        *_left_out(missing, labels),
+        *_left_out(found["missing"], labels),
     ]
-    if not options.no_bath:
-        found["bath"] = _bath(target, options)
+    if "bath" in found:
         lines += ["", *_about_bath(found["bath"], where)]
-    print("\n".join(lines))
-    if options.json:
-        options.json.parent.mkdir(parents=True, exist_ok=True)
-        text = json.dumps(found, indent=1, ensure_ascii=False)
-        options.json.write_text(text + "\n", encoding="utf-8")
+    text = "\n".join(lines)
+    print(text)
+    for path, content in (
+        (options.output, text),
+        (options.json, json.dumps(found, indent=1, ensure_ascii=False)),
+    ):
+        if path:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(content + "\n", encoding="utf-8")
 
 
 def _options(arguments):
@@ -120,6 +136,7 @@ def _options(arguments):
     parser.add_argument(
         "--jax-python", default=sys.executable, help="a Python with jax and jax-md, if not this one"
     )
+    parser.add_argument("--output", type=Path, help="a Markdown file to write too")
     parser.add_argument("--json", type=Path, help="a file to write all figures to")
     parser.add_argument("--quick", action="store_true", help="one size, short runs: a smoke test")
     options = parser.parse_args(arguments)
