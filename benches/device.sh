@@ -36,7 +36,9 @@ done
 
 out=${OUT:-out/device}
 mkdir -p "$out" && scratch=$(mktemp -d) || exit 1
+child=''
 trap 'rm -rf "$scratch"' EXIT
+trap '[ -z "$child" ] || kill "$child"; exit 143' INT TERM
 : > "$out/log.txt"
 : > "$scratch/parts.tsv"
 failed=0
@@ -63,7 +65,9 @@ part() {
         return 1
     fi
     say "== $name (at most $limit s)"
-    timeout --kill-after=5 "$limit" "$@" > "$scratch/said" 2>&1 < /dev/null || status=$?
+    timeout --kill-after=5 "$limit" "$@" > "$scratch/said" 2>&1 < /dev/null &
+    child=$!
+    wait "$child" || status=$?
     tee -a "$out/log.txt" < "$scratch/said"
     case $status in
         0) ;;
@@ -98,7 +102,7 @@ openmm() {
 install_project() {
     local pip=("$python" -m pip --disable-pip-version-check -q) project=${wheel:-.}
     [ -x "$python" ] || "$base" -m venv out/device-venv || return 1
-    "${pip[@]}" install "$(openmm)" "${project}[test]"
+    "${pip[@]}" install -c constraints.txt "$(openmm)" "${project}[test]"
 }
 
 # shellcheck disable=SC2329 # Likewise.

@@ -97,14 +97,11 @@ def missing(reason: str) -> None:
 
 @cache
 def nvrtc() -> ctypes.CDLL | None:
-    """NVRTC as the package nvidia-cuda-nvrtc-cu12 has it."""
-    try:
-        spec = importlib.util.find_spec("nvidia.cuda_nvrtc")
-    except ModuleNotFoundError:
-        return None
-    folders = list(spec.submodule_search_locations) if spec else []
-    paths = [path for folder in folders for path in Path(folder).glob("lib/libnvrtc.so.*")]
-    return ctypes.CDLL(str(paths[0])) if paths else None
+    """NVRTC as NVIDIA's packages have it, each release in a folder of its own."""
+    spec = importlib.util.find_spec("nvidia")
+    folders = spec.submodule_search_locations if spec else []
+    paths = [path for folder in folders for path in Path(folder).glob("*/lib/libnvrtc.so.*")]
+    return ctypes.CDLL(str(max(paths))) if paths else None
 
 
 def compile_for_cuda(text: str, architecture: str) -> tuple[str, str]:
