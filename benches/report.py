@@ -9,6 +9,9 @@ from tables import aligned, number, spaced
 
 __all__ = ["compose", "save"]
 
+# What comes from here on is of other scripts and machines, and stays.
+KEPT = "\n## GPU platforms\n"
+
 
 def compose(results, options, failed, jax, used, evaluations):
     """The whole text.
@@ -39,10 +42,13 @@ def compose(results, options, failed, jax, used, evaluations):
 
 
 def save(text, results, path):
-    """Write the text, and the plot beside it under the same stem."""
+    """Write the text in place of the one before, and the plot beside it under the same stem."""
     path.parent.mkdir(parents=True, exist_ok=True)
     picture = path.with_suffix(".png")
-    path.write_text(text.replace("(benchmarks.png)", f"({picture.name})"), encoding="utf-8")
+    before = path.read_text(encoding="utf-8") if path.exists() else ""
+    _, heading, kept = before.partition(KEPT)
+    text = text.replace("(benchmarks.png)", f"({picture.name})")
+    path.write_text(text + heading + kept, encoding="utf-8")
     _plot(results, picture)
 
 

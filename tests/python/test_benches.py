@@ -34,6 +34,7 @@ def particle():
 
 def test_tiny_run(tmp_path):
     output = tmp_path / "figures.md"
+    output.write_text("# Old\n\n## GPU platforms\n\nOf another script.\n", encoding="utf-8")
     command = [
         sys.executable, BENCHES / "steps.py", "--parts", 1, "--repeats", 1, "--seconds", 0.001,
         "--platform", "Reference", "--jax-python", tmp_path / "none", "--output", output,
@@ -41,8 +42,10 @@ def test_tiny_run(tmp_path):
     said = subprocess.run(
         list(map(str, command)), capture_output=True, text=True, check=True, timeout=600
     )
-    text = output.read_text(encoding="utf-8")
+    text, _, kept = output.read_text(encoding="utf-8").partition("\n## GPU platforms\n")
     assert text.replace("(figures.png)", "(benchmarks.png)") in said.stdout
+    assert "# Old" not in text
+    assert kept == "\nOf another script.\n"
     assert "(figures.png)" in text
     assert output.with_suffix(".png").read_bytes().startswith(b"\x89PNG")
     for integrator in ("Verlet", "LangevinMiddle", "Brownian"):
