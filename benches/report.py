@@ -5,8 +5,12 @@ import datetime
 import checks
 from openmmhelfrich._benchmark import INTEGRATORS, TIME_STEP, machine, versions
 from race import SIDES
+from tables import aligned, number, spaced
 
 __all__ = ["compose", "save"]
+
+# What comes from here on is of other scripts and machines, and stays.
+KEPT = "\n## GPU platforms\n"
 
 
 def compose(results, options, failed, jax, used, evaluations):
@@ -38,10 +42,13 @@ def compose(results, options, failed, jax, used, evaluations):
 
 
 def save(text, results, path):
-    """Write the text, and the plot beside it under the same stem."""
+    """Write the text in place of the one before, and the plot beside it under the same stem."""
     path.parent.mkdir(parents=True, exist_ok=True)
     picture = path.with_suffix(".png")
-    path.write_text(text.replace("(benchmarks.png)", f"({picture.name})"), encoding="utf-8")
+    before = path.read_text(encoding="utf-8") if path.exists() else ""
+    _, heading, kept = before.partition(KEPT)
+    text = text.replace("(benchmarks.png)", f"({picture.name})")
+    path.write_text(text + heading + kept, encoding="utf-8")
     _plot(results, picture)
 
 
@@ -63,9 +70,9 @@ def _circumstances(options, jax):
 def _steps(results, integrator):
     """The table of one integrator, and how much faster ours is than each competitor."""
     sizes = results.sizes
-    rows = [["", *(f"N = {_spaced(n)}" for n in sizes)]]
+    rows = [["", *(f"N = {spaced(n)}" for n in sizes)]]
     for row in results.rows(integrator):
-        rows.append([row.label, *(_number(results.cost.get((row, n))) for n in sizes)])
+        rows.append([row.label, *(number(results.cost.get((row, n))) for n in sizes)])
     best = {n: results.best("ours", integrator, n) for n in sizes}
     for side in ("strings", "jax", "empty"):
         theirs = {n: results.best(side, integrator, n) for n in sizes}
@@ -76,7 +83,7 @@ def _steps(results, integrator):
                 for n in sizes
             )
             rows.append([name, *ratios])
-    return [f"## {integrator}, µs per step", "", *_aligned(rows), ""]
+    return [f"## {integrator}, µs per step", "", *aligned(rows), ""]
 
 
 def _omissions(results, failed):
@@ -88,7 +95,7 @@ def _omissions(results, failed):
     for (row, n), reason in results.missing.items():
         reasons.setdefault((row.label, reason), set()).add(n)
     for (label, reason), sizes in reasons.items():
-        lines.append(f"- {label}, N = {', '.join(_spaced(n) for n in sorted(sizes))}: {reason}")
+        lines.append(f"- {label}, N = {', '.join(spaced(n) for n in sorted(sizes))}: {reason}")
     lines.append(
         "- string forces and jax-md run with Verlet only: the step of another integrator costs "
         "them the same forces"
@@ -100,13 +107,13 @@ def _growth(results):
     """Time per vertex at every size, relative to N = 10 242."""
     sizes = results.sizes
     base = 10_242 if 10_242 in sizes else sizes[-1]
-    rows = [["ns per vertex and step", *(f"N = {_spaced(n)}" for n in sizes)]]
+    rows = [["ns per vertex and step", *(f"N = {spaced(n)}" for n in sizes)]]
     for integrator in INTEGRATORS:
         each = {n: 1e3 * results.best("ours", integrator, n)[0] / n for n in sizes}
         rows.append([f"{integrator}, fastest of ours", *(f"{each[n]:.1f}" for n in sizes)])
         relative = (f"{each[n] / each[base]:.2f}" for n in sizes)
-        rows.append([f"relative to N = {_spaced(base)}", *relative])
-    return _aligned(rows)
+        rows.append([f"relative to N = {spaced(base)}", *relative])
+    return aligned(rows)
 
 
 def _memory(used):
@@ -116,7 +123,7 @@ def _memory(used):
     rows = [["stage", "peak MB so far", "s"]]
     for name, stage in stages.items():
         rows.append([name, f"{stage['peak'] * 1.048576:.0f}", f"{stage['seconds']:.1f}"])
-    return [f"Memory of a process with N = {_spaced(n)}, {place}:", "", *_aligned(rows)]
+    return [f"Memory of a process with N = {spaced(n)}, {place}:", "", *aligned(rows)]
 
 
 def _evaluations(found):
@@ -124,36 +131,13 @@ def _evaluations(found):
         return ["Not measured: run `make bench`, or `cargo bench` before this."]
     when = datetime.datetime.fromtimestamp(found.newest).isoformat(" ", "minutes")
     sizes = sorted({n for _, _, n in found.cost})
-    rows = [["scheme, evaluator", *(f"N = {_spaced(n)}" for n in sizes)]]
+    rows = [["scheme, evaluator", *(f"N = {spaced(n)}" for n in sizes)]]
     # Jülicher's scheme first, since the others are compared with it.
     order = sorted(found.cost, key=lambda key: (key[0] != "Julicher", key))
     for scheme, name in dict.fromkeys((scheme, name) for scheme, name, _ in order):
-        costs = (_number(found.cost.get((scheme, name, n))) for n in sizes)
+        costs = (number(found.cost.get((scheme, name, n))) for n in sizes)
         rows.append([f"{scheme}, {name}", *costs])
-    return [f"µs per evaluation, minimum of criterion's samples of {when}.", "", *_aligned(rows)]
-
-
-def _aligned(rows):
-    """A Markdown table whose columns are aligned in plain text too."""
-    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
-    texts = [
-        "| " + " | ".join([row[0].ljust(widths[0]),
-                           *(cell.rjust(w) for cell, w in zip(row[1:], widths[1:], strict=True))])
-        + " |"
-        for row in rows
-    ]  # fmt: skip
-    rule = "| " + " | ".join(["-" * widths[0], *("-" * (w - 1) + ":" for w in widths[1:])]) + " |"
-    return [texts[0], rule, *texts[1:]]
-
-
-def _number(value):
-    if value is None:
-        return "–"
-    return f"{value:.1f}" if value < 1000 else _spaced(round(value))
-
-
-def _spaced(n):
-    return f"{n:_}".replace("_", " ") if n >= 10_000 else str(n)
+    return [f"µs per evaluation, minimum of criterion's samples of {when}.", "", *aligned(rows)]
 
 
 def _plot(results, path):

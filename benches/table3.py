@@ -11,6 +11,7 @@ mesh without fluctuations, to which Verlet's conserved energy then gives a part 
 """
 
 import argparse
+import json
 import os
 import sys
 import time
@@ -22,6 +23,7 @@ from openmm import unit
 from openmmhelfrich import Mesh, Vesicle, platforms
 from openmmhelfrich._benchmark import machine, versions
 from openmmhelfrich.analysis import theory
+from openmmhelfrich.backend import get_backend
 
 RADIUS = 1000.0  # nm
 TIME_STEP = 0.2  # ps
@@ -48,8 +50,10 @@ def main(arguments=None):
     )  # fmt: skip
     parser.add_argument("--platform", help="default: the fastest for membranes, which is Helfrich")
     parser.add_argument("--threads", help="of platforms that have them (default: all processors)")
+    parser.add_argument("--precision", help="of platforms that have several (default: OpenMM's)")
     parser.add_argument("--sizes", type=int, nargs="+", choices=TABLE, default=list(TABLE))
     parser.add_argument("--output", type=Path, help="a Markdown file to write too")
+    parser.add_argument("--json", type=Path, help="a file to write all figures to")
     parser.add_argument(
         "--quick", action="store_true", help="run a hundredth of it, and say what all of it takes"
     )
@@ -61,16 +65,22 @@ def main(arguments=None):
     properties = {}
     if "Threads" in platform.getPropertyNames():
         properties["Threads"] = options.threads or str(os.cpu_count() or 1)
+    if options.precision and "Precision" in platform.getPropertyNames():
+        properties["Precision"] = options.precision
 
     lines = _head(platform, properties, options.quick)
     print("\n".join(lines), flush=True)
-    missed = False
+    missed, figures = False, []
     for integrator in options.integrator or ["LangevinMiddle"]:
         for n in options.sizes:
             seconds, steps, temperature = run(
                 n, INTEGRATORS[integrator](), platform, properties, options.quick
             )
             _, paper, asked = TABLE[n]
+            figures.append({
+                "integrator": integrator, "N": n, "steps": steps, "seconds": seconds,
+                "extrapolated": options.quick, "paper": paper,
+            })  # fmt: skip
             met = "" if asked is None else f"{asked} s: {'yes' if seconds <= asked else 'NO'}"
             missed |= asked is not None and seconds > asked
             cards = " / ".join(clock(value) for value in paper)
@@ -85,6 +95,10 @@ def main(arguments=None):
         print(lines[-1])
     if options.output:
         options.output.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    if options.json:
+        found = {"platform": platform.getName(), "properties": properties, "backend": get_backend()}
+        text = json.dumps({**found, "runs": figures}, indent=1)
+        options.json.write_text(text + "\n", encoding="utf-8")
     sys.exit(1 if missed and options.strict else 0)
 
 
@@ -93,7 +107,7 @@ def _head(platform, properties, quick):
     return [
         f"# Table III: {PERIODS} τ_2, sampled every τ_2",
         "",
-        f"Platform {where}. "
+        f"Platform {where}; backend {get_backend()}. "
         + ", ".join(f"{name}: {value}" for name, value in machine().items())
         + ". "
         + ", ".join(f"{name} {value}" for name, value in versions().items())

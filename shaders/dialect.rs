@@ -121,8 +121,10 @@ fn definition(module: &Module, handle: Handle<Type>, inner: &TypeInner, align: u
         }
         _ => return Ok(String::new()),
     };
-    let _ =
-        writeln!(text, "DEVICE {name} h_zero_{name}(void) {{ {name} zero = {{0}}; return zero; }}");
+    let _ = writeln!(
+        text,
+        "DEVICE {name} h_zero_{name}(void) {{ {name} zero = H_ZERO; return zero; }}"
+    );
     Ok(text)
 }
 
@@ -279,6 +281,13 @@ impl Writer<'_> {
         self.inner(handle).pointer_space().is_some()
     }
 
+    /// Whether a value is of use where it is computed: what a variable begins as is written there.
+    fn is_used(&self, handle: Handle<Expression>) -> bool {
+        let variables = self.function.local_variables.iter();
+        let begins = variables.filter(|(_, variable)| variable.init == Some(handle)).count();
+        self.info[handle].ref_count > begins
+    }
+
     /// How many components a value has, if it is a vector.
     fn components(&self, handle: Handle<Expression>) -> Option<u8> {
         match self.inner(handle) {
@@ -304,7 +313,7 @@ impl Writer<'_> {
         match statement {
             Statement::Emit(range) => {
                 for handle in range.clone() {
-                    if !self.is_pointer(handle) {
+                    if !self.is_pointer(handle) && self.is_used(handle) {
                         line(self.baked(handle)?);
                     }
                 }
@@ -383,12 +392,12 @@ impl Writer<'_> {
                 );
                 let call = format!("{}({});", name_of(&callee.name), values.join(", "));
                 match result {
-                    Some(result) => line(format!(
+                    Some(result) if self.is_used(*result) => line(format!(
                         "const {} h_e{} = {call}",
                         self.type_of(*result)?,
                         result.index()
                     )),
-                    None => line(call),
+                    _ => line(call),
                 }
             }
             other => return Err(format!("OpenMM's dialect has no statement {other:?}")),

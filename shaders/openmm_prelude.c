@@ -13,6 +13,7 @@ typedef double h_f64;
 
 #ifdef __OPENCL_VERSION__
 #define H_VECTOR(NAME, ITEM, SIZE, ALIGN) typedef struct { ITEM c[SIZE]; } __attribute__((aligned(ALIGN))) NAME;
+#define H_ZERO {0}
 #define H_AS_UINT(x) as_uint(x)
 #define H_AS_FLOAT(x) as_float(x)
 #define H_COUNT(place, value) atomic_add(place, value)
@@ -25,6 +26,7 @@ typedef double h_f64;
 #define H_ROUND32 rint
 #else
 #define H_VECTOR(NAME, ITEM, SIZE, ALIGN) struct alignas(ALIGN) NAME { ITEM c[SIZE]; };
+#define H_ZERO {}
 #define H_AS_UINT(x) __float_as_uint(x)
 #define H_AS_FLOAT(x) __uint_as_float(x)
 #define H_COUNT(place, value) atomicAdd(place, value)

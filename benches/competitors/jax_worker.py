@@ -1,9 +1,10 @@
 """One measurement of jax-md, in a process of its own: `python jax_worker.py VESICLE.npz`.
 
 The file has the mesh and the parameters of a vesicle (`jax_md.py` writes it). The energy is the
-paper's in plain jax, compiled with jit and differentiated with grad, in double precision;
-jax_md.simulate.nve moves the vertices, many steps in one compiled loop. What is printed is one line
-of JSON with the energy at the start, kJ/mol, the least time of a step, µs, and versions.
+paper's in plain jax, compiled with jit and differentiated with grad, in double precision, or in
+single precision if the environment variable JAX_ENABLE_X64 is 0; jax_md.simulate.nve moves the
+vertices, many steps in one compiled loop. What is printed is one line of JSON with the energy at
+the start, kJ/mol, the least time of a step, µs, and versions.
 
 Two ways to write the energy are offered, because XLA's cost lies in how sums are gathered:
 `edges` computes every edge and triangle once and adds them up at the vertices with segment_sum;
@@ -13,12 +14,14 @@ no scattered sums in the energy itself.
 
 import argparse
 import json
+import os
 import time
 from functools import partial
 
 import jax
 
-jax.config.update("jax_enable_x64", True)
+# jax_md asks for it when it is imported.
+jax.config.update("jax_enable_x64", os.environ.get("JAX_ENABLE_X64") != "0")
 
 import jax.numpy as jnp  # noqa: E402
 import jax_md  # noqa: E402

@@ -1,13 +1,14 @@
 """Steps of jax-md, measured in processes of their own by the Python that has it."""
 
 import json
+import os
 import subprocess
 import tempfile
 from pathlib import Path
 
 import numpy as np
 
-__all__ = ["FORMS", "jax_versions", "measure"]
+__all__ = ["FORMS", "jax_device", "jax_versions", "measure"]
 
 # The ways to write the energy in `jax_worker.py`.
 FORMS = ("edges", "rings")
@@ -28,7 +29,15 @@ def jax_versions(python):
     return json.loads(asked.stdout.splitlines()[-1])
 
 
-def measure(vesicle, python, form, repeats, seconds):
+def jax_device(python):
+    """The kind and the name of the device that jax takes there, such as "gpu", "NVIDIA H100"."""
+    ask = "import jax; device = jax.devices()[0]; print(device.platform, device.device_kind)"
+    asked = subprocess.run([python, "-c", ask], capture_output=True, text=True, check=True)
+    kind, _, name = asked.stdout.splitlines()[-1].partition(" ")
+    return kind, name
+
+
+def measure(vesicle, python, form, repeats, seconds, precision="double"):
     """Least microseconds of a Verlet step, and the energy at the start, kJ/mol.
 
     Parameters
@@ -41,6 +50,8 @@ def measure(vesicle, python, form, repeats, seconds):
     repeats : int
     seconds : float
         Length of one run.
+    precision : str
+        "single" or "double".
 
     Raises
     ------
@@ -52,7 +63,13 @@ def measure(vesicle, python, form, repeats, seconds):
         np.savez(path, **_arrays(vesicle))
         command = [python, str(_WORKER), str(path), "--form", form]
         command += ["--repeats", str(repeats), "--seconds", str(seconds)]
-        said = subprocess.run(command, capture_output=True, text=True, check=False)
+        environment = {
+            **os.environ,
+            "JAX_ENABLE_X64": str(int(precision == "double")),
+            # Others need memory of a GPU, too.
+            "XLA_PYTHON_CLIENT_PREALLOCATE": "false",
+        }
+        said = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
     if said.returncode != 0:
         lines = said.stderr.strip().splitlines() or [f"exit status {said.returncode}"]
         raise RuntimeError(f"jax-md: {lines[-1]}")

@@ -31,7 +31,7 @@ def string_system(vesicle):
     return system
 
 
-def check_agreement(ours, theirs, who):
+def check_agreement(ours, theirs, who, tolerance=1e-5):
     """Refuse to race two sides whose energies at the same positions differ.
 
     Parameters
@@ -40,6 +40,8 @@ def check_agreement(ours, theirs, who):
         kJ/mol.
     who : str
         The other side, for the message.
+    tolerance : float
+        A share of the energy.
     """
-    if not np.isclose(ours, theirs, rtol=1e-5):
+    if not np.isclose(ours, theirs, rtol=tolerance):
         sys.exit(f"steps: {who} has the energy {theirs} kJ/mol, openmm-helfrich {ours}")

@@ -33,7 +33,7 @@ class Target:
 
     def rounded(self, positions: np.ndarray) -> np.ndarray:
         """Positions as the platform has them."""
-        if self.platform == "OpenCL" and self.properties["Precision"] == "single":
+        if self.properties.get("Precision") == "single":
             return positions.astype(np.float32).astype(np.float64)
         return positions
 
@@ -63,13 +63,21 @@ ON_GPU = [
 ]
 
 
+# Where membranes are evaluated by OpenMM's GPU platform: OpenCL, or what this variable names.
+NATIVE_PLATFORM = os.environ.get("HELFRICH_NATIVE_PLATFORM", "OpenCL")
 # PoCL computes on the processor, which is only taken where it is asked for.
 NATIVE = [
-    Target("native-single", "OpenCL", 1e-5, {"Precision": "single"}, "native"),
-    Target("native-mixed", "OpenCL", 1e-5, {"Precision": "mixed"}, "native"),
-    Target("native-double", "OpenCL", 1e-9, {"Precision": "double"}, "native"),
+    Target("native-single", NATIVE_PLATFORM, 1e-5, {"Precision": "single"}, "native"),
+    Target("native-mixed", NATIVE_PLATFORM, 1e-5, {"Precision": "mixed"}, "native"),
+    Target("native-double", NATIVE_PLATFORM, 1e-9, {"Precision": "double"}, "native"),
 ]
+UNASKED = Target("unasked", NATIVE_PLATFORM, 1e-9, {"Precision": "double"})
 ON_DEVICE = ON_GPU + NATIVE
+
+
+def native_is_on_processor() -> bool:
+    """Whether the driver of the platform above computes on the processor, as PoCL does."""
+    return NATIVE_PLATFORM == "OpenCL" and helfrich.platforms._count_opencl_gpus() == 0
 
 
 def require_gpu(double: bool = False) -> None:
@@ -106,11 +114,12 @@ def _why_not(name: str, precision: str) -> str | None:
 def _require(target: Target) -> None:
     if target.backend.startswith("gpu"):
         require_gpu(double=target.backend.endswith("double"))
-    if target.platform != "OpenCL":
+    if "Precision" not in target.properties:
         return
     reason = _why_not(target.platform, target.properties["Precision"])
     if reason is None:
         return
-    if os.environ.get("HELFRICH_REQUIRE_OPENCL") == "1":
+    asked = target.platform == os.environ.get("HELFRICH_NATIVE_PLATFORM")
+    if asked or os.environ.get("HELFRICH_REQUIRE_OPENCL") == "1":
         pytest.fail(reason)
     pytest.skip(reason)

@@ -1,11 +1,14 @@
 """The scripts of benches/: a tiny run of all of it, and the verdicts on made-up figures."""
 
+import json
 import subprocess
 import sys
 from pathlib import Path
 from types import SimpleNamespace
 
+import openmm
 import pytest
+from platforms import NATIVE
 
 BENCHES = Path(__file__).resolve().parents[2] / "benches"
 
@@ -22,8 +25,16 @@ def scripts():
     return SimpleNamespace(race=race, checks=checks)
 
 
+def particle():
+    """The smallest System."""
+    system = openmm.System()
+    system.addParticle(1)
+    return system
+
+
 def test_tiny_run(tmp_path):
     output = tmp_path / "figures.md"
+    output.write_text("# Old\n\n## GPU platforms\n\nOf another script.\n", encoding="utf-8")
     command = [
         sys.executable, BENCHES / "steps.py", "--parts", 1, "--repeats", 1, "--seconds", 0.001,
         "--platform", "Reference", "--jax-python", tmp_path / "none", "--output", output,
@@ -31,8 +42,10 @@ def test_tiny_run(tmp_path):
     said = subprocess.run(
         list(map(str, command)), capture_output=True, text=True, check=True, timeout=600
     )
-    text = output.read_text(encoding="utf-8")
+    text, _, kept = output.read_text(encoding="utf-8").partition("\n## GPU platforms\n")
     assert text.replace("(figures.png)", "(benchmarks.png)") in said.stdout
+    assert "# Old" not in text
+    assert kept == "\nOf another script.\n"
     assert "(figures.png)" in text
     assert output.with_suffix(".png").read_bytes().startswith(b"\x89PNG")
     for integrator in ("Verlet", "LangevinMiddle", "Brownian"):
@@ -49,6 +62,48 @@ def test_tiny_run(tmp_path):
     assert "jax-md, edges, N = 12: jax and jax-md are not installed" in text
     assert "not measured: run with all sizes" in text
     assert "| 5 steps " in text
+
+
+def test_native_steps(tmp_path):
+    """Each side's figure is in the table and the file, and the ratios are those of the figures."""
+    NATIVE[1].context(particle())
+    output = tmp_path / "steps.json"
+    command = [
+        sys.executable, BENCHES / "native_steps.py", "--platform", NATIVE[1].platform, "--sizes",
+        12, 42, "--repeats", 1, "--seconds", 0.001, "--jax-python", tmp_path / "none", "--no-bath",
+        "--json", output,
+    ]  # fmt: skip
+    said = subprocess.run(
+        list(map(str, command)), capture_output=True, text=True, check=True, timeout=600
+    )
+    found = json.loads(output.read_text(encoding="utf-8"))
+    cells = [[cell.strip(" *") for cell in line.split("|")] for line in said.stdout.splitlines()]
+    rows = {row[1]: row[2:4] for row in cells if len(row) == 5}
+    where = f"{NATIVE[1].platform} in mixed precision"
+    labels = {
+        "empty": f"OpenMM's empty step, {where}",
+        "native": f"native, {where}",
+        "processor": f"on the processor, {where}",
+        "strings": f"x, y, z string forces, {where}",
+    }
+    for place, n in enumerate(("12", "42")):
+        cost = found["microseconds"][n]
+        for name, label in labels.items():
+            assert float(rows[label][place].replace(" ", "")) == pytest.approx(
+                cost[name], rel=0.01, abs=0.06
+            )
+            if name != "native":
+                ratio = float(rows[f"{label} / native"][place])
+                assert ratio == pytest.approx(cost[name] / cost["native"], rel=0.01)
+    assert found["missing"]["jax, edges"] == {"all": "jax and jax-md are not installed"}
+    refused = subprocess.run(
+        [sys.executable, str(BENCHES / "native_steps.py"), "--sizes", "1000"],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=600,
+    )
+    assert "no icosphere of 1000 vertices, but one of 1002" in refused.stderr
 
 
 def test_platform_choice(tmp_path, monkeypatch):

@@ -1,6 +1,7 @@
-"""Membranes that OpenMM's GPU platforms evaluate themselves, on PoCL.
+"""Membranes that OpenMM's GPU platforms evaluate themselves: OpenCL, on PoCL for example.
 
-`test_gpu.py` has the rows of the table of cases; here is what only these platforms have.
+`test_gpu.py` has the rows of the table of cases; here is what only these platforms have. With the
+environment variable HELFRICH_NATIVE_PLATFORM, such as CUDA, both run on that platform.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ import openmmhelfrich as helfrich
 import pytest
 from meshes import membrane
 from openmm import unit
-from platforms import NATIVE, ON_OPENCL, REFERENCE, Target
+from platforms import NATIVE, REFERENCE, UNASKED, Target, native_is_on_processor
 from running import Running, plain
 
 SINGLE, MIXED, DOUBLE = NATIVE
@@ -217,21 +218,26 @@ def test_it_is_refused_on_other_platforms():
 
 
 def test_a_driver_on_the_processor_is_taken_only_where_it_is_asked_for():
+    """A real GPU is taken unasked."""
     m = membrane("octahedron")
     before = evaluations()
-    run = Running([helfrich.BendingForce(m.triangles, 50)], m.num_particles, ON_OPENCL[2])
+    run = Running([helfrich.BendingForce(m.triangles, 50)], m.num_particles, UNASKED)
     run.evaluate(m.positions)
-    assert evaluations()["native"] == before["native"]
-    assert evaluations()["cpu"] > before["cpu"]
+    after = evaluations()
+    expected = "cpu" if native_is_on_processor() else "native"
+    assert {name for name in after if after[name] > before[name]} == {expected}
 
 
 def test_derivatives_need_it():
+    UNASKED.context(system_of(1))
+    if not native_is_on_processor():
+        pytest.skip("a GPU is taken unasked")
     m = membrane("octahedron")
     force = helfrich.BendingForce(m.triangles, 50)
     force.setContextParameter("rigidity", "kappa")
     force.addEnergyParameterDerivative("kappa")
     with pytest.raises(mm.OpenMMException, match=r'energy parameter derivatives need .*"native"'):
-        Running([force], m.num_particles, ON_OPENCL[2])
+        Running([force], m.num_particles, UNASKED)
 
 
 def test_an_explosion_is_found_without_energies():
@@ -252,15 +258,16 @@ COUNTER = r"""
 static long reads, writes;
 long count_reads(void) { return reads; }
 long count_writes(void) { return writes; }
-static void* real(const char* name) {
-    return dlsym(dlopen("libOpenCL.so.1", RTLD_LAZY), name);
+static void* real(const char* library, const char* name) {
+    return dlsym(dlopen(library, RTLD_LAZY), name);
 }
+
 #define TRANSFER(NAME, COUNT) \
 int NAME(void* q, void* b, unsigned w, size_t o, size_t s, void* p, unsigned n, void* l, void* e) \
 { \
     COUNT++; \
     return ((int (*)(void*, void*, unsigned, size_t, size_t, void*, unsigned, void*, void*)) \
-        real(#NAME))(q, b, w, o, s, p, n, l, e); \
+        real("libOpenCL.so.1", #NAME))(q, b, w, o, s, p, n, l, e); \
 }
 TRANSFER(clEnqueueReadBuffer, reads)
 TRANSFER(clEnqueueWriteBuffer, writes)
@@ -268,8 +275,21 @@ void* clEnqueueMapBuffer(void* q, void* b, unsigned w, unsigned long f, size_t o
         unsigned n, void* l, void* e, int* r) {
     reads++;
     return ((void* (*)(void*, void*, unsigned, unsigned long, size_t, size_t, unsigned, void*,
-        void*, int*)) real("clEnqueueMapBuffer"))(q, b, w, f, o, s, n, l, e, r);
+        void*, int*)) real("libOpenCL.so.1", "clEnqueueMapBuffer"))(q, b, w, f, o, s, n, l, e, r);
 }
+
+#define COPY(NAME, COUNT) \
+int NAME(void* to, void* from, size_t size, void* stream) \
+{ \
+    COUNT++; \
+    return ((int (*)(void*, void*, size_t, void*)) real("libcuda.so.1", #NAME))( \
+        to, from, size, stream); \
+}
+// Those without a stream ignore what is in the place of one.
+COPY(cuMemcpyDtoH_v2, reads)
+COPY(cuMemcpyDtoHAsync_v2, reads)
+COPY(cuMemcpyHtoD_v2, writes)
+COPY(cuMemcpyHtoDAsync_v2, writes)
 """
 
 STEPS = """
@@ -292,7 +312,7 @@ if sys.argv[2] != "none":
         force.setBackend(sys.argv[2])
         system.addForce(force)
 integrator = mm.LangevinMiddleIntegrator(300, 1, 0.01)
-platform = mm.Platform.getPlatformByName("OpenCL")
+platform = mm.Platform.getPlatformByName(sys.argv[3])
 context = mm.Context(system, integrator, platform, {"Precision": "mixed"})
 context.setPositions(mesh.vertices)
 integrator.step(10)
@@ -305,15 +325,17 @@ print("transfers", count.count_reads() - before[0], count.count_writes() - befor
 
 
 def test_a_step_transfers_nothing(tmp_path):
-    """Counted where OpenCL is called: as many reads and writes as without any force."""
+    """Counted where OpenCL or CUDA is called: as many reads and writes as without any force."""
     DOUBLE.context(system_of(1))
+    if DOUBLE.platform not in ("OpenCL", "CUDA"):
+        pytest.skip(f"transfers of {DOUBLE.platform} are not counted")
     source, library = tmp_path / "count.c", tmp_path / "count.so"
     source.write_text(COUNTER, encoding="ascii")
     subprocess.run(["cc", "-shared", "-fPIC", "-o", library, source, "-ldl"], check=True)
 
     def transfers(backend: str) -> list[int]:
         result = subprocess.run(
-            [sys.executable, "-c", textwrap.dedent(STEPS), library, backend],
+            [sys.executable, "-c", textwrap.dedent(STEPS), library, backend, DOUBLE.platform],
             env={**os.environ, "LD_PRELOAD": str(library)},
             capture_output=True,
             text=True,

@@ -100,7 +100,9 @@ def empty_system(vesicle) -> openmm.System:
     return system
 
 
-def start(system: openmm.System, vesicle, integrator: str, target: Target) -> openmm.Context:
+def start(
+    system: openmm.System, vesicle, integrator: str, target: Target, positions=None
+) -> openmm.Context:
     """A Context with the positions of a vesicle and velocities at 300 K.
 
     Parameters
@@ -111,6 +113,8 @@ def start(system: openmm.System, vesicle, integrator: str, target: Target) -> op
     integrator : str
         One of `INTEGRATORS`.
     target : Target
+    positions : array_like, optional
+        Others than those of the mesh, if the System has more particles, nm.
 
     Raises
     ------
@@ -122,6 +126,6 @@ def start(system: openmm.System, vesicle, integrator: str, target: Target) -> op
         made.setRandomNumberSeed(1)
     platform = openmm.Platform.getPlatformByName(target.platform)
     context = openmm.Context(system, made, platform, target.properties)
-    context.setPositions(vesicle.mesh.vertices)
+    context.setPositions(vesicle.mesh.vertices if positions is None else positions)
     context.setVelocitiesToTemperature(TEMPERATURE, 1)
     return context
