@@ -56,11 +56,12 @@ impl Module {
 /// `shaders.rs` that has them and the stems of the potentials in the order of their numbers.
 pub fn write_modules(folder: &Path, out: &Path) -> Result<(), String> {
     let stems = stems(&folder.join("potentials"))?;
+    let integers = read(&folder.join("openmm_integers.c"))?;
     for (precision, real, capabilities) in
         [("single", 4, Capabilities::empty()), ("double", 8, Capabilities::FLOAT64)]
     {
         let module = compose(folder, precision, &stems)?;
-        let program = validate(&module, real, capabilities)
+        let program = validate(&module, real, capabilities, &integers)
             .map_err(|error| format!("In {precision} precision: {error}"))?;
         write(&out.join(format!("{precision}.wgsl")), &module.text)?;
         let [before, after] =
@@ -160,7 +161,12 @@ fn choice(
 }
 
 /// Refuse a module with a slip, else write it as a program for OpenMM's platforms.
-fn validate(module: &Module, real: usize, capabilities: Capabilities) -> Result<String, String> {
+fn validate(
+    module: &Module,
+    real: usize,
+    capabilities: Capabilities,
+    integers: &str,
+) -> Result<String, String> {
     let at = |line: Option<u32>| line.map_or_else(String::new, |line| module.place(line as usize));
     let parsed = naga::front::wgsl::parse_str(&module.text).map_err(|error| {
         let line = error.location(&module.text).map(|place| place.line_number);
@@ -172,5 +178,5 @@ fn validate(module: &Module, real: usize, capabilities: Capabilities) -> Result<
         format!("{}: {}", at(line), error.emit_to_string(&module.text))
     })?;
     constants::check_layout(&parsed, real)?;
-    dialect::write(&parsed, &info)
+    dialect::write(&parsed, &info, integers)
 }

@@ -19,8 +19,9 @@ type Text = Result<String, String>;
 /// An expression for each component of a vector.
 type OfComponent<'a> = dyn Fn(u8) -> Text + 'a;
 
-/// Write all types, functions and entry points of a module.
-pub fn write(module: &Module, info: &ModuleInfo) -> Text {
+/// Write all types, functions and entry points of a module. Functions that `integers` has, under their names in C, are taken
+/// from there.
+pub fn write(module: &Module, info: &ModuleInfo, integers: &str) -> Text {
     let mut layouter = naga::proc::Layouter::default();
     layouter.update(module.to_ctx()).map_err(|error| error.to_string())?;
     let mut text = String::new();
@@ -42,8 +43,15 @@ pub fn write(module: &Module, info: &ModuleInfo) -> Text {
             let _ = writeln!(text, "#define H_{name} {number}");
         }
     }
+    let is_there = |name: &str| integers.contains(&format!(" {name}("));
+    if module.functions.iter().any(|(_, function)| is_there(&name_of(&function.name))) {
+        text += integers;
+    }
     for (handle, function) in module.functions.iter() {
         let name = name_of(&function.name);
+        if is_there(&name) {
+            continue;
+        }
         text += &Writer { module, info: &info[handle], all: info, function }.function(&name)?;
     }
     for (number, entry) in module.entry_points.iter().enumerate() {
