@@ -11,6 +11,8 @@
 #define H_FAULT_TARGET 2u
 // A triangle is thin, and perhaps without area.
 #define H_FAULT_THIN 4u
+// An energy or a derivative is no number of single precision.
+#define H_FAULT_ENERGY 8u
 
 #ifdef HELFRICH_DOUBLE
 #define H_VEC3 h_f64_3
@@ -123,7 +125,7 @@ DEVICE void h_place_vertices(h_u32 extent, int first, int step, int vertices, in
     if (!isSane)
         exponent = 0;
     if (first == 0 && !isSane)
-        state[H_FAULT] |= H_FAULT_POSITION;
+        H_NOTE(&state[H_FAULT], H_FAULT_POSITION);
 #ifdef HELFRICH_DOUBLE
     double scale = unit < 0 ? (double) h_power(-unit) : 1.0 / h_power(unit);
     for (int vertex = first; vertex < vertices; vertex += step) {
@@ -141,7 +143,7 @@ DEVICE void h_place_vertices(h_u32 extent, int first, int step, int vertices, in
                 continue;
             int shift = targets[4*term + 2] - power*(exponent - 29);
             if (shift > 72) {
-                state[H_FAULT] |= H_FAULT_TARGET;
+                H_NOTE(&state[H_FAULT], H_FAULT_TARGET);
                 shift = 0;
             }
             mm_ulong m = ((mm_ulong) (h_u32) targets[4*term + 1] << 32) | (h_u32) targets[4*term];
@@ -157,7 +159,7 @@ DEVICE void h_place_vertices(h_u32 extent, int first, int step, int vertices, in
             // Whole numbers of 64 bits hold both where they differ by less than 2³⁰ and anything is left of the digits.
             bool fits = here < 4e18f && here > -4e18f && there < 4e18f && there > -4e18f;
             if (!fits && isSane)
-                state[H_FAULT] |= H_FAULT_POSITION;
+                H_NOTE(&state[H_FAULT], H_FAULT_POSITION);
             positions[3*vertex + k] = fits ? (h_i32) ((mm_long) rint(here) - (mm_long) rint(there)) : 0;
         }
     }
@@ -203,7 +205,7 @@ KERNEL void h_add_sums(int numRuns, int numDerivatives, GLOBAL const int* RESTRI
         GLOBAL const real* RESTRICT results, GLOBAL mixed* RESTRICT energies, GLOBAL mixed* RESTRICT derivatives,
         GLOBAL h_u32* RESTRICT thin, GLOBAL h_u32* RESTRICT state) {
     if (GLOBAL_ID == 0 && thin[0] != 0) {
-        state[H_FAULT] |= H_FAULT_THIN;
+        H_NOTE(&state[H_FAULT], H_FAULT_THIN);
         thin[0] = 0;
     }
     for (int run = 0; run < numRuns; run++) {
@@ -212,6 +214,9 @@ KERNEL void h_add_sums(int numRuns, int numDerivatives, GLOBAL const int* RESTRI
         for (int k = GLOBAL_ID; k < length; k += GLOBAL_SIZE)
             sum += results[begin + k];
         sum *= h_power(runs[4*run + 3]);
+        // By its bits, since compilers may take every number for finite.
+        if ((H_AS_UINT((h_f32) sum) & 0x7f800000u) == 0x7f800000u)
+            H_NOTE(&state[H_FAULT], H_FAULT_ENERGY);
         if (derivative < 0)
             energies[GLOBAL_ID] += sum;
         else

@@ -44,6 +44,22 @@ pub unsafe extern "C" fn Helfrich_Native_destroy(native: *mut Native) {
     }
 }
 
+/// Whether [`Helfrich_Native_look`] must come before terms are evaluated: 1 or 0.
+///
+/// # Safety
+/// As of [`Helfrich_Native_plan`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Native_mustLook(
+    native: *const Native,
+    membrane: *const Membrane,
+    terms: *const TermInput,
+    num_terms: i64,
+) -> c_int {
+    let terms = unsafe { read_terms(terms, num_terms) };
+    let (native, membrane) = unsafe { (&*native, &*membrane) };
+    c_int::from(!native.has_unit() || membrane.must_look(&terms))
+}
+
 /// Evaluate terms on the processor, to name what a device would not, and choose the unit of length by the positions.
 ///
 /// # Safety

@@ -218,6 +218,22 @@ def test_a_driver_on_the_processor_is_taken_only_where_it_is_asked_for():
     assert evaluations()["cpu"] > before["cpu"]
 
 
+@pytest.mark.parametrize("place", [0, 3])
+def test_one_force_asks_for_all_on_its_triangles(place: int):
+    """Whichever of them it is: they are computed together."""
+    mesh, forces = vesicle()
+    forces[place].setBackend("native")
+    system = system_of(mesh.num_vertices)
+    for force in forces:
+        system.addForce(force)
+    context = DOUBLE.context(system)
+    context.setPositions(mesh.vertices)
+    before = evaluations()
+    context.getState(energy=True)
+    after = evaluations()
+    assert {name: after[name] - before[name] for name in after} == {"cpu": 0, "gpu": 0, "native": 1}
+
+
 def test_derivatives_need_it():
     m = membrane("octahedron")
     force = helfrich.BendingForce(m.triangles, 50)
@@ -235,6 +251,65 @@ def test_an_explosion_is_found_without_energies():
     context.setPositions(mesh.vertices + np.random.default_rng(1).normal(size=mesh.vertices.shape))
     with pytest.raises(mm.OpenMMException, match=r"particle|position|triangle"):
         integrator.step(1100)
+
+
+def test_a_triangle_without_area_is_found_without_energies():
+    """Its vertices are held, so that no force of theirs spoils any position."""
+    mesh, (_, area, _, _) = vesicle()
+    system = system_of(mesh.num_vertices)
+    for vertex in mesh.triangles[5].tolist():
+        system.setParticleMass(vertex, 0)
+    integrator = mm.VerletIntegrator(1e-5)
+    context = context_of(DOUBLE, system, [area], integrator)
+    context.setPositions(mesh.vertices)
+    context.getState(energy=True)
+    flat = mesh.vertices.copy()
+    flat[mesh.triangles[5]] = flat[mesh.triangles[5, 0]] + [[1, 1, 1], [2, 2, 2], [4, 4, 4]]
+    context.setPositions(flat)
+    with pytest.raises(mm.OpenMMException, match="triangle 5 .* has no area"):
+        integrator.step(1001)
+
+
+@pytest.mark.parametrize("target", [SINGLE, DOUBLE], ids=str)
+def test_an_energy_that_overflows_is_no_result(target: Target):
+    """The processor names it if it overflows there, too."""
+    mesh, (_, area, _, _) = vesicle()
+    area.setContextParameter("target", "a target")
+    run = Running([area], mesh.num_vertices, target)
+    reference = run.evaluate(mesh.vertices)
+    for value, message in (
+        (1e-300, "the energy of SurfaceAreaForce is not finite"),
+        (1e-30, "SurfaceAreaForce: .* is beyond 3e38 kJ/mol"),
+    ):
+        run.context.setParameter("a target", value)
+        with pytest.raises(mm.OpenMMException, match=message):
+            run.evaluate(mesh.vertices)
+    run.context.setParameter("a target", mesh.area)
+    assert run.evaluate(mesh.vertices)[0] == reference[0]
+
+
+@pytest.mark.parametrize("target", [REFERENCE, *NATIVE], ids=str)
+def test_a_surface_inside_out_is_refused_whenever_its_volume_is_asked_for(target: Target):
+    """After other terms have been evaluated, and after the triangles have been turned."""
+    mesh, _ = vesicle(92)
+    turned = mesh.triangles[:, ::-1].copy()
+
+    def forces(triangles):
+        return [
+            helfrich.BendingForce(triangles, 50),
+            helfrich.EnclosedVolumeForce(triangles, 1, mesh.volume),
+        ]
+
+    run = Running(forces(turned), mesh.num_vertices, target)
+    run.evaluate(mesh.vertices, 0)
+    with pytest.raises(mm.OpenMMException, match="EnclosedVolumeForce: .*clockwise"):
+        run.evaluate(mesh.vertices, 1)
+    others = forces(mesh)
+    run = Running(others, mesh.num_vertices, target)
+    run.evaluate(mesh.vertices)
+    others[1].setTrianglesInContext(run.context, turned)
+    with pytest.raises(mm.OpenMMException, match="EnclosedVolumeForce: .*clockwise"):
+        run.evaluate(mesh.vertices)
 
 
 # --- transfers -----------------------------------------------------------------------------------
@@ -283,6 +358,10 @@ if sys.argv[2] != "none":
         helfrich.TriangleHeightForce(mesh, 5, 10),
     ):
         force.setBackend(sys.argv[2])
+        if sys.argv[3:] == ["derivatives"]:
+            name = f"{type(force).__name__} 0"
+            force.setContextParameter(force.getParameterName(0), name)
+            force.addEnergyParameterDerivative(name)
         system.addForce(force)
 integrator = mm.LangevinMiddleIntegrator(300, 1, 0.01)
 platform = mm.Platform.getPlatformByName("OpenCL")
@@ -298,15 +377,18 @@ print("transfers", count.count_reads() - before[0], count.count_writes() - befor
 
 
 def test_a_step_transfers_nothing(tmp_path):
-    """Counted where OpenCL is called: as many reads and writes as without any force."""
+    """Counted where OpenCL is called: as many reads and writes as without any force.
+
+    Derivatives, which OpenMM has in every step once they are asked for, change nothing.
+    """
     DOUBLE.context(system_of(1))
     source, library = tmp_path / "count.c", tmp_path / "count.so"
     source.write_text(COUNTER, encoding="ascii")
     subprocess.run(["cc", "-shared", "-fPIC", "-o", library, source, "-ldl"], check=True)
 
-    def transfers(backend: str) -> list[int]:
+    def transfers(*wanted: str) -> list[int]:
         result = subprocess.run(
-            [sys.executable, "-c", textwrap.dedent(STEPS), library, backend],
+            [sys.executable, "-c", textwrap.dedent(STEPS), library, *wanted],
             env={**os.environ, "LD_PRELOAD": str(library)},
             capture_output=True,
             text=True,
@@ -317,6 +399,7 @@ def test_a_step_transfers_nothing(tmp_path):
         return [int(word) for word in line.split()[1:]]
 
     assert transfers("native") == transfers("none")
+    assert transfers("native", "derivatives") == transfers("none")
     assert sum(transfers("cpu")) >= 600
 
 

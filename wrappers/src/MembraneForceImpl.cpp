@@ -37,7 +37,6 @@ void MembraneForceImpl::initialize(ContextImpl& context) {
         membrane->checkAgreement(*this);
         membrane->checkJoining(owner.getTypeName(), term.potential);
         copyValues();
-        membrane->choose(owner.getTypeName(), owner.getBackend());
         native = membrane->startNative(owner, context, term);
         if (!inPlace && !native && !derivatives.empty())
             throw OpenMMException(owner.getTypeName() + ": energy parameter derivatives need the Reference, CPU or " +

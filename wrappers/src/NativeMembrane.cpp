@@ -165,7 +165,7 @@ string NativeMembrane::whyNot(ContextImpl& context) {
 
 NativeMembrane::NativeMembrane(ContextImpl& context, HelfrichMembrane* core, const vector<pair<int, int>>& edges,
                                const NativeMembrane* sibling)
-    : core(core), native(nullptr), device(new Device(*findDevice(context))), hasLooked(false), unchecked(0), turn(0) {
+    : core(core), native(nullptr), device(new Device(*findDevice(context))), unchecked(0), turn(0) {
     ComputeContext& cc = device->cc;
     ContextSelector selector(cc);
     bool isDouble = cc.getUseDoublePrecision();
@@ -292,12 +292,10 @@ void NativeMembrane::provide(const HelfrichNativePlan& plan) {
 }
 
 void NativeMembrane::evaluate(const string& subject, ContextImpl& context, const vector<HelfrichTerm>& terms,
-                              const vector<int>& derivatives, bool forces, bool wantsSums) {
+                              const vector<int>& derivatives, bool forces, bool wantsSums, bool isAsked) {
     ContextSelector selector(device->cc);
-    if (!hasLooked) {
+    if (Helfrich_Native_mustLook(native, core, terms.data(), (int64_t) terms.size()))
         look(subject, context, terms);
-        hasLooked = true;
-    }
     HelfrichNativePlan plan;
     check(Helfrich_Native_plan(subject.c_str(), native, core, terms.data(), (int64_t) terms.size(), wantsSums, forces,
                                derivatives.data(), &plan));
@@ -324,13 +322,15 @@ void NativeMembrane::evaluate(const string& subject, ContextImpl& context, const
         device->kernels["h_add_forces"]->setArg(1, plan.unit);
         device->run("h_add_forces", groups);
     }
-    if (wantsSums) {
-        device->kernels["h_add_sums"]->setArg(0, (int) plan.numRuns);
+    bool isDue = isAsked || ++unchecked >= evaluationsBetweenChecks;
+    // It also notes what the passes have found.
+    if (wantsSums || isDue) {
+        device->kernels["h_add_sums"]->setArg(0, wantsSums ? (int) plan.numRuns : 0);
         device->kernels["h_add_sums"]->setArg(1, (int) device->cc.getEnergyParamDerivNames().size());
         device->run("h_add_sums", 1);
     }
     Helfrich_Native_count();
-    if (wantsSums || ++unchecked >= evaluationsBetweenChecks)
+    if (isDue)
         checkFaults(subject, context, terms);
 }
 
@@ -350,6 +350,10 @@ void NativeMembrane::checkFaults(const string& subject, ContextImpl& context, co
                               "membrane had no size or one beyond all others; use a smaller time step");
     if (faults & 2)
         throw OpenMMException(subject + ": a target area or volume is too large for the membrane; check its unit");
+    if (faults & 8)
+        throw OpenMMException(subject + ": an energy, or a derivative of it, is beyond 3e38 kJ/mol although every " +
+                              "position is finite: the mesh is folded or collapsed, or a parameter is out of all " +
+                              "proportion");
     static std::once_flag said;
     std::call_once(said, [&] {
         std::cerr

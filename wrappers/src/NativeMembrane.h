@@ -50,9 +50,10 @@ public:
      * @param derivatives  for each scalar of each term the number of the derivative that it adds to, or -1
      * @param wantsSums    whether energies or derivatives are wanted
      * @param forces       whether forces are wanted
+     * @param isAsked      whether the energy is, so that there is time to look for faults
      */
     void evaluate(const std::string& subject, OpenMM::ContextImpl& context, const std::vector<HelfrichTerm>& terms,
-                  const std::vector<int>& derivatives, bool forces, bool wantsSums);
+                  const std::vector<int>& derivatives, bool forces, bool wantsSums, bool isAsked);
 
 private:
     struct Device;
@@ -66,7 +67,6 @@ private:
     HelfrichMembrane* core;
     HelfrichNative* native;
     std::unique_ptr<Device> device;
-    bool hasLooked;
     /** Evaluations since faults were looked for. */
     int unchecked;
     /** Which of two numbers has the extent of this evaluation. */

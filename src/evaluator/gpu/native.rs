@@ -60,8 +60,8 @@ pub struct Native {
     /// Of the connectivity that `topology` is of.
     generation: u64,
     frame: Frame,
-    /// The unit of length, nm, as a power of two.
-    unit: i32,
+    /// The unit of length, nm, as a power of two, once positions have been seen.
+    unit: Option<i32>,
     plan: Plan,
     /// The particle of each vertex, and the first vertex of its connected part.
     particles: Vec<u32>,
@@ -89,7 +89,7 @@ impl Native {
             topology: None,
             generation: 0,
             frame: Frame::new(),
-            unit: 0,
+            unit: None,
             plan: Plan::default(),
             particles: Vec::new(),
             anchors: Vec::new(),
@@ -110,14 +110,18 @@ impl Native {
             sum += (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
         }
         let mean = sum / mesh.num_edges().max(1) as f64;
-        if (1e-20..1e20).contains(&mean) {
-            self.unit = mean.log2().round() as i32;
-        }
+        let is_sane = (1e-20..1e20).contains(&mean);
+        self.unit = Some(if is_sane { mean.log2().round() as i32 } else { 0 });
+    }
+
+    /// Whether the unit of length has been chosen.
+    pub fn has_unit(&self) -> bool {
+        self.unit.is_some()
     }
 
     /// The unit of length as a power of two, nm.
     pub fn unit(&self) -> i32 {
-        self.unit
+        self.unit.unwrap_or(0)
     }
 
     /// The particle of each vertex, and the first vertex of its connected part.
@@ -143,11 +147,11 @@ impl Native {
             self.set_topology(Topology::of(mesh));
             self.generation = generation;
         }
-        let Self { precision, topology: Some(topology), frame, plan, unit, .. } = self else {
+        // The device finds the spacing of its lattice by itself.
+        let scale = Scale { unit: 2f64.powi(self.unit()), quantum: 1.0 };
+        let Self { precision, topology: Some(topology), frame, plan, .. } = self else {
             return Err(Error::Contract("has no mesh".to_owned()));
         };
-        // The device finds the spacing of its lattice by itself.
-        let scale = Scale { unit: 2f64.powi(*unit), quantum: 1.0 };
         if !frame.fill(topology, *precision, scale, terms, forces) {
             let names: Vec<_> = terms.iter().map(|term| term.potential.name()).collect();
             return Err(Error::Contract(format!(
