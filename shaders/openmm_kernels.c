@@ -11,7 +11,7 @@
 #define H_FAULT_TARGET 2u
 // A triangle is thin, and perhaps without area.
 #define H_FAULT_THIN 4u
-// An energy or a derivative is no number of single precision.
+// An energy or a derivative is no finite number.
 #define H_FAULT_ENERGY 8u
 
 #ifdef HELFRICH_DOUBLE
@@ -199,6 +199,13 @@ KERNEL void h_add_forces(int vertices, int unit, int stride, GLOBAL const int* R
     }
 }
 
+// A float that is finite if a sum is.
+#ifdef HELFRICH_DOUBLE
+#define H_SHORTENED(sum) ((h_f32) (sum*1e-270))
+#else
+#define H_SHORTENED(sum) ((h_f32) sum)
+#endif
+
 // Add energies to OpenMM's, and derivatives with respect to Context parameters. A run of sums is four numbers: its
 // begin, its length, the derivative or −1 for the energy, and the power of two that it is to be multiplied with.
 KERNEL void h_add_sums(int numRuns, int numDerivatives, GLOBAL const int* RESTRICT runs,
@@ -215,7 +222,7 @@ KERNEL void h_add_sums(int numRuns, int numDerivatives, GLOBAL const int* RESTRI
             sum += results[begin + k];
         sum *= h_power(runs[4*run + 3]);
         // By its bits, since compilers may take every number for finite.
-        if ((H_AS_UINT((h_f32) sum) & 0x7f800000u) == 0x7f800000u)
+        if ((H_AS_UINT(H_SHORTENED(sum)) & 0x7f800000u) == 0x7f800000u)
             H_NOTE(&state[H_FAULT], H_FAULT_ENERGY);
         if (derivative < 0)
             energies[GLOBAL_ID] += sum;

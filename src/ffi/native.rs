@@ -5,7 +5,7 @@ use super::{NativeBuffer, NativePass, NativePlan, TermInput, guarded, slice, tex
 use crate::evaluator::gpu::Precision;
 use crate::evaluator::gpu::native::{self, Native};
 use crate::membrane::{Configuration, Membrane};
-use crate::potentials::MAX_PARAMETERS;
+use crate::potentials::{MAX_PARAMETERS, REGISTRY};
 use std::ffi::{c_char, c_int};
 
 fn precision(is_double: c_int) -> Precision {
@@ -18,13 +18,10 @@ pub extern "C" fn Helfrich_Native_source(is_double: c_int) -> *const c_char {
     native::source(precision(is_double)).as_ptr()
 }
 
-/// Whether a platform can evaluate a term: 1 or 0.
-///
-/// # Safety
-/// `term` must be readable with its fields.
+/// Whether a platform can evaluate a potential, by its number: 1 or 0.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn Helfrich_Native_canEvaluate(term: *const TermInput) -> c_int {
-    c_int::from(native::is_native(&unsafe { (*term).term() }))
+pub extern "C" fn Helfrich_Native_canEvaluate(potential: c_int) -> c_int {
+    c_int::from(native::is_native(REGISTRY[potential as usize]))
 }
 
 /// Plans for a membrane in one precision.

@@ -13,6 +13,7 @@
 #include <iostream>
 #include <map>
 #include <mutex>
+#include <set>
 
 using namespace HelfrichPlugin;
 using namespace OpenMM;
@@ -94,6 +95,10 @@ private:
     vector<bool> isVertex;
 };
 
+/** The Systems of all NativeMembranes. */
+std::mutex systemsMutex;
+std::multiset<const System*> systems;
+
 /** Notes that OpenMM has put particles in another order. */
 class OrderListener : public ComputeContext::ReorderListener {
 public:
@@ -156,7 +161,7 @@ bool NativeMembrane::isOnProcessor(ContextImpl& context) {
 string NativeMembrane::whyNot(ContextImpl& context) {
     const string& name = context.getPlatform().getName();
     if (name != "OpenCL" && name != "CUDA" && name != "HIP")
-        return "the platform " + name + " is none of OpenCL, CUDA and HIP";
+        return "the platform " + name + " is none of OpenCL, CUDA and HIP; name one of them";
     ComputeContext* cc = findDevice(context);
     if (cc == nullptr)
         return "the Context uses several devices";
@@ -187,10 +192,20 @@ NativeMembrane::NativeMembrane(ContextImpl& context, HelfrichMembrane* core, con
     cc.addForce(new Vertices(edges, context.getSystem().getNumParticles()));
     cc.getReorderListeners().push_back(new OrderListener(device->hasNewOrder));
     native = Helfrich_Native_create(isDouble);
+    system = &context.getSystem();
+    std::lock_guard<std::mutex> lock(systemsMutex);
+    systems.insert(system);
 }
 
 NativeMembrane::~NativeMembrane() {
     Helfrich_Native_destroy(native);
+    std::lock_guard<std::mutex> lock(systemsMutex);
+    systems.erase(systems.find(system));
+}
+
+bool NativeMembrane::isElsewhere(const System& system) {
+    std::lock_guard<std::mutex> lock(systemsMutex);
+    return systems.count(&system) != 0;
 }
 
 void NativeMembrane::requestDerivative(const string& parameter) {
@@ -350,12 +365,16 @@ void NativeMembrane::checkFaults(const string& subject, ContextImpl& context, co
                               "membrane had no size or one beyond all others; use a smaller time step");
     if (faults & 2)
         throw OpenMMException(subject + ": a target area or volume is too large for the membrane; check its unit");
+    static std::once_flag saidLarge, saidThin;
+    // OpenMM's minimizer gets on with infinite energies, so this is no error.
     if (faults & 8)
-        throw OpenMMException(subject + ": an energy, or a derivative of it, is beyond 3e38 kJ/mol although every " +
-                              "position is finite: the mesh is folded or collapsed, or a parameter is out of all " +
-                              "proportion");
-    static std::once_flag said;
-    std::call_once(said, [&] {
+        std::call_once(saidLarge, [&] {
+            std::cerr << "openmm-helfrich: an energy of the membrane is beyond 3e38 kJ/mol, where single precision ends; "
+                         "choose the Precision \"double\", or the backend \"cpu\"\n";
+        });
+    if (!(faults & 4))
+        return;
+    std::call_once(saidThin, [&] {
         std::cerr
             << "openmm-helfrich: the height of a triangle is below a thousandth of its longest side, of which single "
                "precision misses digits (2e-4 of the largest force at 1e-4 of the side); choose the Precision "

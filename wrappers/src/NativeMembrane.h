@@ -24,6 +24,8 @@ public:
     static std::string whyNot(OpenMM::ContextImpl& context);
     /** Whether the device of a Context, for which whyNot() is empty, is the processor. */
     static bool isOnProcessor(OpenMM::ContextImpl& context);
+    /** Whether another Context of a System evaluates membranes itself. */
+    static bool isElsewhere(const OpenMM::System& system);
     /**
      * Compile the kernels.
      *
@@ -66,6 +68,7 @@ private:
 
     HelfrichMembrane* core;
     HelfrichNative* native;
+    const OpenMM::System* system;
     std::unique_ptr<Device> device;
     /** Evaluations since faults were looked for. */
     int unchecked;

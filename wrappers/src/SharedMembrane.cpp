@@ -220,14 +220,15 @@ bool SharedMembrane::isLeader(const MembraneForceImpl& member, int groups) const
     return false;
 }
 
-bool SharedMembrane::startNative(const MembraneForce& force, ContextImpl& context, const HelfrichTerm& term) {
+bool SharedMembrane::startNative(const MembraneForce& force, ContextImpl& context, int potential) {
     int wish = Helfrich_Membrane_wishesNative(core);
     if (wish == 0)
         return false;
     bool isMust = wish == 2;
     string reason = NativeMembrane::whyNot(context);
     if (!reason.empty()) {
-        if (isMust)
+        // OpenMM's minimizer has a second Context on the processor for forces that are too large for its own.
+        if (isMust && !NativeMembrane::isElsewhere(context.getSystem()))
             throw OpenMMException(force.getTypeName() + ": the backend \"native\" cannot be had here: " + reason);
         return false;
     }
@@ -235,7 +236,7 @@ bool SharedMembrane::startNative(const MembraneForce& force, ContextImpl& contex
     if (!isMust && NativeMembrane::isOnProcessor(context))
         return false;
     // Borders, contacts and periodic surfaces are for the processor, whatever evaluates the rest.
-    if (force.usesPeriodicBoundaryConditions() || !Helfrich_Native_canEvaluate(&term))
+    if (force.usesPeriodicBoundaryConditions() || !Helfrich_Native_canEvaluate(potential))
         return false;
     if (native != nullptr)
         return true;

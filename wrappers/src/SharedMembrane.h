@@ -65,13 +65,13 @@ public:
      */
     bool isLeader(const MembraneForceImpl& member, int groups) const;
     /**
-     * Let the platform evaluate a term of a force that joins, if it can and if that is wanted.
+     * Let the platform evaluate a force that joins, if it can and if that is wanted; platforms.py tells people.
      *
-     * @param force  the force
-     * @param term   what it computes
+     * @param force      the force
+     * @param potential  the number of its potential
      * @return whether it will
      */
-    bool startNative(const MembraneForce& force, OpenMM::ContextImpl& context, const HelfrichTerm& term);
+    bool startNative(const MembraneForce& force, OpenMM::ContextImpl& context, int potential);
     /** Have the platform compute the derivative with respect to a Context parameter. */
     void requestDerivative(const std::string& parameter) {
         native->requestDerivative(parameter);

@@ -11,7 +11,7 @@ use super::layout::{Pass, connectivity, items, passes};
 use super::{Bytes, Precision, Sink, shaders};
 use crate::error::{Error, Result};
 use crate::mesh::{Topology, Triangulation};
-use crate::potentials::{MAX_PARAMETERS, Needs, Term};
+use crate::potentials::{MAX_PARAMETERS, Needs, Potential, Term};
 use std::ffi::CStr;
 
 /// What one evaluation asks of the device.
@@ -76,9 +76,18 @@ pub fn source(precision: Precision) -> &'static CStr {
     }
 }
 
-/// Whether a platform can evaluate a term: those of borders and contacts are computed on the processor.
-pub fn is_native(term: &Term) -> bool {
-    !term.potential.needs(term).intersects(Needs::BORDERS | Needs::CONTACTS)
+/// Whether a platform can evaluate a potential: those of borders and contacts are computed on the processor.
+pub fn is_native(potential: &'static dyn Potential) -> bool {
+    let term = Term {
+        potential,
+        form: 0,
+        switches: 0,
+        values: Default::default(),
+        fields: Default::default(),
+        particles: &[],
+        wants_derivatives: false,
+    };
+    !potential.needs(&term).intersects(Needs::BORDERS | Needs::CONTACTS)
 }
 
 impl Native {

@@ -125,7 +125,7 @@ int Helfrich_Membrane_choose(const char* subject, HelfrichMembrane* membrane, co
 int Helfrich_Membrane_wishesNative(const HelfrichMembrane* membrane);
 int Helfrich_checkBackend(const char* subject, const char* backend);
 const char* Helfrich_Native_source(int isDouble);
-int Helfrich_Native_canEvaluate(const HelfrichTerm* term);
+int Helfrich_Native_canEvaluate(int potential);
 HelfrichNative* Helfrich_Native_create(int isDouble);
 void Helfrich_Native_destroy(HelfrichNative* native);
 /** Whether Helfrich_Native_look() must come before terms are evaluated. */
