@@ -150,7 +150,8 @@ def _evaluator(force: MembraneForce, platform: str) -> Choice:
     if not _can_leave_processor(force):
         return Choice("cpu", "borders and contacts are for the processor")
     if kind == "gpu":
-        return Choice("gpu", chosen)
+        spanning = "; what spans the box is for the processor"
+        return Choice("gpu", chosen + spanning * force.usesPeriodicBoundaryConditions())
     if not on_device:
         return Choice("auto" if _is_for_gpu(force) else "cpu", elsewhere)
     if kind == "auto" and platform == "OpenCL" and not _count_opencl_gpus():
