@@ -11,6 +11,8 @@
 #define H_FAULT_TARGET 2u
 // A triangle is thin, and perhaps without area.
 #define H_FAULT_THIN 4u
+// An energy or a derivative is no finite number.
+#define H_FAULT_ENERGY 8u
 
 #ifdef HELFRICH_DOUBLE
 #define H_VEC3 h_f64_3
@@ -124,7 +126,7 @@ DEVICE void h_place_vertices(int exponent, int first, int step, int vertices, in
     if (!isSane)
         exponent = 0;
     if (first == 0 && !isSane)
-        state[H_FAULT] |= H_FAULT_POSITION;
+        H_NOTE(&state[H_FAULT], H_FAULT_POSITION);
 #ifdef HELFRICH_DOUBLE
     double scale = unit < 0 ? (double) h_power(-unit) : 1.0 / h_power(unit);
     for (int vertex = first; vertex < vertices; vertex += step) {
@@ -150,7 +152,7 @@ DEVICE void h_place_vertices(int exponent, int first, int step, int vertices, in
                 continue;
             int shift = targets[4*term + 2] - power*(exponent - 29);
             if (shift > 72) {
-                state[H_FAULT] |= H_FAULT_TARGET;
+                H_NOTE(&state[H_FAULT], H_FAULT_TARGET);
                 shift = 0;
             }
             mm_ulong m = ((mm_ulong) (h_u32) targets[4*term + 1] << 32) | (h_u32) targets[4*term];
@@ -167,7 +169,7 @@ DEVICE void h_place_vertices(int exponent, int first, int step, int vertices, in
             // Whole numbers of 64 bits hold both where they differ by less than 2³⁰ and anything is left of the digits.
             bool fits = here < 4e18f && here > -4e18f && there < 4e18f && there > -4e18f;
             if (!fits && isSane)
-                state[H_FAULT] |= H_FAULT_POSITION;
+                H_NOTE(&state[H_FAULT], H_FAULT_POSITION);
             way[k] = fits ? (mm_long) rint(here) - (mm_long) rint(there) : 0;
         }
         for (int i = 2; isPeriodic && i >= 0; i--) {
@@ -224,13 +226,20 @@ KERNEL void h_add_forces(int vertices, int unit, int stride, GLOBAL const int* R
     }
 }
 
+// A float that is finite if a sum is.
+#ifdef HELFRICH_DOUBLE
+#define H_SHORTENED(sum) ((h_f32) (sum*1e-270))
+#else
+#define H_SHORTENED(sum) ((h_f32) sum)
+#endif
+
 // Add energies to OpenMM's, and derivatives with respect to Context parameters. A run of sums is four numbers: its
 // begin, its length, the derivative or −1 for the energy, and the power of two that it is to be multiplied with.
 KERNEL void h_add_sums(int numRuns, int numDerivatives, GLOBAL const int* RESTRICT runs,
         GLOBAL const real* RESTRICT results, GLOBAL mixed* RESTRICT energies, GLOBAL mixed* RESTRICT derivatives,
         GLOBAL h_u32* RESTRICT thin, GLOBAL h_u32* RESTRICT state) {
     if (GLOBAL_ID == 0 && thin[0] != 0) {
-        state[H_FAULT] |= H_FAULT_THIN;
+        H_NOTE(&state[H_FAULT], H_FAULT_THIN);
         thin[0] = 0;
     }
     for (int run = 0; run < numRuns; run++) {
@@ -239,6 +248,9 @@ KERNEL void h_add_sums(int numRuns, int numDerivatives, GLOBAL const int* RESTRI
         for (int k = GLOBAL_ID; k < length; k += GLOBAL_SIZE)
             sum += results[begin + k];
         sum *= h_power(runs[4*run + 3]);
+        // By its bits, since compilers may take every number for finite.
+        if ((H_AS_UINT(H_SHORTENED(sum)) & 0x7f800000u) == 0x7f800000u)
+            H_NOTE(&state[H_FAULT], H_FAULT_ENERGY);
         if (derivative < 0)
             energies[GLOBAL_ID] += sum;
         else

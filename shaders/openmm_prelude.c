@@ -18,6 +18,7 @@ typedef double h_f64;
 #define H_AS_FLOAT(x) as_float(x)
 #define H_COUNT(place, value) atomic_add(place, value)
 #define H_RAISE(place, value) atomic_max(place, value)
+#define H_NOTE(place, bits) atomic_or(place, bits)
 #define H_LEADING_ZEROS(x) clz(x)
 #define H_SQRT32 sqrt
 #define H_ABS32 fabs
@@ -31,6 +32,7 @@ typedef double h_f64;
 #define H_AS_FLOAT(x) __uint_as_float(x)
 #define H_COUNT(place, value) atomicAdd(place, value)
 #define H_RAISE(place, value) atomicMax(place, value)
+#define H_NOTE(place, bits) atomicOr(place, bits)
 #define H_LEADING_ZEROS(x) ((h_u32) __clz((int) (x)))
 #define H_SQRT32 sqrtf
 #define H_ABS32 fabsf

@@ -146,6 +146,12 @@ impl Membrane {
         self.contacts.evaluate(&self.surface.mesh, cell, terms, positions, contributions, forces)
     }
 
+    /// Whether [`Self::look`] has to come before terms are evaluated elsewhere: one of them needs an outside, and nobody
+    /// has looked for it.
+    pub fn must_look(&self, terms: &[Term]) -> bool {
+        !self.surface.has_outside && terms.iter().any(|term| term.potential.needs_outside())
+    }
+
     /// Evaluate terms on the processor, whatever has been chosen, for what it says of the positions: an error names its
     /// culprit.
     ///

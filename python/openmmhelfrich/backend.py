@@ -18,6 +18,9 @@ from . import _core
 
 __all__ = ["Adapter", "Timing", "adapters", "evaluations", "get_backend", "set_backend", "timings"]
 
+#: Below this number of vertices "auto" looks for no GPU (src/evaluator/chosen.rs).
+LEAST_VERTICES = 20_000
+
 _KINDS = ("auto", "cpu", "gpu", "native")
 _PRECISIONS = ("auto", "single", "double")
 

@@ -13,23 +13,40 @@ import functools
 import os
 from typing import NamedTuple
 
+import numpy as np
 import openmm
 
-from .forces import _why_not_helfrich
+from . import _core, backend
+from .forces import MembraneForce, _why_not_helfrich
 
-__all__ = ["LEAST_FOR_GPU", "Choice", "choose", "find", "names"]
+__all__ = [
+    "LEAST_FOR_GPU",
+    "ON_DEVICES",
+    "Choice",
+    "choose",
+    "evaluators",
+    "find",
+    "membranes_of",
+    "names",
+]
 
 #: From this number of particles on, costly forces are worth the way to a GPU and back: on CPU their
 #: step takes milliseconds then, beside which some hundred microseconds for the way are little.
 LEAST_FOR_GPU = 10_000
 
+#: What only these platforms have on a device, and wgpu has not.
+_OF_BORDERS = ("EdgeTensionForce", "GaussianCurvatureForce")
+
 _ENVIRONMENT = "OPENMM_DEFAULT_PLATFORM"
+
+#: The platforms that can evaluate membranes themselves, the fastest first.
+ON_DEVICES = ("CUDA", "HIP", "OpenCL")
 
 
 class Choice(NamedTuple):
-    """A platform, and why it was chosen.
+    """A platform or a backend, and why it was chosen.
 
-    name: as OpenMM calls it; reason: half a sentence for people.
+    name: as OpenMM or `set_backend` calls it; reason: half a sentence for people.
     """
 
     name: str
@@ -63,10 +80,11 @@ def choose(system: openmm.System, integrator: openmm.Integrator, *, double: bool
     """The fastest platform for a System, by what is in it.
 
     - What the environment variable ``OPENMM_DEFAULT_PLATFORM`` names, as OpenMM does.
+    - For membranes under the backend ``"native"`` CUDA, HIP or OpenCL, on a processor too.
     - ``Helfrich`` if membranes, or terms that no platform computes faster, are most of the work.
     - Else, for pairs of particles and the like, CUDA, HIP, or OpenCL on a real GPU, from 10 000
       particles on.
-    - Else ``CPU``, which has neighbour lists. OpenCL on a processor (PoCL) is never chosen.
+    - Else ``CPU``, which has neighbour lists, and not OpenCL on a processor (PoCL).
 
     Parameters
     ----------
@@ -83,6 +101,10 @@ def choose(system: openmm.System, integrator: openmm.Integrator, *, double: bool
     wanted = os.environ.get(_ENVIRONMENT)
     if wanted is not None:
         return Choice(find(wanted), f"the environment variable {_ENVIRONMENT} names it")
+    if not double and any(_backend_of(force) == "native" for force in membranes_of(system)):
+        device = _gpu_platform() or ("OpenCL" if "OpenCL" in names() else None)
+        if device is not None:
+            return Choice(device, 'the backend "native" is for platforms of GPUs')
     costly = _why_not_helfrich(system, integrator)
     if not costly:
         return Choice("Helfrich", "nothing costs more than the membranes")
@@ -94,6 +116,81 @@ def choose(system: openmm.System, integrator: openmm.Integrator, *, double: bool
     if "CPU" in names():
         return Choice("CPU", f"{costly}, and CPU has neighbour lists and threads")
     return Choice("Helfrich", f"{costly}, but there is no platform CPU")
+
+
+def evaluators(system: openmm.System, platform: str) -> dict[Choice, list[str]]:
+    """What would compute the membranes of a System on a platform.
+
+    Parameters
+    ----------
+    system : openmm.System
+    platform : str
+        Its name, as OpenMM spells it.
+
+    Returns
+    -------
+    dict
+        The classes of the forces that each backend computes, by the backend with the reason:
+        ``"native"``, the platform itself; ``"cpu"``; ``"gpu"``; ``"auto"``, the faster of these
+        two; ``"none"`` where a Context is an error.
+    """
+    found: dict[Choice, list[str]] = {}
+    for force in membranes_of(system):
+        found.setdefault(_evaluator(force, platform), []).append(type(force).__name__)
+    return found
+
+
+def _evaluator(force: MembraneForce, platform: str) -> Choice:
+    """The rule of `SharedMembrane::startNative` and of the core's backends, in words."""
+    kind = _backend_of(force)
+    chosen = f'the backend "{kind}" is chosen'
+    on_device = platform in ON_DEVICES
+    elsewhere = f"{platform} is none of {', '.join(ON_DEVICES)}"
+    if kind == "cpu":
+        return Choice("cpu", chosen)
+    if kind == "native" and not on_device:
+        return Choice("none", f"{chosen}, but {elsewhere}")
+    if not _can_leave_processor(force, False):
+        return Choice("cpu", "contacts are for the processor")
+    if type(force).__name__ in _OF_BORDERS and (kind == "gpu" or not on_device):
+        return Choice("cpu", "borders are for the processor")
+    if kind == "gpu":
+        spanning = "; what spans the box is for the processor"
+        return Choice("gpu", chosen + spanning * force.usesPeriodicBoundaryConditions())
+    if not on_device:
+        return Choice("auto" if _is_for_gpu(force) else "cpu", elsewhere)
+    if kind == "auto" and platform == "OpenCL" and not _count_opencl_gpus():
+        return Choice("cpu", "the device of OpenCL is the processor, which is faster without it")
+    if not _can_leave_processor(force, force.usesPeriodicBoundaryConditions()):
+        return Choice("cpu", "volumes in a periodic box are for the processor")
+    return Choice("native", chosen if kind == "native" else f"{platform} has a GPU")
+
+
+def membranes_of(system: openmm.System) -> list[MembraneForce]:
+    """The forces on membranes of a System, as their own classes."""
+    classes = MembraneForce.__subclasses__()
+    forces = system.getForces()
+    return [cls.cast(force) for force in forces for cls in classes if cls.isinstance(force)]
+
+
+def _backend_of(force: MembraneForce) -> str:
+    """What is to compute a force, without a precision or an adapter."""
+    return (force.getBackend() or backend.get_backend()).partition("@")[0].partition(":")[0]
+
+
+def _can_leave_processor(force: MembraneForce, is_periodic: bool) -> bool:
+    """Whether OpenMM's GPU platforms have its potential, in a periodic box or without."""
+    number = ctypes.c_int()
+    library = _core.library()
+    library.Helfrich_Potential_find(type(force).__name__.encode(), ctypes.byref(number))
+    return bool(library.Helfrich_Native_canEvaluate(number, int(is_periodic)))
+
+
+def _is_for_gpu(force: MembraneForce) -> bool:
+    """Whether ``"auto"`` looks for a GPU for its mesh, and finds one."""
+    corners = np.frombuffer(force._triangleBuffer(), dtype=np.intc)
+    is_large = len(np.unique(corners)) >= backend.LEAST_VERTICES
+    return is_large and any(adapter.kind != "software" for adapter in backend.adapters())
 
 
 @functools.cache

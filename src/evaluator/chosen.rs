@@ -161,7 +161,9 @@ impl ChosenEvaluator {
         forces: &mut [f64],
     ) -> Result<()> {
         let terms: SmallVec<[&Term; 8]> = terms.iter().collect();
-        self.cpu(present).evaluate(&terms, positions, &mut [], Some(forces))
+        // It says of energies only if somebody wants to know them.
+        let mut contributions = vec![Contribution::default(); terms.len()];
+        self.cpu(present).evaluate(&terms, positions, &mut contributions, Some(forces))
     }
 
     fn on_cpu(

@@ -5,7 +5,7 @@ use super::{NativeBuffer, NativePass, NativePlan, TermInput, guarded, slice, tex
 use crate::evaluator::gpu::Precision;
 use crate::evaluator::gpu::native::{self, Native, Wanted};
 use crate::membrane::{Configuration, Membrane};
-use crate::potentials::MAX_PARAMETERS;
+use crate::potentials::{MAX_PARAMETERS, REGISTRY};
 use std::ffi::{c_char, c_int};
 
 fn precision(is_double: c_int) -> Precision {
@@ -18,16 +18,10 @@ pub extern "C" fn Helfrich_Native_source(is_double: c_int) -> *const c_char {
     native::source(precision(is_double)).as_ptr()
 }
 
-/// Whether a platform can evaluate a term: 1 or 0.
-///
-/// # Safety
-/// `term` must be readable with its fields.
+/// Whether a platform can evaluate a potential, by its number: 1 or 0.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn Helfrich_Native_canEvaluate(
-    term: *const TermInput,
-    is_periodic: c_int,
-) -> c_int {
-    c_int::from(native::is_native(&unsafe { (*term).term() }, is_periodic != 0))
+pub extern "C" fn Helfrich_Native_canEvaluate(potential: c_int, is_periodic: c_int) -> c_int {
+    c_int::from(native::is_native(REGISTRY[potential as usize], is_periodic != 0))
 }
 
 /// Plans for a membrane in one precision.
@@ -45,6 +39,22 @@ pub unsafe extern "C" fn Helfrich_Native_destroy(native: *mut Native) {
     if !native.is_null() {
         drop(unsafe { Box::from_raw(native) });
     }
+}
+
+/// Whether [`Helfrich_Native_look`] must come before terms are evaluated: 1 or 0.
+///
+/// # Safety
+/// As of [`Helfrich_Native_plan`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Native_mustLook(
+    native: *const Native,
+    membrane: *const Membrane,
+    terms: *const TermInput,
+    num_terms: i64,
+) -> c_int {
+    let terms = unsafe { read_terms(terms, num_terms) };
+    let (native, membrane) = unsafe { (&*native, &*membrane) };
+    c_int::from(!native.has_unit() || membrane.must_look(&terms))
 }
 
 /// Evaluate terms on the processor, to name what a device would not, and choose the unit of length by the positions.

@@ -50,3 +50,14 @@ def pair(lumpy):
         np.concatenate([lumpy.vertices, other]),
         np.concatenate([lumpy.triangles, lumpy.triangles + lumpy.num_vertices]),
     )
+
+
+@pytest.fixture
+def backend_as_it_was():
+    """Leaves the backend for the process as it is."""
+    import openmmhelfrich as helfrich
+
+    before = helfrich.get_backend()
+    yield
+    kind, _, precision = before.partition(":")
+    helfrich.set_backend(kind, precision=precision or "auto")

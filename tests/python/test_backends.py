@@ -77,15 +77,6 @@ def mesh() -> helfrich.Mesh:
     return helfrich.Mesh.icosphere(2, 100.0)
 
 
-@pytest.fixture
-def _as_it_was():
-    """Leaves the choice for the process as it is."""
-    before = helfrich.get_backend()
-    yield
-    kind, _, precision = before.partition(":")
-    helfrich.set_backend(kind, precision=precision or "auto")
-
-
 def context_of(*forces: mm.Force) -> mm.Context:
     system = mm.System()
     for _ in range(100):
@@ -129,7 +120,7 @@ def test_a_missing_adapter_is_an_error():
         helfrich.set_backend("gpu", adapter=99)
 
 
-@pytest.mark.usefixtures("gpu", "_as_it_was")
+@pytest.mark.usefixtures("gpu", "backend_as_it_was")
 def test_the_choice_can_be_read(mesh):
     helfrich.set_backend("gpu", precision="single", adapter=0)
     assert helfrich.get_backend() == "gpu:single@0"
@@ -167,7 +158,7 @@ def evaluated(context: mm.Context, mesh: helfrich.Mesh) -> str:
     return who
 
 
-@pytest.mark.usefixtures("gpu", "_as_it_was")
+@pytest.mark.usefixtures("gpu", "backend_as_it_was")
 def test_the_process_and_the_force_can_choose(mesh):
     force = helfrich.BendingForce(mesh, 50)
     small = copy.copy(force)

@@ -17,9 +17,18 @@ from flowing import (
     start,
     system_of,
 )
-from platforms import CPU, HELFRICH, ON_GPU, ON_OPENCL, ON_PROCESSOR, REFERENCE, Target
+from platforms import (
+    CPU,
+    HELFRICH,
+    NATIVE,
+    ON_GPU,
+    ON_OPENCL,
+    ON_PROCESSOR,
+    REFERENCE,
+    Target,
+)
 
-EVERYWHERE = [*ON_PROCESSOR, *ON_OPENCL, *ON_GPU]
+EVERYWHERE = [*ON_PROCESSOR, *ON_OPENCL, *ON_GPU, *NATIVE]
 
 
 def custom_integrator() -> mm.CustomIntegrator:
@@ -71,7 +80,7 @@ def assert_as_fresh(context, force, target: Target, tolerance: float) -> None:
 
 class TestDriven:
     @pytest.mark.parametrize("name", INTEGRATORS)
-    @pytest.mark.parametrize("target", [REFERENCE, HELFRICH, ON_OPENCL[2]], ids=str)
+    @pytest.mark.parametrize("target", [REFERENCE, HELFRICH, ON_OPENCL[2], NATIVE[2]], ids=str)
     def test_by_every_integrator(self, name, target):
         context, mover = flowing(target, INTEGRATORS[name]())
         context.getIntegrator().step(20)
@@ -91,7 +100,7 @@ class TestDriven:
             assert_as_fresh(context, mover, target, max(target.tolerance, 1e-9))
         assert mover.getStatistics(context)["accepted"] > 20
 
-    @pytest.mark.parametrize("target", [CPU, HELFRICH, ON_OPENCL[2]], ids=str)
+    @pytest.mark.parametrize("target", [CPU, HELFRICH, ON_OPENCL[2], NATIVE[2]], ids=str)
     @pytest.mark.parametrize(
         "make",
         [

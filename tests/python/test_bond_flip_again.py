@@ -7,11 +7,11 @@ import openmm as mm
 import openmmhelfrich as helfrich
 import pytest
 from flowing import bits, flowing, forces_of, langevin, measure, mover_of, start, system_of
-from platforms import CPU, HELFRICH, ON_OPENCL, REFERENCE
+from platforms import CPU, HELFRICH, NATIVE, ON_OPENCL, REFERENCE
 from test_bond_flip import assert_as_fresh, custom_integrator
 from test_bond_flip_states import FOREIGN, step
 
-ANYWHERE = [REFERENCE, CPU, HELFRICH, ON_OPENCL[2]]
+ANYWHERE = [REFERENCE, CPU, HELFRICH, ON_OPENCL[2], NATIVE[2]]
 
 
 def state_of(context: mm.Context, **more) -> mm.State:
@@ -209,7 +209,7 @@ class TestUnderACustomIntegrator:
         context.setState(state)
         np.testing.assert_array_equal(mover.getTrianglesInContext(context), start().triangles)
 
-    @pytest.mark.parametrize("target", [REFERENCE, HELFRICH, ON_OPENCL[2]], ids=str)
+    @pytest.mark.parametrize("target", [REFERENCE, HELFRICH, ON_OPENCL[2], NATIVE[2]], ids=str)
     def test_clocks_may_be_set(self, target):
         context, mover = flowing(target, custom_integrator())
         for set_clock in (lambda: context.setTime(0), lambda: context.setStepCount(0)):

@@ -19,11 +19,11 @@ from flowing import (
     system_of,
 )
 from openmm import app
-from platforms import CPU, HELFRICH, ON_OPENCL, REFERENCE, Target
+from platforms import CPU, HELFRICH, NATIVE, ON_OPENCL, REFERENCE, Target
 from test_bond_flip import assert_as_fresh, custom_integrator
 
 FOREIGN = "^MonteCarloBondFlip: .*BondFlipConnectivity0.*load_state"
-ELSEWHERE = [REFERENCE, CPU, ON_OPENCL[2]]
+ELSEWHERE = [REFERENCE, CPU, ON_OPENCL[2], NATIVE[2]]
 
 
 def step(context: mm.Context, count: int) -> mm.Context:
@@ -151,7 +151,7 @@ class TestForeignStates:
         with pytest.raises(mm.OpenMMException, match=FOREIGN):
             simulation.step(1)
 
-    @pytest.mark.parametrize("target", [REFERENCE, HELFRICH, ON_OPENCL[2]], ids=str)
+    @pytest.mark.parametrize("target", [REFERENCE, HELFRICH, ON_OPENCL[2], NATIVE[2]], ids=str)
     @pytest.mark.parametrize("writes", [True, False])
     def test_not_by_mistake_under_a_custom_integrator(self, target, writes):
         # It sets parameters back that change during its steps, on Reference always.
@@ -200,7 +200,7 @@ class TestSaved:
         step(context, 20)
         helfrich.save_state(context, tmp_path / "state")
         energy = measure(context)[0]
-        for target in (REFERENCE, CPU, ON_OPENCL[2]):
+        for target in (REFERENCE, CPU, ON_OPENCL[2], NATIVE[2]):
             other, mover = flowing(target, seed=123)
             helfrich.load_state(step(other, 5), tmp_path / "state")
             assert measure(other)[0] == pytest.approx(energy, rel=1e-9)

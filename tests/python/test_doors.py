@@ -11,7 +11,8 @@ import numpy as np
 import openmm as mm
 import pytest
 from click.testing import CliRunner
-from openmmhelfrich import Mesh, Vesicle, _benchmark, config, platforms, vcm
+from openmmhelfrich import Mesh, Vesicle, _benchmark, config, platforms, set_backend, vcm
+from openmmhelfrich.backend import evaluations
 from openmmhelfrich.cli import main
 from openmmhelfrich.vcm.comparison import compare
 from openmmhelfrich.vcm.runner import Run
@@ -151,6 +152,30 @@ def test_machine():
     assert f"OpenMM's platforms: {', '.join(platforms.names())}" in output
     assert "  membranes: Helfrich, for " in output
     assert re.search(r"^  with pairs of particles: \w+, for CustomNonbonded", output, flags=re.M)
+    for name in platforms.ON_DEVICES:
+        if name in platforms.names():
+            assert re.search(rf"^  {name}: .*, for .*{name}", output, flags=re.M)
+
+
+@pytest.mark.usefixtures("backend_as_it_was")
+@pytest.mark.parametrize("backend", ["auto", "native"])
+def test_info_says_what_computes_membranes(backend, tmp_path):
+    """And a run does what it says."""
+    path = tmp_path / "two.toml"
+    path.write_text(TWO, encoding="utf-8")
+    set_backend(backend)
+    output = invoke("info", path, "--no-measure", "--platform", "OpenCL")
+    surface = "SurfaceAreaForce, EnclosedVolumeForce, BendingForce, TriangleHeightForce"
+    who = {"auto": "the processor, for the device of OpenCL", "native": "the platform itself, for"}
+    if backend == "native" or not platforms._count_opencl_gpus():
+        assert f"{surface}: computed by {who[backend]}" in output
+    assert "SurfaceRepulsionForce: computed by the processor, for contacts" in output
+    platform = platforms.choose(config.read(path).system(), config.read(path).integrator()).name
+    assert f"Platform: {platform}, for " in invoke("info", path, "--no-measure")
+    before = evaluations()
+    invoke("run", path, "--out", tmp_path / "out", "--steps", 3)
+    after = evaluations()
+    assert (after["native"] > before["native"]) == (platform in platforms.ON_DEVICES)
 
 
 def test_bench():

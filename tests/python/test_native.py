@@ -75,6 +75,59 @@ def test_verlet_keeps_its_energy(target: Target):
     assert np.ptp(energies) < 1e-3 * np.mean(kinetic)
 
 
+def paper(target: Target, integrator: mm.Integrator) -> mm.Context:
+    """The paper's vesicle, N = 1002, in equilibrium."""
+    mesh = helfrich.Mesh.random_sphere(1002, radius=1000, seed=1)
+    vesicle = helfrich.Vesicle(mesh)
+    warm = vesicle.simulation(mm.LangevinMiddleIntegrator(300, 0.01, 0.1), "Helfrich")
+    warm.integrator.setRandomNumberSeed(1)
+    warm.context.reinitialize()
+    warm.context.setPositions(mesh.vertices)
+    warm.context.setVelocitiesToTemperature(300, 1)
+    warm.step(10_000)
+    state = warm.context.getState(positions=True, velocities=True)
+    system = vesicle.system()
+    for force in helfrich.platforms.membranes_of(system):
+        force.setBackend(target.backend)
+    context = target.context(system, integrator)
+    context.setPositions(state.getPositions(asNumpy=True))
+    context.setVelocities(state.getVelocities(asNumpy=True))
+    return context
+
+
+def test_verlet_keeps_the_energy_of_the_papers_vesicle():
+    """To a part of 1e5 of the kinetic energy in mixed precision; 20 000 steps keep 1e-6."""
+    integrator = mm.VerletIntegrator(0.1)
+    context = paper(MIXED, integrator)
+    energies, kinetic = [], []
+    for _ in range(10):
+        integrator.step(200)
+        state = context.getState(energy=True)
+        kinetic.append(plain(state.getKineticEnergy()))
+        energies.append(plain(state.getPotentialEnergy()) + kinetic[-1])
+    assert np.ptp(energies) < 1e-5 * np.mean(kinetic)
+
+
+@pytest.mark.parametrize("target", [SINGLE, MIXED], ids=str)
+def test_langevin_keeps_the_papers_vesicle_in_its_bath(target: Target):
+    integrator = mm.LangevinMiddleIntegrator(300, 1, 0.1)
+    integrator.setRandomNumberSeed(1)
+    context = paper(target, integrator)
+    start = context.getState(positions=True).getPositions(asNumpy=True)
+    temperatures = []
+    for _ in range(40):
+        integrator.step(50)
+        kinetic = plain(context.getState(energy=True).getKineticEnergy())
+        temperatures.append(kinetic / (1.5 * 1002 * helfrich.analysis.theory.BOLTZMANN))
+    # One value has a standard deviation of 7.7 K.
+    assert np.mean(temperatures) == pytest.approx(300, abs=5)
+    mesh = helfrich.Mesh.random_sphere(1002, radius=1000, seed=1)
+    for found in (start, context.getState(positions=True).getPositions(asNumpy=True)):
+        now = helfrich.Mesh(plain(found), mesh.triangles)
+        assert now.area == pytest.approx(1.006 * mesh.area, rel=2e-3)
+        assert now.volume == pytest.approx(mesh.volume, rel=2e-3)
+
+
 def test_the_device_follows_flips():
     """After rounds of flips its forces are those of the Context's present triangles."""
     mesh, forces = vesicle()
@@ -217,6 +270,22 @@ def test_it_is_refused_on_other_platforms():
         Running([force], m.num_particles, REFERENCE)
 
 
+def test_the_minimizers_context_beside_it_is_not_refused():
+    """Where forces are too large for its numbers, OpenMM's minimizer has one on the processor."""
+    mesh, forces = vesicle()
+    system = system_of(mesh.num_vertices)
+    context = context_of(SINGLE, system, forces, mm.VerletIntegrator(0.01))
+    other = REFERENCE.context(system)
+    energies = []
+    for one in (context, other):
+        one.setPositions(mesh.vertices)
+        energies.append(plain(one.getState(energy=True).getPotentialEnergy()))
+    assert energies[0] == pytest.approx(energies[1], rel=1e-5)
+    del context, one, other
+    with pytest.raises(mm.OpenMMException, match="Reference is none of OpenCL"):
+        REFERENCE.context(system)
+
+
 def test_a_driver_on_the_processor_is_taken_only_where_it_is_asked_for():
     """A real GPU is taken unasked."""
     m = membrane("octahedron")
@@ -226,6 +295,22 @@ def test_a_driver_on_the_processor_is_taken_only_where_it_is_asked_for():
     after = evaluations()
     expected = "cpu" if native_is_on_processor() else "native"
     assert {name for name in after if after[name] > before[name]} == {expected}
+
+
+@pytest.mark.parametrize("place", [0, 3])
+def test_one_force_asks_for_all_on_its_triangles(place: int):
+    """Whichever of them it is: they are computed together."""
+    mesh, forces = vesicle()
+    forces[place].setBackend("native")
+    system = system_of(mesh.num_vertices)
+    for force in forces:
+        system.addForce(force)
+    context = DOUBLE.context(system)
+    context.setPositions(mesh.vertices)
+    before = evaluations()
+    context.getState(energy=True)
+    after = evaluations()
+    assert {name: after[name] - before[name] for name in after} == {"cpu": 0, "gpu": 0, "native": 1}
 
 
 def test_derivatives_need_it():
@@ -248,6 +333,93 @@ def test_an_explosion_is_found_without_energies():
     context.setPositions(mesh.vertices + np.random.default_rng(1).normal(size=mesh.vertices.shape))
     with pytest.raises(mm.OpenMMException, match=r"particle|position|triangle"):
         integrator.step(1100)
+
+
+def test_a_triangle_without_area_is_found_without_energies():
+    """Its vertices are held, so that no force of theirs spoils any position."""
+    mesh, (_, area, _, _) = vesicle()
+    system = system_of(mesh.num_vertices)
+    for vertex in mesh.triangles[5].tolist():
+        system.setParticleMass(vertex, 0)
+    integrator = mm.VerletIntegrator(1e-5)
+    context = context_of(DOUBLE, system, [area], integrator)
+    context.setPositions(mesh.vertices)
+    context.getState(energy=True)
+    flat = mesh.vertices.copy()
+    flat[mesh.triangles[5]] = flat[mesh.triangles[5, 0]] + [[1, 1, 1], [2, 2, 2], [4, 4, 4]]
+    context.setPositions(flat)
+    with pytest.raises(mm.OpenMMException, match=r"triangle 5 .* has no area"):
+        integrator.step(1001)
+
+
+@pytest.mark.parametrize("target", [SINGLE, DOUBLE], ids=str)
+def test_an_energy_that_overflows(target: Target):
+    """The processor names it if it overflows there, too; otherwise it is infinite."""
+    mesh, (_, area, _, _) = vesicle()
+    area.setContextParameter("target", "a target")
+    run = Running([area], mesh.num_vertices, target)
+    energy, _ = run.evaluate(mesh.vertices)
+    run.context.setParameter("a target", 1e-300)
+    with pytest.raises(mm.OpenMMException, match="the energy of SurfaceAreaForce is not finite"):
+        run.evaluate(mesh.vertices)
+    run.context.setParameter("a target", 1e-30)
+    huge, _ = run.evaluate(mesh.vertices)
+    in_double = 0.5 * 10 * mesh.area**2 / 1e-30
+    assert huge == (np.inf if target is SINGLE else pytest.approx(in_double))
+    run.context.setParameter("a target", mesh.area)
+    assert run.evaluate(mesh.vertices)[0] == energy
+
+
+OVERFLOW = """
+import openmm as mm
+import openmmhelfrich as helfrich
+
+mesh = helfrich.Mesh.icosphere(2, 100.0)
+force = helfrich.SurfaceAreaForce(mesh, 10, 1e-30)
+force.setBackend("native")
+system = mm.System()
+for _ in mesh.vertices:
+    system.addParticle(50)
+system.addForce(force)
+platform = mm.Platform.getPlatformByName("OpenCL")
+context = mm.Context(system, mm.VerletIntegrator(0.01), platform)
+context.setPositions(mesh.vertices)
+for _ in range(2):
+    print(context.getState(energy=True).getPotentialEnergy()._value)
+"""
+
+
+def test_that_an_energy_overflows_is_said_once():
+    SINGLE.context(system_of(1))
+    result = subprocess.run(
+        [sys.executable, "-c", OVERFLOW], capture_output=True, text=True, timeout=300, check=True
+    )
+    assert result.stdout.splitlines()[-2:] == ["inf", "inf"]
+    assert result.stderr.count("an energy of the membrane is beyond 3e38 kJ/mol") == 1
+
+
+@pytest.mark.parametrize("target", [REFERENCE, *NATIVE], ids=str)
+def test_a_surface_inside_out_is_refused_whenever_its_volume_is_asked_for(target: Target):
+    """After other terms have been evaluated, and after the triangles have been turned."""
+    mesh, _ = vesicle(92)
+    turned = mesh.triangles[:, ::-1].copy()
+
+    def forces(triangles):
+        return [
+            helfrich.BendingForce(triangles, 50),
+            helfrich.EnclosedVolumeForce(triangles, 1, mesh.volume),
+        ]
+
+    run = Running(forces(turned), mesh.num_vertices, target)
+    run.evaluate(mesh.vertices, 0)
+    with pytest.raises(mm.OpenMMException, match=r"EnclosedVolumeForce: .*clockwise"):
+        run.evaluate(mesh.vertices, 1)
+    others = forces(mesh)
+    run = Running(others, mesh.num_vertices, target)
+    run.evaluate(mesh.vertices)
+    others[1].setTrianglesInContext(run.context, turned)
+    with pytest.raises(mm.OpenMMException, match=r"EnclosedVolumeForce: .*clockwise"):
+        run.evaluate(mesh.vertices)
 
 
 # --- transfers -----------------------------------------------------------------------------------
@@ -302,17 +474,21 @@ mesh = helfrich.Mesh.icosphere(4, 100.0)
 system = mm.System()
 for _ in mesh.vertices:
     system.addParticle(50)
-if sys.argv[2] != "none":
+if sys.argv[3] != "none":
     for force in (
         helfrich.BendingForce(mesh, 50),
         helfrich.SurfaceAreaForce(mesh, 10, mesh.area),
         helfrich.EnclosedVolumeForce(mesh, 1, 0.9 * mesh.volume),
         helfrich.TriangleHeightForce(mesh, 5, 10),
     ):
-        force.setBackend(sys.argv[2])
+        force.setBackend(sys.argv[3])
+        if sys.argv[4:] == ["derivatives"]:
+            name = f"{type(force).__name__} 0"
+            force.setContextParameter(force.getParameterName(0), name)
+            force.addEnergyParameterDerivative(name)
         system.addForce(force)
 integrator = mm.LangevinMiddleIntegrator(300, 1, 0.01)
-platform = mm.Platform.getPlatformByName(sys.argv[3])
+platform = mm.Platform.getPlatformByName(sys.argv[2])
 context = mm.Context(system, integrator, platform, {"Precision": "mixed"})
 context.setPositions(mesh.vertices)
 integrator.step(10)
@@ -325,7 +501,10 @@ print("transfers", count.count_reads() - before[0], count.count_writes() - befor
 
 
 def test_a_step_transfers_nothing(tmp_path):
-    """Counted where OpenCL or CUDA is called: as many reads and writes as without any force."""
+    """Counted where OpenCL or CUDA is called: as many reads and writes as without any force.
+
+    Derivatives, which OpenMM has in every step once they are asked for, change nothing.
+    """
     DOUBLE.context(system_of(1))
     if DOUBLE.platform not in ("OpenCL", "CUDA"):
         pytest.skip(f"transfers of {DOUBLE.platform} are not counted")
@@ -333,9 +512,9 @@ def test_a_step_transfers_nothing(tmp_path):
     source.write_text(COUNTER, encoding="ascii")
     subprocess.run(["cc", "-shared", "-fPIC", "-o", library, source, "-ldl"], check=True)
 
-    def transfers(backend: str) -> list[int]:
+    def transfers(*wanted: str) -> list[int]:
         result = subprocess.run(
-            [sys.executable, "-c", textwrap.dedent(STEPS), library, backend, DOUBLE.platform],
+            [sys.executable, "-c", textwrap.dedent(STEPS), library, DOUBLE.platform, *wanted],
             env={**os.environ, "LD_PRELOAD": str(library)},
             capture_output=True,
             text=True,
@@ -346,6 +525,7 @@ def test_a_step_transfers_nothing(tmp_path):
         return [int(word) for word in line.split()[1:]]
 
     assert transfers("native") == transfers("none")
+    assert transfers("native", "derivatives") == transfers("none")
     assert sum(transfers("cpu")) >= 600
 
 

@@ -9,12 +9,13 @@ import sys
 import threading
 from pathlib import Path
 
+import numpy as np
 import openmm as mm
 import openmmhelfrich as helfrich
 import pytest
 from openmm import app
 from openmmhelfrich import platforms
-from platforms import CPU, HELFRICH, REFERENCE
+from platforms import CPU, HELFRICH, ON_OPENCL, REFERENCE
 
 PROJECT = Path(__file__).resolve().parents[2]
 MESH = helfrich.Mesh.icosphere(3, 100.0).deformed(2, 1, 0.1)
@@ -286,6 +287,79 @@ class TestChoose:
     def test_names(self):
         assert platforms.find("helfrich") == "Helfrich"
         assert platforms.names().count("Helfrich") == 1
+
+
+def system_on(mesh: helfrich.Mesh, *forces: mm.Force) -> tuple[mm.System, np.ndarray]:
+    """A System of membrane forces, and where its particles are."""
+    system = mm.System()
+    for _ in range(mesh.num_vertices):
+        system.addParticle(1)
+    for force in forces:
+        if mesh.box is not None:
+            force.setUsesPeriodicBoundaryConditions(True)
+        system.addForce(force)
+    if mesh.box is not None:
+        system.setDefaultPeriodicBoxVectors(*mesh.box)
+    return system, mesh.vertices
+
+
+DISK = helfrich.Mesh.disk(4, 10.0)
+SHEET = helfrich.Mesh.sheet(8, 8, 10.0, periodic=True)
+SURFACES = {
+    "closed": lambda: (vesicle_with(), MESH.vertices),
+    "open": lambda: system_on(
+        DISK, helfrich.BendingForce(DISK, 50), helfrich.EdgeTensionForce(DISK, 1)
+    ),
+    "periodic": lambda: system_on(SHEET, helfrich.BendingForce(SHEET, 50)),
+}
+
+
+@pytest.mark.usefixtures("backend_as_it_was")
+class TestEvaluators:
+    """What is said of a platform is what comes to pass there."""
+
+    @pytest.mark.parametrize("backend", ["auto", "cpu", "native"])
+    @pytest.mark.parametrize("target", [REFERENCE, HELFRICH, ON_OPENCL[2]], ids=str)
+    @pytest.mark.parametrize("surface", SURFACES)
+    def test_foretell(self, surface, target, backend):
+        helfrich.set_backend(backend)
+        system, positions = SURFACES[surface]()
+        found = platforms.evaluators(system, target.platform)
+        classes = [type(force).__name__ for force in platforms.membranes_of(system)]
+        assert sorted(name for names in found.values() for name in names) == sorted(classes)
+        foretold = {choice.name for choice in found}
+        if foretold == {"none"}:
+            with pytest.raises(mm.OpenMMException, match=f"{target.platform} is none of"):
+                target.context(system)
+            return
+        before = helfrich.backend.evaluations()
+        context = target.context(system)
+        context.setPositions(positions)
+        context.getState(energy=True)
+        after = helfrich.backend.evaluations()
+        assert {name for name in after if after[name] > before[name]} == foretold
+
+    def test_forces_with_a_backend_of_their_own(self):
+        system = vesicle_with()
+        for force in platforms.membranes_of(system):
+            force.setBackend("native")
+        found = platforms.evaluators(system, "OpenCL")
+        assert [name for name, _ in found] == ["native"]
+        assert platforms.choose(system, VERLET).name in platforms.ON_DEVICES
+
+    def test_a_gpu_is_taken_unasked(self, monkeypatch):
+        monkeypatch.setattr(platforms, "_count_opencl_gpus", lambda: 1)
+        helfrich.set_backend("auto")
+        for name in platforms.ON_DEVICES:
+            [(who, reason)] = platforms.evaluators(vesicle_with(), name)
+            assert (who, reason) == ("native", f"{name} has a GPU")
+
+    def test_no_membranes(self):
+        helfrich.set_backend("native")
+        assert platforms.evaluators(mm.System(), "OpenCL") == {}
+        system = mm.System()
+        system.addParticle(1)
+        assert platforms.choose(system, VERLET).name == "Helfrich"
 
 
 # Runs in a process of its own, with or without our import; prints the platform of each System. The

@@ -37,8 +37,7 @@ void MembraneForceImpl::initialize(ContextImpl& context) {
         membrane->checkAgreement(*this);
         membrane->checkJoining(owner.getTypeName(), term.potential);
         copyValues();
-        membrane->choose(owner.getTypeName(), owner.getBackend());
-        native = membrane->startNative(owner, context, term);
+        native = membrane->startNative(owner, context, term.potential);
         if (!inPlace && !native && !derivatives.empty())
             throw OpenMMException(owner.getTypeName() + ": energy parameter derivatives need the Reference, CPU or " +
                                   "Helfrich platform, or the backend \"native\"; the platform " +

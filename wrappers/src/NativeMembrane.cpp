@@ -14,6 +14,7 @@
 #include <iostream>
 #include <map>
 #include <mutex>
+#include <set>
 
 using namespace HelfrichPlugin;
 using namespace OpenMM;
@@ -95,6 +96,10 @@ private:
     vector<bool> isVertex;
 };
 
+/** The Systems of all NativeMembranes. */
+std::mutex systemsMutex;
+std::multiset<const System*> systems;
+
 /** Notes that OpenMM has put particles in another order. */
 class OrderListener : public ComputeContext::ReorderListener {
 public:
@@ -163,7 +168,7 @@ bool NativeMembrane::isOnProcessor(ContextImpl& context) {
 string NativeMembrane::whyNot(ContextImpl& context) {
     const string& name = context.getPlatform().getName();
     if (name != "OpenCL" && name != "CUDA" && name != "HIP")
-        return "the platform " + name + " is none of OpenCL, CUDA and HIP";
+        return "the platform " + name + " is none of OpenCL, CUDA and HIP; name one of them";
     ComputeContext* cc = findDevice(context);
     if (cc == nullptr)
         return "the Context uses several devices";
@@ -172,7 +177,7 @@ string NativeMembrane::whyNot(ContextImpl& context) {
 
 NativeMembrane::NativeMembrane(ContextImpl& context, HelfrichMembrane* core, const vector<pair<int, int>>& edges,
                                const NativeMembrane* sibling)
-    : core(core), native(nullptr), device(new Device(*findDevice(context))), hasLooked(false), unchecked(0), turn(0) {
+    : core(core), native(nullptr), device(new Device(*findDevice(context))), unchecked(0), turn(0) {
     ComputeContext& cc = device->cc;
     ContextSelector selector(cc);
     bool isDouble = cc.getUseDoublePrecision();
@@ -194,10 +199,20 @@ NativeMembrane::NativeMembrane(ContextImpl& context, HelfrichMembrane* core, con
     cc.addForce(new Vertices(edges, context.getSystem().getNumParticles()));
     cc.getReorderListeners().push_back(new OrderListener(device->hasNewOrder));
     native = Helfrich_Native_create(isDouble);
+    system = &context.getSystem();
+    std::lock_guard<std::mutex> lock(systemsMutex);
+    systems.insert(system);
 }
 
 NativeMembrane::~NativeMembrane() {
     Helfrich_Native_destroy(native);
+    std::lock_guard<std::mutex> lock(systemsMutex);
+    systems.erase(systems.find(system));
+}
+
+bool NativeMembrane::isElsewhere(const System& system) {
+    std::lock_guard<std::mutex> lock(systemsMutex);
+    return systems.count(&system) != 0;
 }
 
 void NativeMembrane::requestDerivative(const string& parameter) {
@@ -301,12 +316,11 @@ void NativeMembrane::provide(const HelfrichNativePlan& plan) {
 }
 
 void NativeMembrane::evaluate(const string& subject, ContextImpl& context, const vector<HelfrichTerm>& terms,
-                              const vector<int>& derivatives, bool forces, bool wantsSums, const double* box) {
+                              const vector<int>& derivatives, bool forces, bool wantsSums, bool isAsked,
+                              const double* box) {
     ContextSelector selector(device->cc);
-    if (!hasLooked) {
+    if (Helfrich_Native_mustLook(native, core, terms.data(), (int64_t) terms.size()))
         look(subject, context, terms, box);
-        hasLooked = true;
-    }
     HelfrichNativePlan plan;
     check(Helfrich_Native_plan(subject.c_str(), native, core, box, terms.data(), (int64_t) terms.size(), wantsSums,
                                forces, derivatives.data(), &plan));
@@ -338,13 +352,15 @@ void NativeMembrane::evaluate(const string& subject, ContextImpl& context, const
         device->kernels["h_add_forces"]->setArg(1, plan.unit);
         device->run("h_add_forces", groups);
     }
-    if (wantsSums) {
-        device->kernels["h_add_sums"]->setArg(0, (int) plan.numRuns);
+    bool isDue = isAsked || ++unchecked >= evaluationsBetweenChecks;
+    // It also notes what the passes have found.
+    if (wantsSums || isDue) {
+        device->kernels["h_add_sums"]->setArg(0, wantsSums ? (int) plan.numRuns : 0);
         device->kernels["h_add_sums"]->setArg(1, (int) device->cc.getEnergyParamDerivNames().size());
         device->run("h_add_sums", 1);
     }
     Helfrich_Native_count();
-    if (wantsSums || ++unchecked >= evaluationsBetweenChecks)
+    if (isDue)
         checkFaults(subject, context, terms, box);
 }
 
@@ -365,8 +381,17 @@ void NativeMembrane::checkFaults(const string& subject, ContextImpl& context, co
                               "membrane had no size or one beyond all others; use a smaller time step");
     if (faults & 2)
         throw OpenMMException(subject + ": a target area or volume is too large for the membrane; check its unit");
-    static std::once_flag said;
-    std::call_once(said, [&] {
+    static std::once_flag saidLarge, saidThin;
+    // OpenMM's minimizer gets on with infinite energies, so this is no error.
+    if (faults & 8)
+        std::call_once(saidLarge, [&] {
+            std::cerr
+                << "openmm-helfrich: an energy of the membrane is beyond 3e38 kJ/mol, where single precision ends; "
+                   "choose the Precision \"double\", or the backend \"cpu\"\n";
+        });
+    if (!(faults & 4))
+        return;
+    std::call_once(saidThin, [&] {
         std::cerr
             << "openmm-helfrich: the height of a triangle is below a thousandth of its longest side, of which single "
                "precision misses digits (2e-4 of the largest force at 1e-4 of the side); choose the Precision "

@@ -24,6 +24,8 @@ public:
     static std::string whyNot(OpenMM::ContextImpl& context);
     /** Whether the device of a Context, for which whyNot() is empty, is the processor. */
     static bool isOnProcessor(OpenMM::ContextImpl& context);
+    /** Whether another Context of a System evaluates membranes itself. */
+    static bool isElsewhere(const OpenMM::System& system);
     /**
      * Compile the kernels.
      *
@@ -50,10 +52,11 @@ public:
      * @param derivatives  for each scalar of each term the number of the derivative that it adds to, or -1
      * @param wantsSums    whether energies or derivatives are wanted
      * @param forces       whether forces are wanted
+     * @param isAsked      whether the energy is, so that there is time to look for faults
      * @param box          the vectors of the periodic box, nm, or null
      */
     void evaluate(const std::string& subject, OpenMM::ContextImpl& context, const std::vector<HelfrichTerm>& terms,
-                  const std::vector<int>& derivatives, bool forces, bool wantsSums, const double* box);
+                  const std::vector<int>& derivatives, bool forces, bool wantsSums, bool isAsked, const double* box);
 
 private:
     struct Device;
@@ -68,8 +71,8 @@ private:
 
     HelfrichMembrane* core;
     HelfrichNative* native;
+    const OpenMM::System* system;
     std::unique_ptr<Device> device;
-    bool hasLooked;
     /** Evaluations since faults were looked for. */
     int unchecked;
     /** Which of two numbers has the extent of this evaluation. */

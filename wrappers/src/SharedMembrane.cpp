@@ -56,12 +56,14 @@ vector<shared_ptr<SharedMembrane>> SharedMembrane::findAll(ContextImpl& context)
     std::lock_guard<std::mutex> lock(registryMutex);
     vector<shared_ptr<SharedMembrane>> found;
     for (auto entry = registry.begin(); entry != registry.end();) {
-        shared_ptr<SharedMembrane> membrane = entry->second.lock();
-        if (membrane == nullptr) {
+        if (entry->second.expired()) {
             entry = registry.erase(entry);
             continue;
         }
-        if (entry->first == &context && membrane->belongsTo(context))
+        // Those of other Contexts must not be held, be it for a moment: another thread may be about to end their
+        // lives, and then this one would, when their devices are gone.
+        shared_ptr<SharedMembrane> membrane = entry->first == &context ? entry->second.lock() : nullptr;
+        if (membrane != nullptr && membrane->belongsTo(context))
             found.push_back(membrane);
         ++entry;
     }
@@ -130,7 +132,21 @@ SharedMembrane::SharedMembrane(const string& subject, ContextImpl& context, cons
                                    context.getSystem().getNumParticles(), &core));
     if (int threads = helfrichThreads(context))
         Helfrich_Membrane_setThreads(core, threads);
+    try {
+        chooseForAll(context.getSystem());
+    } catch (...) {
+        Helfrich_Membrane_destroy(core);
+        throw;
+    }
     inherit();
+}
+
+void SharedMembrane::chooseForAll(const System& system) {
+    for (int i = 0; i < system.getNumForces(); i++) {
+        auto* force = dynamic_cast<const MembraneForce*>(&system.getForce(i));
+        if (force != nullptr && force->getTriangles() == triangles)
+            check(Helfrich_Membrane_choose(force->getTypeName().c_str(), core, force->getBackend().c_str()));
+    }
 }
 
 SharedMembrane::~SharedMembrane() {
@@ -204,14 +220,15 @@ bool SharedMembrane::isLeader(const MembraneForceImpl& member, int groups) const
     return false;
 }
 
-bool SharedMembrane::startNative(const MembraneForce& force, ContextImpl& context, const HelfrichTerm& term) {
+bool SharedMembrane::startNative(const MembraneForce& force, ContextImpl& context, int potential) {
     int wish = Helfrich_Membrane_wishesNative(core);
     if (wish == 0)
         return false;
     bool isMust = wish == 2;
     string reason = NativeMembrane::whyNot(context);
     if (!reason.empty()) {
-        if (isMust)
+        // OpenMM's minimizer has a second Context on the processor for forces that are too large for its own.
+        if (isMust && !NativeMembrane::isElsewhere(context.getSystem()))
             throw OpenMMException(force.getTypeName() + ": the backend \"native\" cannot be had here: " + reason);
         return false;
     }
@@ -219,7 +236,7 @@ bool SharedMembrane::startNative(const MembraneForce& force, ContextImpl& contex
     if (!isMust && NativeMembrane::isOnProcessor(context))
         return false;
     // Contacts and volumes in a periodic box are for the processor, whatever evaluates the rest.
-    if (!Helfrich_Native_canEvaluate(&term, force.usesPeriodicBoundaryConditions()))
+    if (!Helfrich_Native_canEvaluate(potential, force.usesPeriodicBoundaryConditions()))
         return false;
     if (native != nullptr)
         return true;
@@ -253,7 +270,7 @@ void SharedMembrane::evaluateNatively(const string& subject, ContextImpl& contex
             active[i]->findDerivatives(*native, &derivativeNumbers[HELFRICH_MAX_PARAMETERS * i]);
             wantsSums = true;
         }
-    native->evaluate(subject, context, terms, derivativeNumbers, forces, wantsSums, findBox(context));
+    native->evaluate(subject, context, terms, derivativeNumbers, forces, wantsSums, energy, findBox(context));
     noteSpanning(subject, context);
 }
 

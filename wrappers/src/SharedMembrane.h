@@ -65,13 +65,13 @@ public:
      */
     bool isLeader(const MembraneForceImpl& member, int groups) const;
     /**
-     * Let the platform evaluate a term of a force that joins, if it can and if that is wanted.
+     * Let the platform evaluate a force that joins, if it can and if that is wanted; platforms.py tells people.
      *
-     * @param force  the force
-     * @param term   what it computes
+     * @param force      the force
+     * @param potential  the number of its potential
      * @return whether it will
      */
-    bool startNative(const MembraneForce& force, OpenMM::ContextImpl& context, const HelfrichTerm& term);
+    bool startNative(const MembraneForce& force, OpenMM::ContextImpl& context, int potential);
     /** Have the platform compute the derivative with respect to a Context parameter. */
     void requestDerivative(const std::string& parameter) {
         native->requestDerivative(parameter);
@@ -148,10 +148,6 @@ public:
      */
     static void restoreAll(const std::string& subject, OpenMM::ContextImpl& context,
                            const std::vector<std::string>& saved);
-    /** Choose what computes the forces, for one that joins; `backend` is empty if it does not mind. */
-    void choose(const std::string& subject, const std::string& backend) {
-        check(Helfrich_Membrane_choose(subject.c_str(), core, backend.c_str()));
-    }
     /** Refuse a term that cannot be evaluated on this membrane. */
     void checkTerm(const std::string& subject, const HelfrichTerm& term) const {
         check(Helfrich_Membrane_checkTerm(subject.c_str(), core, &term));
@@ -193,6 +189,8 @@ private:
 
     SharedMembrane(const std::string& subject, OpenMM::ContextImpl& context, const std::vector<int>& triangles);
 
+    /** Choose what computes the forces: what one of them asks for, whichever joins first, or what holds for all. */
+    void chooseForAll(const OpenMM::System& system);
     /**
      * Whether the members are forces of this very Context. When a Context cannot be made, OpenMM leaves
      * its forces behind and frees its memory, and the next Context may get the same address.

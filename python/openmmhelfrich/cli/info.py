@@ -53,6 +53,8 @@ def info(config, platform, measure, vcm_compatible, ignore_unknown):
             click.echo(line)
         name, reason = _platform(cfg, platform)
         click.echo(f"\nPlatform: {name}, for {reason}")
+        for line in _evaluators(cfg, name):
+            click.echo(line)
         if measure:
             click.echo(_duration(cfg, name))
 
@@ -156,8 +158,13 @@ def _energies(cfg) -> list[str]:
     """The energy of each term at the start positions, in double precision."""
     import openmm
 
+    from ..platforms import membranes_of
+
+    system = cfg.system()
+    for force in membranes_of(system):
+        force.setBackend("cpu")
     context = openmm.Context(
-        cfg.system(),
+        system,
         openmm.VerletIntegrator(0.001),
         openmm.Platform.getPlatformByName("Reference"),
     )
@@ -182,6 +189,19 @@ def _platform(cfg, asked: str | None) -> tuple[str, str]:
         return choose(cfg.system(), cfg.integrator())
     except ValueError as reason:
         raise click.ClickException(str(reason)) from None
+
+
+def _evaluators(cfg, platform: str) -> list[str]:
+    """What would compute which forces of membranes."""
+    from ..platforms import evaluators
+    from .machine import WORDS
+
+    found = evaluators(cfg.system(), platform)
+    lines = []
+    for (who, reason), forces in found.items():
+        what = "Membranes" if len(found) == 1 else ", ".join(dict.fromkeys(forces))
+        lines.append(f"{what}: computed by {WORDS[who]}, for {reason}")
+    return lines
 
 
 def _duration(cfg, platform: str) -> str:

@@ -4,8 +4,14 @@ from __future__ import annotations
 
 __all__ = ["machine"]
 
-# Below this number of vertices "auto" looks for no GPU (src/evaluator/chosen.rs).
-_LEAST_VERTICES = 20_000
+#: What `platforms.evaluators` finds, for people.
+WORDS = {
+    "native": "the platform itself",
+    "cpu": "the processor",
+    "gpu": "a GPU beside the platform",
+    "auto": "a GPU beside the platform or the processor, whichever is faster",
+    "none": "nothing: a Context is an error",
+}
 
 # Subdivisions of the icospheres that are measured where nothing is known yet: N = 10 n² + 2.
 _MEASURED = (48, 96, 192)
@@ -32,8 +38,8 @@ def machine() -> list[str]:
         double = "single and double precision" if adapter.double else "single precision only"
         clock = "with" if adapter.timestamps else "without"
         lines.append(f"  {double}, {clock} timestamps")
-    lines += ["", 'What "auto" chooses:']
-    lines.append(f"  below {_LEAST_VERTICES} vertices the processor")
+    lines += ["", *_natively(), "", 'What "auto" chooses on other platforms:']
+    lines.append(f"  below {backend.LEAST_VERTICES} vertices the processor")
     if all(adapter.kind == "software" for adapter in found):
         reason = "is no GPU" if not found else "is no GPU but in software"
         return [*lines, f"  above, too, for there {reason}"]
@@ -64,6 +70,22 @@ def _platforms() -> list[str]:
     return [*lines, ""]
 
 
+def _natively() -> list[str]:
+    """Whether OpenMM's GPU platforms would compute membranes themselves."""
+    from .. import Mesh, Vesicle
+    from ..platforms import ON_DEVICES, evaluators, names
+
+    system = Vesicle(Mesh.icosphere(2, 100.0)).system()
+    lines = ["What computes membranes on OpenMM's GPU platforms:"]
+    present = [name for name in ON_DEVICES if name in names()]
+    if not present:
+        return [*lines, f"  this OpenMM has none of {', '.join(ON_DEVICES)}"]
+    for name in present:
+        [(who, reason)] = evaluators(system, name)
+        lines.append(f"  {name}: {WORDS[who]}, for {reason}")
+    return lines
+
+
 def _timings() -> list[str]:
     """The measurements behind the choice, made now where there are none yet."""
     from .. import backend
@@ -89,21 +111,14 @@ def _measure() -> None:
     import openmm
 
     from .. import Mesh, Vesicle
+    from ..platforms import membranes_of
 
     for divisions in _MEASURED:
         mesh = Mesh.icosphere(divisions, 1000.0)
         system = Vesicle(mesh).system()
-        for force in system.getForces():
-            _let_choose(force)
+        for force in membranes_of(system):
+            force.setBackend("auto")
         reference = openmm.Platform.getPlatformByName("Reference")
         context = openmm.Context(system, openmm.VerletIntegrator(0.1), reference)
         context.setPositions(mesh.vertices)
         context.getState(forces=True)
-
-
-def _let_choose(force) -> None:
-    from .. import forces
-
-    for cls in forces.MembraneForce.__subclasses__():
-        if cls.isinstance(force):
-            cls.cast(force).setBackend("auto")

@@ -13,7 +13,7 @@ use crate::error::{Error, Result};
 use crate::membrane::Configuration;
 use crate::mesh::geometry::Vec3;
 use crate::mesh::{Cell, Topology, Triangulation};
-use crate::potentials::{MAX_PARAMETERS, Needs, Term};
+use crate::potentials::{MAX_PARAMETERS, Needs, Potential, Term};
 use std::ffi::CStr;
 
 /// What one evaluation asks of the device.
@@ -79,8 +79,8 @@ pub struct Native {
     /// Of the connectivity that `topology` is of.
     generation: u64,
     frame: Frame,
-    /// The unit of length, nm, as a power of two.
-    unit: i32,
+    /// The unit of length, nm, as a power of two, once positions have been seen.
+    unit: Option<i32>,
     plan: Plan,
     /// The particle of each vertex, and the first vertex of its connected part.
     particles: Vec<u32>,
@@ -95,11 +95,20 @@ pub fn source(precision: Precision) -> &'static CStr {
     }
 }
 
-/// Whether a platform can evaluate a term: those of contacts are computed on the processor, and in a periodic box volumes,
-/// for which a surface has to be in one piece.
-pub fn is_native(term: &Term, is_periodic: bool) -> bool {
-    let wants_one_piece = is_periodic && term.potential.needs_outside();
-    !wants_one_piece && !term.potential.needs(term).contains(Needs::CONTACTS)
+/// Whether a platform can evaluate a potential: those of contacts are computed on the processor, and in a periodic box
+/// volumes, for which a surface has to be in one piece.
+pub fn is_native(potential: &'static dyn Potential, is_periodic: bool) -> bool {
+    let term = Term {
+        potential,
+        form: 0,
+        switches: 0,
+        values: Default::default(),
+        fields: Default::default(),
+        particles: &[],
+        wants_derivatives: false,
+    };
+    let wants_one_piece = is_periodic && potential.needs_outside();
+    !wants_one_piece && !potential.needs(&term).contains(Needs::CONTACTS)
 }
 
 impl Native {
@@ -110,7 +119,7 @@ impl Native {
             topology: None,
             generation: 0,
             frame: Frame::new(true),
-            unit: 0,
+            unit: None,
             plan: Plan::default(),
             particles: Vec::new(),
             anchors: Vec::new(),
@@ -132,14 +141,18 @@ impl Native {
             sum += (way + shift.unwrap_or_default()).norm();
         }
         let mean = sum / mesh.num_edges().max(1) as f64;
-        if (1e-20..1e20).contains(&mean) {
-            self.unit = mean.log2().round() as i32;
-        }
+        let is_sane = (1e-20..1e20).contains(&mean);
+        self.unit = Some(if is_sane { mean.log2().round() as i32 } else { 0 });
+    }
+
+    /// Whether the unit of length has been chosen.
+    pub fn has_unit(&self) -> bool {
+        self.unit.is_some()
     }
 
     /// The unit of length as a power of two, nm.
     pub fn unit(&self) -> i32 {
-        self.unit
+        self.unit.unwrap_or(0)
     }
 
     /// The particle of each vertex, and the first vertex of its connected part.
@@ -163,11 +176,12 @@ impl Native {
             self.set_topology(Topology::of(mesh));
             self.generation = generation;
         }
-        let Self { precision, topology: Some(topology), frame, plan, unit, .. } = self else {
+        // The device finds the spacing of its lattice by itself.
+        let unit = self.unit();
+        let scale = Scale { unit: 2f64.powi(unit), quantum: 1.0 };
+        let Self { precision, topology: Some(topology), frame, plan, .. } = self else {
             return Err(Error::Contract("has no mesh".to_owned()));
         };
-        // The device finds the spacing of its lattice by itself.
-        let scale = Scale { unit: 2f64.powi(*unit), quantum: 1.0 };
         let mut wishes = Wishes::empty();
         wishes.set(Wishes::FORCES, forces);
         wishes.set(Wishes::PERIODIC, cell.is_some());
@@ -202,7 +216,7 @@ impl Native {
         plan.extent = cell.map_or(BY_POSITIONS, extent);
         if let Some(cell) = cell {
             let buffer = &mut plan.buffers[Binding::BoxVectors as usize];
-            buffer.set(&box_vectors(cell, *precision, *unit));
+            buffer.set(&box_vectors(cell, *precision, unit));
         }
         if std::mem::take(&mut frame.fields_changed) && !frame.fields.is_empty() {
             let mut bytes = Vec::with_capacity(frame.fields.len() * real);

@@ -127,9 +127,12 @@ int Helfrich_Membrane_choose(const char* subject, HelfrichMembrane* membrane, co
 int Helfrich_Membrane_wishesNative(const HelfrichMembrane* membrane);
 int Helfrich_checkBackend(const char* subject, const char* backend);
 const char* Helfrich_Native_source(int isDouble);
-int Helfrich_Native_canEvaluate(const HelfrichTerm* term, int isPeriodic);
+int Helfrich_Native_canEvaluate(int potential, int isPeriodic);
 HelfrichNative* Helfrich_Native_create(int isDouble);
 void Helfrich_Native_destroy(HelfrichNative* native);
+/** Whether Helfrich_Native_look() must come before terms are evaluated. */
+int Helfrich_Native_mustLook(const HelfrichNative* native, const HelfrichMembrane* membrane, const HelfrichTerm* terms,
+                             int64_t numTerms);
 /** Evaluate on the processor, for its errors, and choose the unit of length. */
 int Helfrich_Native_look(const char* subject, HelfrichNative* native, HelfrichMembrane* membrane,
                          const HelfrichTerm* terms, int64_t numTerms, int64_t numParticles, const double* positions,
