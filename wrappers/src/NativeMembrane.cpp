@@ -369,8 +369,9 @@ void NativeMembrane::checkFaults(const string& subject, ContextImpl& context, co
     // OpenMM's minimizer gets on with infinite energies, so this is no error.
     if (faults & 8)
         std::call_once(saidLarge, [&] {
-            std::cerr << "openmm-helfrich: an energy of the membrane is beyond 3e38 kJ/mol, where single precision ends; "
-                         "choose the Precision \"double\", or the backend \"cpu\"\n";
+            std::cerr
+                << "openmm-helfrich: an energy of the membrane is beyond 3e38 kJ/mol, where single precision ends; "
+                   "choose the Precision \"double\", or the backend \"cpu\"\n";
         });
     if (!(faults & 4))
         return;

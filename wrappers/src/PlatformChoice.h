@@ -14,8 +14,8 @@ namespace HelfrichPlugin {
  * membranes of this plugin do. This is the one rule that OpenMM's choice and all of the package follow; which forces
  * are cheap is listed at the head of PlatformChoice.cpp.
  *
- * On every platform membranes are computed from positions in the processor's memory. Where they are all the work,
- * another platform can only add the way there and back.
+ * Where membranes are all the work, another platform that computes on the processor can only add the way there and
+ * back; that one with a GPU is faster has not been measured.
  */
 std::string whyNotHelfrich(const OpenMM::System& system, const OpenMM::Integrator& integrator);
 
