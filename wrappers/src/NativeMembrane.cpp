@@ -96,9 +96,9 @@ private:
     vector<bool> isVertex;
 };
 
-/** The Systems of all NativeMembranes. */
+/** The Systems of all NativeMembranes; never destroyed, since a Context may be a variable of the program. */
 std::mutex systemsMutex;
-std::multiset<const System*> systems;
+auto& systems = *new std::multiset<const System*>();
 
 /** Notes that OpenMM has put particles in another order. */
 class OrderListener : public ComputeContext::ReorderListener {
