@@ -354,6 +354,17 @@ class TestEvaluators:
             [(who, reason)] = platforms.evaluators(vesicle_with(), name)
             assert (who, reason) == ("native", f"{name} has a GPU")
 
+    def test_openmm_chooses_a_platform_for_the_backend(self):
+        """Under `native` it does not take Helfrich for membranes, which would be an error."""
+        ON_OPENCL[0].context(vesicle_with())
+        helfrich.set_backend("native")
+        assert chosen(vesicle_with()) in platforms.ON_DEVICES
+        helfrich.set_backend("auto")
+        system = vesicle_with()
+        assert chosen(system) == "Helfrich"
+        platforms.membranes_of(system)[2].setBackend("native")
+        assert chosen(system) in platforms.ON_DEVICES
+
     def test_no_membranes(self):
         helfrich.set_backend("native")
         assert platforms.evaluators(mm.System(), "OpenCL") == {}

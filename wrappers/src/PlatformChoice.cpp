@@ -1,6 +1,8 @@
 #include "PlatformChoice.h"
+#include "openmm-helfrich/MembraneForce.h"
 #include "openmm-helfrich/MonteCarloMembraneTension.h"
 #include "openmm-helfrich/TriangulatedForce.h"
+#include "openmm-helfrich/internal/Core.h"
 
 #include <OpenMM.h>
 
@@ -97,6 +99,18 @@ const std::type_index CHEAP_INTEGRATORS[] = {
     typeid(VariableVerletIntegrator), typeid(VariableLangevinIntegrator),
 };
 
+/** Whether a force is for OpenMM's GPU platforms only. */
+bool isForDevices(const TriangulatedForce& force) {
+    auto* membrane = dynamic_cast<const MembraneForce*>(&force);
+    if (membrane == nullptr)
+        return false;
+    string backend = membrane->getBackend();
+    char text[64] = "";
+    if (backend.empty() && Helfrich_getBackend(text, sizeof(text)) > 0)
+        backend = text;
+    return backend == "native";
+}
+
 /** The vertices of all membranes and what the other forces have, as a System is gone through. */
 struct Tally {
     explicit Tally(const System& system) : system(system), isVertex(system.getNumParticles()), particles(0) {
@@ -121,6 +135,8 @@ string nameOf(const Force& force) {
 string Tally::add(const Force& force) {
     // What flips bonds costs less than the evaluations of the membrane.
     if (auto* membrane = dynamic_cast<const TriangulatedForce*>(&force)) {
+        if (isForDevices(*membrane))
+            return "the backend \"native\" is for platforms of GPUs";
         for (int particle : membrane->getTriangles())
             // The Context will say so if there is no such particle.
             if (particle >= 0 && particle < (int) isVertex.size())

@@ -11,8 +11,8 @@ namespace HelfrichPlugin {
 
 /**
  * Why a System is not one for the platform Helfrich, or an empty text if it is: nothing in it costs more than the
- * membranes of this plugin do. This is the one rule that OpenMM's choice and all of the package follow; which forces
- * are cheap is listed at the head of PlatformChoice.cpp.
+ * membranes of this plugin do, and they are not for GPU platforms only. This is the one rule that OpenMM's choice and
+ * all of the package follow; which forces are cheap is listed at the head of PlatformChoice.cpp.
  *
  * On platforms of the processor membranes cost the same, so what another one could save is the step alone. Whether
  * OpenMM's GPU platforms, which can evaluate membranes themselves, are faster has not been measured.

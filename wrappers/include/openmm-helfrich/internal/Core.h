@@ -125,6 +125,8 @@ void Helfrich_Membrane_destroy(HelfrichMembrane* membrane);
 int Helfrich_Membrane_choose(const char* subject, HelfrichMembrane* membrane, const char* backend);
 /** Whether OpenMM's GPU platforms shall evaluate it themselves: 0 no, 1 if they can, 2 or it is an error. */
 int Helfrich_Membrane_wishesNative(const HelfrichMembrane* membrane);
+/** Copy what holds for forces without a backend of their own; returns its length, or -1 for an error. */
+int64_t Helfrich_getBackend(char* buffer, int64_t size);
 int Helfrich_checkBackend(const char* subject, const char* backend);
 const char* Helfrich_Native_source(int isDouble);
 int Helfrich_Native_canEvaluate(int potential, int isPeriodic);
