@@ -56,6 +56,7 @@ struct double4 { double x, y, z, w; };
 __device__ void __syncthreads();
 __device__ unsigned atomicAdd(unsigned*, unsigned);
 __device__ unsigned atomicMax(unsigned*, unsigned);
+__device__ unsigned atomicOr(unsigned*, unsigned);
 __device__ unsigned __float_as_uint(float);
 __device__ float __uint_as_float(unsigned);
 __device__ int __clz(int);
