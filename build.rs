@@ -10,7 +10,7 @@ mod codes;
 mod compose;
 #[path = "shaders/constants.rs"]
 mod constants;
-#[path = "shaders/dialect.rs"]
+#[path = "shaders/dialect/mod.rs"]
 mod dialect;
 #[path = "wrappers/codes.rs"]
 mod headers;
@@ -63,6 +63,9 @@ fn main() {
     for source in sources(Path::new("wrappers/src")) {
         shim.file(source);
     }
+    fs::write(out_dir().join("NativeCodes.h"), headers::native_codes())
+        .expect("OUT_DIR is writable");
+    shim.include(out_dir());
     let comparison = out_dir().join("codes.cpp");
     fs::write(&comparison, headers::comparison()).expect("OUT_DIR is writable");
     // An enumerator that Rust does not know is missing in a switch there.

@@ -41,16 +41,20 @@ DEVICE h_u32_2 h_component(h_i32 u, h_i32 v, h_i32 w, h_i32 x) {
     return h_split((mm_ulong) ((mm_long) u*v - (mm_long) w*x));
 }
 
-DEVICE h_u32_4 h_add128(h_u32_4 a, h_u32_4 b) {
-    mm_ulong a_low = ((mm_ulong) a.c[1] << 32) | a.c[0], a_high = ((mm_ulong) a.c[3] << 32) | a.c[2];
-    mm_ulong b_low = ((mm_ulong) b.c[1] << 32) | b.c[0], b_high = ((mm_ulong) b.c[3] << 32) | b.c[2];
-    mm_ulong low = a_low + b_low;
-    mm_ulong high = a_high + b_high + (low < a_low ? 1 : 0);
+DEVICE h_u32_4 h_limbs(mm_ulong low, mm_ulong high) {
     h_u32_4 result;
     result.c[0] = (h_u32) low;
     result.c[1] = (h_u32) (low >> 32);
     result.c[2] = (h_u32) high;
     result.c[3] = (h_u32) (high >> 32);
     return result;
+}
+
+DEVICE h_u32_4 h_add128(h_u32_4 a, h_u32_4 b) {
+    mm_ulong a_low = ((mm_ulong) a.c[1] << 32) | a.c[0], a_high = ((mm_ulong) a.c[3] << 32) | a.c[2];
+    mm_ulong b_low = ((mm_ulong) b.c[1] << 32) | b.c[0], b_high = ((mm_ulong) b.c[3] << 32) | b.c[2];
+    mm_ulong low = a_low + b_low;
+    mm_ulong high = a_high + b_high + (low < a_low ? 1 : 0);
+    return h_limbs(low, high);
 }
 

@@ -2,31 +2,22 @@
 // and its results where OpenMM wants them.
 //
 // `slots` has the place of each vertex among OpenMM's particles, `anchors` that of the first vertex of its connected
-// part, to which positions are relative. Names of `h_state`:
+// part, to which positions are relative. `state` is two extents that take turns, and faults; the numbers that the host has,
+// too, are stated in src/evaluator/gpu/interface.rs.
 
-#define H_FAULT 2
-// A position is not finite, or no size of a mesh.
-#define H_FAULT_POSITION 1u
-// A target of a total is too large for the lattice.
-#define H_FAULT_TARGET 2u
-// A triangle is thin, and perhaps without area.
-#define H_FAULT_THIN 4u
-// An energy or a derivative is no finite number.
-#define H_FAULT_ENERGY 8u
+// For differences with numbers that may be negative.
+#define H_HALF_WIDTH ((int) H_HALF_WIDTH_BITS)
 
 #ifdef HELFRICH_DOUBLE
 #define H_VEC3 h_f64_3
+#define H_COORDINATE h_f64
 #else
 #define H_VEC3 h_f32_3
+#define H_COORDINATE h_i32
 #endif
 
-#ifdef HELFRICH_DOUBLE
-typedef double h_place_t;
-#elif defined(HELFRICH_MIXED)
-typedef double h_place_t;
-#else
-typedef float h_place_t;
-#endif
+// OpenMM's coordinates.
+typedef mixed h_place_t;
 
 // One number of OpenMM's for each component.
 #ifdef HELFRICH_MIXED
@@ -100,19 +91,8 @@ DEVICE h_u32_4 h_shifted(mm_ulong m, int shift) {
         low = m;
     else if (shift > -64)
         low = (m + ((mm_ulong) 1 << (-shift - 1))) >> -shift;
-    h_u32_4 result;
-    result.c[0] = (h_u32) low;
-    result.c[1] = (h_u32) (low >> 32);
-    result.c[2] = (h_u32) high;
-    result.c[3] = (h_u32) (high >> 32);
-    return result;
+    return h_limbs(low, high);
 }
-#endif
-
-#ifdef HELFRICH_DOUBLE
-#define H_COORDINATE h_f64
-#else
-#define H_COORDINATE h_i32
 #endif
 
 // Positions relative to anchors: in single precision on a lattice of 2³⁰ steps across the largest part, whose spacing is a
@@ -126,7 +106,7 @@ DEVICE void h_place_vertices(int exponent, int first, int step, int vertices, in
     if (!isSane)
         exponent = 0;
     if (first == 0 && !isSane)
-        H_NOTE(&state[H_FAULT], H_FAULT_POSITION);
+        H_NOTE(&state[H_STATE_FAULTS], H_FAULT_POSITION);
 #ifdef HELFRICH_DOUBLE
     double scale = unit < 0 ? (double) h_power(-unit) : 1.0 / h_power(unit);
     for (int vertex = first; vertex < vertices; vertex += step) {
@@ -145,21 +125,21 @@ DEVICE void h_place_vertices(int exponent, int first, int step, int vertices, in
     }
 #else
     if (first == 0) {
-        frame->h_quantum = h_power(exponent - 29 - unit);
+        frame->h_quantum = h_power(exponent - H_HALF_WIDTH - unit);
         for (int term = 0; term < (int) frame->h_num_terms; term++) {
             int power = targets[4*term + 3];
             if (power == 0)
                 continue;
-            int shift = targets[4*term + 2] - power*(exponent - 29);
+            int shift = targets[4*term + 2] - power*(exponent - H_HALF_WIDTH);
             if (shift > 72) {
-                H_NOTE(&state[H_FAULT], H_FAULT_TARGET);
+                H_NOTE(&state[H_STATE_FAULTS], H_FAULT_TARGET);
                 shift = 0;
             }
             mm_ulong m = ((mm_ulong) (h_u32) targets[4*term + 1] << 32) | (h_u32) targets[4*term];
             frame->h_terms[term].h_reference = h_shifted(m, shift);
         }
     }
-    h_place_t steps = h_power(29 - exponent);
+    h_place_t steps = h_power(H_HALF_WIDTH - exponent);
     for (int vertex = first; vertex < vertices; vertex += step) {
         h_Place place = h_load_place(slots[vertex], posq, correction);
         h_Place anchor = h_load_place(anchors[vertex], posq, correction);
@@ -169,7 +149,7 @@ DEVICE void h_place_vertices(int exponent, int first, int step, int vertices, in
             // Whole numbers of 64 bits hold both where they differ by less than 2³⁰ and anything is left of the digits.
             bool fits = here < 4e18f && here > -4e18f && there < 4e18f && there > -4e18f;
             if (!fits && isSane)
-                H_NOTE(&state[H_FAULT], H_FAULT_POSITION);
+                H_NOTE(&state[H_STATE_FAULTS], H_FAULT_POSITION);
             way[k] = fits ? (mm_long) rint(here) - (mm_long) rint(there) : 0;
         }
         for (int i = 2; isPeriodic && i >= 0; i--) {
@@ -239,7 +219,7 @@ KERNEL void h_add_sums(int numRuns, int numDerivatives, GLOBAL const int* RESTRI
         GLOBAL const real* RESTRICT results, GLOBAL mixed* RESTRICT energies, GLOBAL mixed* RESTRICT derivatives,
         GLOBAL h_u32* RESTRICT thin, GLOBAL h_u32* RESTRICT state) {
     if (GLOBAL_ID == 0 && thin[0] != 0) {
-        H_NOTE(&state[H_FAULT], H_FAULT_THIN);
+        H_NOTE(&state[H_STATE_FAULTS], H_FAULT_THIN);
         thin[0] = 0;
     }
     for (int run = 0; run < numRuns; run++) {
@@ -250,7 +230,7 @@ KERNEL void h_add_sums(int numRuns, int numDerivatives, GLOBAL const int* RESTRI
         sum *= h_power(runs[4*run + 3]);
         // By its bits, since compilers may take every number for finite.
         if ((H_AS_UINT(H_SHORTENED(sum)) & 0x7f800000u) == 0x7f800000u)
-            H_NOTE(&state[H_FAULT], H_FAULT_ENERGY);
+            H_NOTE(&state[H_STATE_FAULTS], H_FAULT_ENERGY);
         if (derivative < 0)
             energies[GLOBAL_ID] += sum;
         else

@@ -1,5 +1,5 @@
 // What the three languages behind OpenMM's platforms have under different names, before a module that
-// shaders/dialect.rs has written.
+// shaders/dialect has written.
 
 typedef unsigned int h_u32;
 typedef int h_i32;
@@ -7,9 +7,6 @@ typedef float h_f32;
 #ifdef HELFRICH_DOUBLE
 typedef double h_f64;
 #endif
-
-// The most groups of a module that share a block of threads.
-#define H_GROUPS_OF_BLOCK 4
 
 #ifdef __OPENCL_VERSION__
 #define H_VECTOR(NAME, ITEM, SIZE, ALIGN) typedef struct { ITEM c[SIZE]; } __attribute__((aligned(ALIGN))) NAME;

@@ -4,6 +4,7 @@
 
 use crate::codes::{Attraction, Contribution, Form, MAX_PARAMETERS, Scheme};
 use crate::flip_records::{FlipRules, FlipState};
+use crate::interface::{Binding, NUMBERS};
 use crate::records::{
     FollowerInput, NativeBuffer, NativePass, NativePlan, ParameterInfo, ParticleArrays, TermInput,
 };
@@ -80,6 +81,21 @@ pub fn comparison() -> String {
         );
     }
     text
+}
+
+/// A header with what C++ has to know of `src/evaluator/gpu/interface.rs`.
+pub fn native_codes() -> String {
+    let mut text = "// Written by build.rs from src/evaluator/gpu/interface.rs.\n#ifndef HELFRICH_NATIVE_CODES_H_\n\
+                    #define HELFRICH_NATIVE_CODES_H_\n\nnamespace HelfrichPlugin {\nnamespace NativeCodes {\n"
+        .to_owned();
+    for (name, value) in NUMBERS {
+        text += &format!("constexpr unsigned {name} = {value}u;\n");
+    }
+    text += "/** The buffers, in the order of their numbers. */\nenum Buffer {\n";
+    for (name, ..) in Binding::INFO {
+        text += &format!("    {name},\n");
+    }
+    text + "};\n} // namespace NativeCodes\n} // namespace HelfrichPlugin\n\n#endif\n"
 }
 
 fn structure(cpp: &str, size: usize, fields: &[(&str, usize)]) -> String {

@@ -154,9 +154,9 @@ def test_for_cuda_without_a_word(precision: str, architecture: str):
     log, code = compile_for_cuda(program(precision), architecture)
     assert not log.strip("\0\n ")
     # What the host looks for by name.
-    host = (ROOT / "wrappers/src/NativeMembrane.cpp").read_text(encoding="utf-8")
-    names = re.search(r"for \(const char\* name :\s*\{([^}]*)\}", host)[1]
-    kernels = set(re.findall(r'"(\w+)"', names))
+    host = (ROOT / "wrappers/src/NativeDevice.cpp").read_text(encoding="utf-8")
+    kernels = set(re.findall(r'"(h_\w+)"', host))
+    kernels |= set(re.findall(r"KERNEL void (\w+)\(int h_groups", program(precision)))
     assert len(kernels) > 10
     assert kernels <= set(re.findall(r"\.visible \.entry (\w+)\(", code))
 

@@ -1,22 +1,17 @@
 #ifndef HELFRICH_NATIVE_MEMBRANE_H_
 #define HELFRICH_NATIVE_MEMBRANE_H_
 
-#include "openmm-helfrich/internal/Core.h"
+#include "NativeDevice.h"
 
-#include <openmm/internal/ContextImpl.h>
-
-#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace HelfrichPlugin {
 
 /**
- * A membrane that OpenMM's platform OpenCL, CUDA or HIP evaluates itself: positions and forces stay on the device.
- *
- * Of these platforms only virtual functions are called, so that neither their libraries nor their makers' headers are
- * needed to build this, and one library serves all of them. What is computed, Rust says
- * (`src/evaluator/gpu/native.rs`).
+ * A membrane that OpenMM's platform OpenCL, CUDA or HIP evaluates itself: positions and forces stay on the device. What
+ * is computed, Rust says (`src/evaluator/gpu/native.rs`); NativeDevice does it.
  */
 class NativeMembrane {
 public:
@@ -59,12 +54,9 @@ public:
                   const std::vector<int>& derivatives, bool forces, bool wantsSums, bool isAsked, const double* box);
 
 private:
-    struct Device;
     /** Evaluate on the processor, which names what is wrong. */
     void look(const std::string& subject, OpenMM::ContextImpl& context, const std::vector<HelfrichTerm>& terms,
               const double* box);
-    /** Bring to the device what it lacks. */
-    void provide(const HelfrichNativePlan& plan);
     /** Look at what the kernels could not say. */
     void checkFaults(const std::string& subject, OpenMM::ContextImpl& context, const std::vector<HelfrichTerm>& terms,
                      const double* box);
@@ -72,11 +64,9 @@ private:
     HelfrichMembrane* core;
     HelfrichNative* native;
     const OpenMM::System* system;
-    std::unique_ptr<Device> device;
+    NativeDevice device;
     /** Evaluations since faults were looked for. */
     int unchecked;
-    /** Which of two numbers has the extent of this evaluation. */
-    int turn;
 };
 
 } // namespace HelfrichPlugin

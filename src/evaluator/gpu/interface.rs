@@ -52,6 +52,22 @@ numbers! {
     SLOPES_PER_VERTEX = 9;
     /// Numbers that a triangle has in [`Binding::CornerForces`].
     FORCES_PER_TRIANGLE = 9;
+    /// Half of the steps of the lattice across the widest part are 2 to this power: the sides of triangles stay below 2³⁰
+    /// steps, so that the products of two fit 62 bits and their differences 63.
+    HALF_WIDTH_BITS = 29;
+    /// The most groups that share a block of threads on OpenMM's platforms.
+    GROUPS_OF_BLOCK = 4;
+    /// Words of the state that OpenMM's platforms keep: two extents, which take turns, and then the faults.
+    STATE_SIZE = 3;
+    STATE_FAULTS = 2;
+    /// A position is not finite, or no size of a mesh.
+    FAULT_POSITION = 1;
+    /// A target of a total is too large for the lattice.
+    FAULT_TARGET = 2;
+    /// A triangle is thin, and perhaps without area.
+    FAULT_THIN = 4;
+    /// An energy or a derivative is no finite number.
+    FAULT_ENERGY = 8;
     /// Places in the `sums` of a [`TermRecord`].
     SUMS_OF_TOTALS = 0;
     SUMS_OF_TRIANGLES = 1;

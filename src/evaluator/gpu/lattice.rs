@@ -6,11 +6,8 @@
 //! precise as their lengths allow, and not as the mesh's size does.
 
 use super::Precision;
+use super::interface::HALF_WIDTH_BITS;
 use crate::mesh::Topology;
-
-/// Half of the steps across the widest part: the sides of triangles stay below 2³⁰ steps, so that the products
-/// of two fit 62 bits and their differences 63.
-pub const HALF_WIDTH_BITS: i32 = 29;
 
 /// Adding it to a number below 2³¹ leaves the number, rounded, in the last bits of the sum.
 const ROUNDER: f64 = 6_755_399_441_055_744.0;
@@ -53,7 +50,7 @@ impl Lattice {
         // The edge of a sphere's mesh; any value of this order would do.
         let edge = 3.8 * half / (topology.num_vertices() as f64).sqrt();
         let unit = 2f64.powi(edge.log2().round() as i32);
-        let steps_per_nm = 2f64.powi(HALF_WIDTH_BITS - exponent);
+        let steps_per_nm = 2f64.powi(HALF_WIDTH_BITS as i32 - exponent);
         let scale = Scale { unit, quantum: 1.0 / (steps_per_nm * unit) };
         // Sizes beyond these powers are no membranes, but must not become infinities unnoticed.
         if !(1e-100..1e100).contains(&half) {

@@ -1,12 +1,12 @@
 //! Evaluations that OpenMM's GPU platforms do themselves, in their own buffers and with their own compilers.
 //!
-//! The program is the same modules as everywhere, written in OpenMM's dialect (`shaders/dialect.rs`), between
+//! The program is the same modules as everywhere, written in OpenMM's dialect (`shaders/dialect/`), between
 //! `shaders/openmm_prelude.c` and `shaders/openmm_kernels.c`. Here is what the host decides: which buffers there are, what
 //! is in them and which passes run; `wrappers/src/NativeMembrane.cpp` does it.
 
 use super::frame::{Frame, groups};
-use super::interface::{Binding, Wishes};
-use super::lattice::{HALF_WIDTH_BITS, Scale, connected_parts};
+use super::interface::{Binding, HALF_WIDTH_BITS, Wishes};
+use super::lattice::{Scale, connected_parts};
 use super::layout::{Pass, connectivity, items, passes};
 use super::{Bytes, Precision, Sink, shaders};
 use crate::error::{Error, Result};
@@ -233,11 +233,13 @@ impl Native {
                 .map(|(pass, elements)| (pass.name(), groups(elements))),
         );
         let targets = terms.iter().map(target).collect();
-        let runs = frame.runs(scale, terms, derivatives);
-        if plan.version == 0 || plan.targets != targets || plan.runs != runs {
-            (plan.targets, plan.runs) = (targets, runs);
+        // Without energies nobody reads them.
+        let runs = energies.then(|| frame.runs(scale, terms, derivatives));
+        let runs = runs.unwrap_or_else(|| std::mem::take(&mut plan.runs));
+        if plan.version == 0 || plan.targets != targets || plan.runs != runs && energies {
             plan.version += 1;
         }
+        (plan.targets, plan.runs) = (targets, runs);
         Ok(())
     }
 
@@ -275,7 +277,7 @@ fn box_vectors(cell: &Cell, precision: Precision, unit: i32) -> Vec<u8> {
     let components = cell.vectors().iter().flat_map(|vector| vector.iter());
     match precision {
         Precision::Single => {
-            let steps = 2f64.powi(HALF_WIDTH_BITS - extent(cell));
+            let steps = 2f64.powi(HALF_WIDTH_BITS as i32 - extent(cell));
             components.flat_map(|x| ((x * steps).round() as i32).to_ne_bytes()).collect()
         }
         Precision::Double => {
