@@ -2,7 +2,7 @@
 //!
 //! The program is the same modules as everywhere, written in OpenMM's dialect (`shaders/dialect/`), between
 //! `shaders/openmm_prelude.c` and `shaders/openmm_kernels.c`. Here is what the host decides: which buffers there are, what
-//! is in them and which passes run; `wrappers/src/NativeMembrane.cpp` does it.
+//! is in them and which passes run; `wrappers/src/NativeDevice.cpp` does it.
 
 use super::frame::{Frame, groups};
 use super::interface::{Binding, HALF_WIDTH_BITS, Wishes};
