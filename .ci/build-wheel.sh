@@ -10,17 +10,9 @@ set -eu
 python=$1
 dist=$(pwd)/dist
 here=$(pwd)/.ci
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
+. .ci/scratch.sh
 
-log=$folder/log
-quietly() {
-    "$@" > "$log" 2>&1 || { cat "$log" >&2; exit 1; }
-}
-
-quietly "$python" -c "from setuptools import build_meta; build_meta.build_sdist('$folder')"
-mkdir "$folder/source"
-tar -xzf "$folder"/openmm_helfrich-*.tar.gz -C "$folder/source" --strip-components=1
+unpack_source "$python"
 cd "$folder/source"
 # pyproject.toml's license-files have them too.
 "$python" "$here/licenses.py" .

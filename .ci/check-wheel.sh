@@ -8,14 +8,11 @@ set -eu
 
 root=$(pwd)
 wheel=$(echo "$root"/dist/openmm_helfrich-*.whl)
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
+. .ci/scratch.sh
 
-log=$folder/log
 # Nothing of the system's is in PATH there, nor what a developer's shell may have set.
 apart() {
-    env -u LD_LIBRARY_PATH -u PYTHONPATH -u OPENMM_PLUGIN_DIR -u OPENMM_DIR PATH="$folder/venv/bin" "$@" \
-        > "$log" 2>&1 || { cat "$log" >&2; exit 1; }
+    quietly env -u LD_LIBRARY_PATH -u PYTHONPATH -u OPENMM_PLUGIN_DIR -u OPENMM_DIR PATH="$folder/venv/bin" "$@"
 }
 
 sed -n '/^```python$/,/^```$/{/^```$/q;/^```/!p}' README.md > "$folder/example.py"

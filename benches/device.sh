@@ -192,7 +192,7 @@ only=native
 [ -z "$quick" ] || only='native and not many'
 export HELFRICH_NATIVE_PLATFORM=$platform
 part "correctness, $platform" 160 "${tests[@]}" -k "$only" --junitxml="$scratch/native.xml" \
-    tests/python/test_gpu.py tests/python/test_native.py tests/python/test_native_compilers.py
+    tests/python/test_gpu.py tests/python/test_native*.py
 
 # --- speed ---------------------------------------------------------------------------------------
 

@@ -1,13 +1,12 @@
 """Steps of all sides on one mesh: what `steps.py` calls for each size."""
 
-import sys
 from dataclasses import dataclass, field
 
 import openmm
 from competitors import with_jax, with_strings
-from openmm import unit
 from openmmhelfrich import Vesicle
-from openmmhelfrich._benchmark import INTEGRATORS, Steps, empty_system, fastest, sphere, start
+from openmmhelfrich._benchmark import INTEGRATORS, empty_system, sphere, start
+from turns import energy, measure, say
 
 # The sides of the race, as tables call them.
 SIDES = {
@@ -35,6 +34,9 @@ class Row:
     def label(self):
         """As tables call it."""
         return f"{SIDES[self.side]}, {self.place}"
+
+    def __str__(self):
+        return f"{self.label}, {self.integrator}"
 
 
 @dataclass
@@ -98,7 +100,7 @@ def race(parts, targets, results, options):
     least = 5 if n <= TOGETHER else 3
     energies, contexts = {}, {}
     for row, target in plan:
-        _say(f"{n}: starting {row.label}, {row.integrator}")
+        say(f"{n}: starting {row}")
         try:
             context = start(systems[row.side], vesicle, row.integrator, target)
             # Platforms may refuse what they cannot do only with the first step.
@@ -106,26 +108,20 @@ def race(parts, targets, results, options):
         except openmm.OpenMMException as reason:
             results.missing[row, n] = str(reason)
             continue
-        energies[row.side] = _energy(context, vesicle)
+        energies[row.side] = energy(context, vesicle)
         contexts[row] = context
         if n > TOGETHER:
             _time(contexts, n, results, options, least)
             contexts.clear()
             del context
     if contexts:
-        _say(f"{n}: {len(contexts)} Contexts in turns")
+        say(f"{n}: {len(contexts)} Contexts in turns")
         _time(contexts, n, results, options, least)
         contexts.clear()
     if "strings" in energies:
         with_strings.check_agreement(energies["ours"], energies["strings"], "the string forces")
     _jax(vesicle, energies["ours"], results, options)
-    _say("")
-
-
-def _say(text):
-    """Show on a terminal what is going on, in place of what was shown before."""
-    if sys.stderr.isatty():
-        print(f"\r{text:78.78s}\r", end="", file=sys.stderr, flush=True)
+    say("")
 
 
 def _strings(vesicle, systems, targets, results, most):
@@ -146,7 +142,7 @@ def _strings(vesicle, systems, targets, results, most):
     return plan
 
 
-def _jax(vesicle, energy, results, options):
+def _jax(vesicle, ours, results, options):
     n = vesicle.mesh.num_vertices
     for form in with_jax.FORMS:
         row = Row("jax", form, "Verlet")
@@ -155,29 +151,14 @@ def _jax(vesicle, energy, results, options):
         elif n > options.most_vertices["jax"]:
             results.missing[row, n] = f"left out above N = {options.most_vertices['jax']}"
         else:
-            _say(f"{n}: {row.label}")
+            say(f"{n}: {row.label}")
             cost, theirs = with_jax.measure(
                 vesicle, options.jax_python, form, options.repeats, options.seconds
             )
-            with_strings.check_agreement(energy, theirs, row.label)
+            with_strings.check_agreement(ours, theirs, row.label)
             results.cost[row, n] = cost
 
 
 def _time(contexts, n, results, options, least):
-    steppers = {row: Steps(context) for row, context in contexts.items()}
-    best = fastest(steppers, options.repeats, options.seconds, least)
-    for row, stepper in steppers.items():
-        try:
-            stepper.check()
-        except FloatingPointError as reason:
-            sys.exit(f"steps: {row.label}, {row.integrator}, N = {n}: {reason}")
-        results.cost[row, n] = best[row]
-
-
-def _energy(context, vesicle):
-    """Potential energy at the positions of the mesh, kJ/mol."""
-    now = context.getState(positions=True).getPositions(asNumpy=True)
-    context.setPositions(vesicle.mesh.vertices)
-    state = context.getState(energy=True)
-    context.setPositions(now)
-    return state.getPotentialEnergy().value_in_unit(unit.kilojoule_per_mole)
+    for row, cost in measure(contexts, n, options, least).items():
+        results.cost[row, n] = cost

@@ -12,7 +12,6 @@ side alone. What `cargo bench` has measured before (`make bench` does) is printe
 
 import argparse
 import os
-import sys
 from pathlib import Path
 
 import memory
@@ -20,6 +19,7 @@ import report
 from competitors import with_jax, with_rust
 from openmmhelfrich._benchmark import targets
 from race import MOST_VERTICES, Results, race
+from turns import add_options
 
 # Parts of a side of the icosahedron: N = 252, 1002, 4002, 10 242, 40 962, 163 842, 998 562.
 PARTS = (5, 10, 20, 32, 64, 128, 316)
@@ -32,17 +32,9 @@ def main(arguments=None):
         "--parts", type=int, nargs="+", default=PARTS,
         help="parts of a side of the icosahedron, N = 10 n² + 2 (default: %(default)s)",
     )  # fmt: skip
-    parser.add_argument(
-        "--repeats", type=int, default=5, help="runs of each (default: %(default)d)"
-    )
-    parser.add_argument(
-        "--seconds", type=float, default=0.3, help="length of a run, s (default: %(default)g)"
-    )
+    add_options(parser, repeats=5)
     parser.add_argument(
         "--platform", action="append", help="only these of OpenMM's platforms; may be repeated"
-    )
-    parser.add_argument(
-        "--jax-python", default=sys.executable, help="a Python with jax and jax-md, if not this one"
     )
     parser.add_argument("--no-memory", action="store_true", help="do not measure memory")
     parser.add_argument("--output", type=Path, help="a Markdown file; a plot goes beside it")

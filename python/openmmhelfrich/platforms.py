@@ -2,7 +2,8 @@
 
 There is one rule, and `choose` is it. All commands and functions of this package that simulate
 follow it; ``docs/platforms.md`` has the measurements behind it. The part of it that is about
-membranes alone is also what ``openmm.Context(system, integrator)`` does.
+membranes alone is also what ``openmm.Context(system, integrator)`` does. `evaluators` says what
+computes the membranes on a platform.
 """
 
 from __future__ import annotations
@@ -34,13 +35,13 @@ __all__ = [
 #: step takes milliseconds then, beside which some hundred microseconds for the way are little.
 LEAST_FOR_GPU = 10_000
 
-#: What only these platforms have on a device, and wgpu has not.
-_OF_BORDERS = ("EdgeTensionForce", "GaussianCurvatureForce")
-
 _ENVIRONMENT = "OPENMM_DEFAULT_PLATFORM"
 
 #: The platforms that can evaluate membranes themselves, the fastest first.
 ON_DEVICES = ("CUDA", "HIP", "OpenCL")
+
+#: What these platforms compute on their device, and wgpu does not.
+_OF_BORDERS = ("EdgeTensionForce", "GaussianCurvatureForce")
 
 
 class Choice(NamedTuple):

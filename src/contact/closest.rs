@@ -36,6 +36,12 @@ pub fn difference(cell: Option<&Cell>, to: &Vec3, from: &Vec3) -> Vec3 {
     }
 }
 
+/// The corners of a triangle, of its image whose first corner is where it is.
+#[inline]
+pub fn in_one_piece(cell: Option<&Cell>, [a, b, c]: [&Vec3; 3]) -> [Vec3; 3] {
+    [*a, a + difference(cell, b, a), a + difference(cell, c, a)]
+}
+
 impl Arms {
     /// Of a point and the corners of a triangle.
     #[inline(always)]

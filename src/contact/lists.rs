@@ -10,7 +10,7 @@
 use super::spheres::{Search, Sphere, Spheres};
 use crate::dynamics::instructions::{Arithmetic, Kernel, run};
 use crate::error::Result;
-use crate::mesh::cell::nowhere;
+use crate::mesh::cell::check_places;
 use crate::mesh::geometry::Vec3;
 use crate::mesh::{Cell, Triangulation};
 use crate::team::Team;
@@ -129,11 +129,7 @@ impl Lists {
             return Ok(());
         }
         self.made_for = None;
-        for (position, particle) in self.positions.iter().zip(mesh.particles()) {
-            if let Some(reason) = nowhere(cell, *particle, position) {
-                return Err(reason);
-            }
-        }
+        check_places(cell, mesh.particles(), &self.positions)?;
         let made = self.make(mesh, cell, (reach, between_parts), team)?;
         self.made_for = Some(made);
         self.choose(&made, team);

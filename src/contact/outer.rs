@@ -1,6 +1,6 @@
 //! The outer list, from spheres in boxes.
 
-use super::closest::difference;
+use super::closest::{difference, in_one_piece};
 use super::grid::bounds;
 use super::inner::INNER;
 use super::lists::{Cost, Far, Lists, Made, Pair, Scratch, ascending, lowest_first, usual};
@@ -56,8 +56,7 @@ impl Lists {
         let [outer, _] = *self.shares.get_or_insert([OUTER[0], INNER[0]]);
         self.cost = Cost::default();
         // What is as near as half of the reach matters, whatever edges are.
-        let size = mean.max(0.5 * reach);
-        let mut size = size;
+        let mut size = mean.max(0.5 * reach);
         if let Some(cell) = cell {
             // A triangle is not farther around its middle than its longest edge.
             let room = cell.half_width() - reach - 1.5 * largest;
@@ -255,8 +254,7 @@ pub fn triangle_sphere(
     positions: &[Vec3],
     corners: [u32; 3],
 ) -> ([Vec3; 3], Vec3, f64) {
-    let [a, b, c] = corners.map(|corner| &positions[corner as usize]);
-    let points = [*a, a + difference(cell, b, a), a + difference(cell, c, a)];
+    let points = in_one_piece(cell, corners.map(|corner| &positions[corner as usize]));
     let middle = (points[0] + points[1] + points[2]) / 3.0;
     let radius = points.iter().fold(0.0, |most: f64, p| most.max((p - middle).norm_squared()));
     (points, middle, radius.sqrt())

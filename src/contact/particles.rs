@@ -3,11 +3,11 @@
 //! The boxes of a grid know the triangles near them, and are renewed when a vertex has moved by the skin. Particles
 //! themselves are not remembered: each looks into its box, which for most of a million is empty.
 
-use super::closest::{Arms, difference};
+use super::closest::{Arms, difference, in_one_piece};
 use super::grid::{Grid, NOWHERE, TOGETHER, bounds};
 use super::reach::{Map, Reach, SKIN};
 use crate::error::{Error, Result};
-use crate::mesh::cell::nowhere;
+use crate::mesh::cell::{check_places, nowhere};
 use crate::mesh::geometry::Vec3;
 use crate::mesh::{Cell, Triangulation};
 use crate::potentials::particle_surface::{self, RADIUS};
@@ -174,11 +174,7 @@ impl ParticleContacts {
         let at = |particle: u32| Vec3::from_column_slice(&positions[3 * particle as usize..][..3]);
         self.positions.clear();
         self.positions.extend(mesh.particles().iter().map(|particle| at(*particle)));
-        for (position, particle) in self.positions.iter().zip(mesh.particles()) {
-            if let Some(reason) = nowhere(cell, *particle, position) {
-                return Err(reason);
-            }
-        }
+        check_places(cell, mesh.particles(), &self.positions)?;
         let mut largest = 0.0;
         self.spheres.clear();
         self.spheres.extend(mesh.triangles().iter().map(|corners| {
@@ -312,9 +308,8 @@ impl ParticleContacts {
         let mut energy = 0.0;
         for triangle in changed {
             let corners = mesh.triangles()[triangle].map(|corner| &self.positions[corner as usize]);
-            let [a, b, c] = corners;
             let cell = self.cell.as_ref();
-            let frame = [*a, a + difference(cell, b, a), a + difference(cell, c, a)];
+            let frame = in_one_piece(cell, corners);
             self.near_grid.near(&frame, self.farthest, |item| {
                 let (at, radius) = &self.near[item as usize];
                 let arms = Arms::new(cell, at, corners);

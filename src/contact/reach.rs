@@ -1,6 +1,6 @@
 //! How far particles reach, and which triangles are near the boxes that they may be in.
 
-use super::closest::difference;
+use super::closest::in_one_piece;
 use super::grid::{Grid, bounds};
 use crate::mesh::geometry::Vec3;
 use crate::mesh::{Cell, Triangulation};
@@ -43,8 +43,7 @@ impl Map {
         let around = [low.add_scalar(-range), high.add_scalar(range)];
         self.grid.set_up(cell, around, range, 16 * mesh.triangles().len());
         for (triangle, corners) in mesh.triangles().iter().enumerate() {
-            let [a, b, c] = corners.map(|corner| &positions[corner as usize]);
-            let frame = [*a, a + difference(cell, b, a), a + difference(cell, c, a)];
+            let frame = in_one_piece(cell, corners.map(|corner| &positions[corner as usize]));
             self.grid.add_around(triangle as u32, &frame, range);
         }
         self.grid.seal();
@@ -84,8 +83,8 @@ impl Reach {
         reach
     }
 
-    #[inline]
     /// The class of particles of a radius.
+    #[inline]
     pub fn class(&self, radius: f64) -> usize {
         // The exponent of a number that is 1 or more, or a little less by rounding.
         let exponent = ((self.from_rim + radius) / self.least).to_bits() >> 52;

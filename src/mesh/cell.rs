@@ -118,6 +118,15 @@ pub fn nowhere(cell: Option<&Cell>, particle: u32, position: &Vec3) -> Option<Er
     is_far.then(|| Error::FarPosition { particle, position: (*position).into() })
 }
 
+/// Refuse particles that are nowhere.
+///
+/// # Errors
+/// Names the first of them.
+pub fn check_places(cell: Option<&Cell>, particles: &[u32], positions: &[Vec3]) -> Result<()> {
+    let mut all = positions.iter().zip(particles);
+    all.find_map(|(at, particle)| nowhere(cell, *particle, at)).map_or(Ok(()), Err)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cache
 
@@ -73,6 +75,16 @@ NATIVE = [
 ]
 UNASKED = Target("unasked", NATIVE_PLATFORM, 1e-9, {"Precision": "double"})
 ON_DEVICE = ON_GPU + NATIVE
+
+
+@contextmanager
+def counting() -> Iterator[dict[str, int]]:
+    """At the end the dict has how many evaluations each backend has made meanwhile, if any."""
+    before = helfrich.backend.evaluations()
+    made: dict[str, int] = {}
+    yield made
+    now = helfrich.backend.evaluations()
+    made.update({name: now[name] - before[name] for name in now if now[name] > before[name]})
 
 
 def native_is_on_processor() -> bool:

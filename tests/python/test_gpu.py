@@ -20,7 +20,7 @@ import openmmhelfrich as helfrich
 import pytest
 from cases import PRESENT, Case
 from meshes import Membrane, membrane
-from platforms import NATIVE, ON_DEVICE, ON_GPU, ON_OPENCL, REFERENCE, Target, require_gpu
+from platforms import NATIVE, ON_DEVICE, ON_GPU, ON_OPENCL, REFERENCE, Target, counting, require_gpu
 from running import Running, running
 
 SLOW = os.environ.get("HELFRICH_SLOW_TESTS") == "1"
@@ -53,10 +53,9 @@ def compare(found, expected, tolerance: float) -> None:
 
 def only_on(target: Target, body):
     """The result of something that nothing but a device has computed."""
-    before = helfrich.backend.evaluations()
-    result = body()
-    after = helfrich.backend.evaluations()
-    assert {name for name in after if after[name] > before[name]} == {target.counter}
+    with counting() as made:
+        result = body()
+    assert made.keys() == {target.counter}
     return result
 
 

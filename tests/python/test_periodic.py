@@ -19,7 +19,17 @@ import string_forces
 from cases import PRESENT, Case
 from openmm import unit
 from periodic_meshes import BOXES, Positions, in_box, periodic, wrapped
-from platforms import CPU, HELFRICH, NATIVE, ON_DEVICE, ON_GPU, ON_OPENCL, REFERENCE, Target
+from platforms import (
+    CPU,
+    HELFRICH,
+    NATIVE,
+    ON_DEVICE,
+    ON_GPU,
+    ON_OPENCL,
+    REFERENCE,
+    Target,
+    counting,
+)
 from running import plain
 
 SHAPES = tuple(BOXES)
@@ -258,15 +268,13 @@ def test_platforms_and_backends_agree(name: str, target: Target):
     found = Running([make(case, name, "triclinic") for case in cases], m.num_particles, target)
     rounded = in_box(target.rounded(np.asarray(m.positions)), m.positions.box)
     energy, forces = expected.evaluate(rounded)
-    before = helfrich.backend.evaluations()
-    other, pushes = found.evaluate(m.positions)
-    after = helfrich.backend.evaluations()
+    with counting() as made:
+        other, pushes = found.evaluate(m.positions)
     if target in ON_GPU:
         # What spans the box is computed on the processor whichever backend is chosen.
-        grown = [kind for kind in after if after[kind] > before[kind]]
-        assert grown == ["gpu" if name == "vesicle" else "cpu"]
+        assert made.keys() == {"gpu" if name == "vesicle" else "cpu"}
     if target in NATIVE:
-        assert after["native"] > before["native"]
+        assert "native" in made
     assert other == pytest.approx(energy, rel=10 * target.tolerance)
     assert np.abs(pushes - forces).max() <= 10 * target.tolerance * np.abs(forces).max()
 

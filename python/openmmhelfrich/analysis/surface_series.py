@@ -59,8 +59,7 @@ class SurfaceSeries:
     ps. Triangles are stored anew only where they have changed. Of a surface in a periodic box, each
     connected part is in one piece; one that spans the box is cut at its faces, where a vertex with
     triangles on both sides is there once for each of its images (`Mesh.unfolded`), with the same
-    values. The group ``/openmm-helfrich`` has
-    the ``step`` of the simulation of each frame.
+    values. The group ``/openmm-helfrich`` has the ``step`` of the simulation of each frame.
 
     The file is closed between additions, so that ParaView can look at it during a run. A kill at
     any moment leaves a file that `frames`, `add` or `cut` make whole again, see `_journal`.

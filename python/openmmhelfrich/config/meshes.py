@@ -12,9 +12,10 @@ from .tables import Table
 
 __all__ = ["start_mesh"]
 
+_READING = ("triangulate", "merge", "drop_unused")
 #: Where meshes come from, and the keys that each needs and takes.
 _SOURCES = {
-    "file": ((), ("triangulate", "merge", "drop_unused")),
+    "file": ((), _READING),
     "icosphere": (("radius",), ()),
     "random": (("radius",), ("seed",)),
     "sheet": (("spacing",), ("periodic",)),
@@ -29,7 +30,6 @@ _ARTICLES = {
     "tube": "a tube",
     "disk": "a disk",
 }
-_READING = ("triangulate", "merge", "drop_unused")
 
 
 def start_mesh(table: Table, folder: Path) -> Mesh:
