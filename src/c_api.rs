@@ -170,9 +170,9 @@ mover_values! {
     Axes: c_int, ScaleMoleculesAsRigid: c_int, AdaptiveMoves: c_int, RandomNumberSeed: c_int
 }
 
-/// `create`, and `get` and `set` of each scalar, for a force class.
+/// `create`, and `get` and `set` of each scalar, for a force class; what `create` does not take has a default.
 macro_rules! force_class {
-    ($class:ident($($parameter:ident),*) $($form:ident)?) => {
+    ($class:ident($($parameter:ident),*) $($form:ident)? $(, $later:ident)*) => {
         paste::paste! {
             #[doc = concat!("Make a ", stringify!($class), "; null if an argument is refused.")]
             #[unsafe(no_mangle)]
@@ -189,6 +189,15 @@ macro_rules! force_class {
                 let class = concat!(stringify!($class), "\0").as_ptr().cast();
                 unsafe { create(class, triangles, num_triangles, &values, variant) }
             }
+            force_scalars!($class, $($parameter),* $(, $later)*);
+        }
+    };
+}
+
+/// `get` and `set` of the scalars of a force class.
+macro_rules! force_scalars {
+    ($class:ident, $($parameter:ident),*) => {
+        paste::paste! {
             $(
                 #[doc = concat!("The scalar ", stringify!($parameter), " of a ", stringify!($class), ".")]
                 #[unsafe(no_mangle)]
@@ -217,7 +226,7 @@ force_class!(SurfaceAreaForce(modulus, target));
 force_class!(EnclosedVolumeForce(modulus, target));
 force_class!(BendingForce(rigidity, spontaneousCurvature) scheme);
 force_class!(TriangleHeightForce(minHeight, epsilon));
-force_class!(DihedralForce(stiffness) form);
+force_class!(DihedralForce(stiffness) form, restAngle);
 force_class!(TriangleAreaForce(modulus, target));
 force_class!(PlaquetteAreaForce(stiffness, target));
 force_class!(TriangleAreaRepulsionForce(minArea, epsilon));

@@ -41,7 +41,7 @@ pub fn comparison() -> String {
     // Pointers of another machine may have another size.
     let width = std::env::var("CARGO_CFG_TARGET_POINTER_WIDTH").unwrap_or_default();
     if width == usize::BITS.to_string() {
-        text += &structure!(ParameterInfo, "HelfrichParameterInfo", name energy length default_value per);
+        text += &structure!(ParameterInfo, "HelfrichParameterInfo", name energy length default_value per last);
         text += &structure!(Contribution, "HelfrichContribution", energy by_parameter);
         text += &structure!(
             ParticleArrays,

@@ -45,14 +45,17 @@ def accept_units(force: type) -> None:
     has_particles = hasattr(force, "_setParticleBuffer")
     if has_particles:
         parameters.append(inspect.Parameter("particles", keyword))
-    parameters += [inspect.Parameter(s.name, keyword, default=s.default) for s in known]
+    scalars = [inspect.Parameter(s.name, keyword, default=s.default) for s in known]
+    last = [parameter for s, parameter in zip(known, scalars, strict=True) if s.last]
+    parameters += [parameter for parameter in scalars if parameter not in last]
     if form is not None:
         parameters.append(inspect.Parameter(form, keyword, default=0))
+    parameters += last
     parameters.append(inspect.Parameter("offset", inspect.Parameter.KEYWORD_ONLY, default=0))
 
     def start(self, swig_init, arguments):
         corners = triangles(name, arguments["triangles"], arguments["offset"])
-        values, elements = [], {}
+        values, elements = {}, {}
         for s in known:
             given = arguments[s.name]
             where = f"{name}: {s.name}"
@@ -60,14 +63,16 @@ def accept_units(force: type) -> None:
                 elements[s] = element_values(name, s, given)
                 # Any scalar is allowed to be 1, until the values themselves are accepted.
                 given = 1.0
-            values.append(scalar(name, s, given))
+            values[s] = scalar(name, s, given)
+        plain = [value for s, value in values.items() if not s.last]
         if form is not None:
-            values.append(form_number(name, form, arguments[form]))
+            plain.append(form_number(name, form, arguments[form]))
+        plain += [value for s, value in values.items() if s.last]
         if has_particles:
-            swig_init(self, [], [], *values)
+            swig_init(self, [], [], *plain)
             self.setParticles(arguments["particles"])
         else:
-            swig_init(self, [], *values)
+            swig_init(self, [], *plain)
         for s, list_ in elements.items():
             if not list_:
                 raise ValueError(f"{name}: {s.name} is an empty list; give one value or many")

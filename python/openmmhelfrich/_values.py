@@ -41,6 +41,8 @@ class Scalar(NamedTuple):
     default: object
     #: The setter for values of single elements, None if there is only the scalar.
     element_setter: str | None
+    #: Whether it stands behind the variant in the constructor.
+    last: bool = False
 
 
 class _ParameterInfo(ctypes.Structure):
@@ -50,11 +52,12 @@ class _ParameterInfo(ctypes.Structure):
         ("length", ctypes.c_int),
         ("default", ctypes.c_double),
         ("per", ctypes.c_int),
+        ("last", ctypes.c_int),
     ]
 
 
-#: How the setters for values of single vertices and triangles are called, by the core's code.
-_ELEMENT_SETTERS = {0: None, 1: "setVertex{}", 2: "setTriangle{}s", 3: "setParticle{}"}
+#: How the setters for values of single elements are called, by the core's code.
+_ELEMENT_SETTERS = {0: None, 1: "setVertex{}", 2: "setTriangle{}s", 3: "setParticle{}", 4: "setEdge{}"}
 
 
 def scalars_of(force: str) -> list[Scalar]:
@@ -74,7 +77,7 @@ def scalars_of(force: str) -> list[Scalar]:
         name = info.name.decode()
         setter = _ELEMENT_SETTERS[info.per]
         setter = setter and setter.format(capitalised(name))
-        found.append(Scalar(name, dimension, default, setter))
+        found.append(Scalar(name, dimension, default, setter, bool(info.last)))
     return found
 
 

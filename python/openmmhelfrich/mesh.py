@@ -228,6 +228,17 @@ class Mesh(Generators, Measures, Transformations):
         return edges
 
     @functools.cached_property
+    def dihedral_angles(self) -> np.ndarray:
+        """The angle φ between the normals of the two triangles of every edge, radians.
+
+        0 if flat, positive if convex, in (−π, π]; 0 at borders. Shape (num_edges,), in the order
+        of `edges`, float64, read-only: what `DihedralForce` takes as angles at rest.
+        """
+        angles = geometry.dihedral_angles(self.corner_positions, self._triangles)
+        angles.flags.writeable = False
+        return angles
+
+    @functools.cached_property
     def degrees(self) -> np.ndarray:
         """The number of edges at every vertex, shape (num_vertices,), int64, read-only."""
         degrees = np.bincount(self.edges.ravel(), minlength=self.num_vertices)

@@ -1,9 +1,18 @@
-// Dihedral angles φ: K f(φ), f by the form; c = 1 − cos φ.
+// Dihedral angles φ: K f(x), f by the form, x = φ − φ₀ in (−π, π] and c = 1 − cos x.
 
 fn dihedral_edge(term: u32, element: u32, edge: EdgeGeometry, slope: ptr<function, real>) -> Contribution {
+    if edge_corners[element].y == NO_CORNER {
+        // A border has no angle.
+        return nothing();
+    }
     let stiffness = value(term, 0u, element);
-    let angle = edge.bend * root(edge.length_squared);
-    // 1 − cos φ without cancellation.
+    var angle = edge.bend * root(edge.length_squared) - value(term, 1u, element);
+    if angle > real(PI) {
+        angle -= real(2.0 * PI);
+    } else if angle <= real(-PI) {
+        angle += real(2.0 * PI);
+    }
+    // 1 − cos x without cancellation.
     let half_sine = sine(real(0.5) * angle);
     let c = real(2.0) * half_sine * half_sine;
     let sine = real(2.0) * half_sine * cosine(real(0.5) * angle);
@@ -34,5 +43,7 @@ fn dihedral_edge(term: u32, element: u32, edge: EdgeGeometry, slope: ptr<functio
         default: {}
     }
     *slope += stiffness * by_angle;
-    return Contribution(stiffness * f, vec4r(f, real(0.0), real(0.0), real(0.0)));
+    let by_stiffness = f * is_scalar(term, 0u);
+    let by_rest = -stiffness * by_angle * is_scalar(term, 1u);
+    return Contribution(stiffness * f, vec4r(by_stiffness, by_rest, real(0.0), real(0.0)));
 }

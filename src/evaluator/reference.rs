@@ -32,6 +32,7 @@ pub struct ReferenceEvaluator {
     parallel: bool,
     triangles: Vec<TriangleGeometry>,
     edges: Vec<EdgeGeometry>,
+    edge_names: Vec<u32>,
     vertices: Vec<VertexGeometry>,
     /// Empty until a term needs them, as are their partials.
     vectors: Vec<VertexVectors>,
@@ -78,6 +79,7 @@ impl ReferenceEvaluator {
             parallel: t >= PARALLEL_TRIANGLES,
             triangles: vec![geometry; t],
             edges: vec![EdgeGeometry::default(); topology.edges.len()],
+            edge_names: topology.edge_names(),
             vertices: vec![VertexGeometry::default(); v],
             vectors: Vec::new(),
             triangle_partials: vec![TrianglePartials::default(); t],

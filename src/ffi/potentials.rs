@@ -28,9 +28,11 @@ pub unsafe extern "C" fn Helfrich_Potential_parameter(
             Some(Element::Vertex) => 1,
             Some(Element::Triangle) => 2,
             Some(Element::Particle) => 3,
+            Some(Element::Edge) => 4,
         };
         let name = parameter.name.as_ptr();
-        unsafe { info.write(ParameterInfo { name, energy, length, default_value, per }) };
+        let last = parameter.last.into();
+        unsafe { info.write(ParameterInfo { name, energy, length, default_value, per, last }) };
         Ok(())
     })
 }

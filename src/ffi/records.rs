@@ -13,8 +13,11 @@ pub struct ParameterInfo {
     pub(super) energy: c_int,
     pub(super) length: c_int,
     pub(super) default_value: f64,
-    /// 0: only as a scalar; 1: also for each vertex; 2: also for each triangle; 3: also for each particle.
+    /// 0: only as a scalar; 1: also for each vertex; 2: also for each triangle; 3: also for each particle; 4:
+    /// also for each edge.
     pub(super) per: c_int,
+    /// Whether it stands behind the variant in constructors.
+    pub(super) last: c_int,
 }
 
 /// One term of an evaluation, as C++ hands it over.

@@ -3,9 +3,30 @@
 use super::Membrane;
 use crate::contact::Contacts;
 use crate::error::{Error, Result};
-use crate::potentials::{Element, Term};
+use crate::potentials::{Element, Parameter, Term};
+
+/// Values of single edges, where edges come and go.
+fn of_edges(term: &Term, parameter: &Parameter) -> Error {
+    let (force, name) = (term.potential.name(), parameter.name.to_string_lossy());
+    Error::Contract(format!(
+        "{force}: {name} has a value for each edge, and flips make edges that have none; give one value for all edges, or leave the triangles as they are"
+    ))
+}
 
 impl Membrane {
+    /// Refuse terms that flips would leave without values.
+    ///
+    /// # Errors
+    /// Names the parameter.
+    pub(super) fn check_for_flips(&self, term: &Term) -> Result<()> {
+        for (parameter, field) in term.potential.parameters().iter().zip(term.fields) {
+            if parameter.per == Some(Element::Edge) && !field.is_empty() {
+                return Err(of_edges(term, parameter));
+            }
+        }
+        Ok(())
+    }
+
     /// Refuse particles of a term that do not exist, come twice or are vertices.
     ///
     /// # Errors
@@ -33,6 +54,10 @@ impl Membrane {
                 _ if field.is_empty() => continue,
                 Some(Element::Vertex) => (self.mesh().num_vertices(), "vertices"),
                 Some(Element::Triangle) => (self.mesh().triangles().len(), "triangles"),
+                Some(Element::Edge) if self.mesh().fingerprint() != self.initial_fingerprint => {
+                    return Err(of_edges(term, parameter));
+                }
+                Some(Element::Edge) => (self.mesh().num_edges(), "edges"),
                 Some(Element::Particle) => (term.particles.len(), "particles"),
                 None => (0, "elements that can have their own"),
             };

@@ -43,6 +43,7 @@ impl Membrane {
         }
         for term in terms {
             self.check(term)?;
+            self.check_for_flips(term)?;
         }
         self.remembered.clear();
         self.before.clear();

@@ -128,6 +128,24 @@ impl Topology {
         self.edges_at(vertex).len() > self.ring(vertex).len()
     }
 
+    /// For each edge its place in lexicographic order of the particles at the ends, the lower one first; [`NONE`] for those
+    /// on borders.
+    pub fn edge_names(&self) -> Vec<u32> {
+        let ends = |edge: &u32| {
+            let [a, b] = self.edges[*edge as usize].vertices;
+            [a.min(b), a.max(b)]
+        };
+        let mut sorted: Vec<u32> = (0..self.edges.len() as u32).collect();
+        sorted.sort_unstable_by_key(ends);
+        let mut names = vec![NONE; self.edges.len()];
+        for (name, &edge) in sorted.iter().enumerate() {
+            if self.edges[edge as usize].triangles[1] != NONE {
+                names[edge as usize] = name as u32;
+            }
+        }
+        names
+    }
+
     /// Each pair are the two half-edges of an edge, by triangle and side as a corner index, the lower one first;
     /// [`NONE`] is the second at a border.
     fn from_pairs(particles: Vec<u32>, triangles: Vec<[u32; 3]>, pairs: &[[u32; 2]]) -> Self {

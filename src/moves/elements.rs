@@ -97,8 +97,10 @@ impl LocalEnergy {
         geometry: &[EdgeGeometry],
         energies: &mut [f64],
     ) {
+        // Values of single edges do not follow flips, so no edge is asked for its own.
+        let names = &[0; HINGES][..geometry.len()];
         for term in at(terms, &self.acting.edges) {
-            term.potential.edges(term, Edges::Energies { geometry, energies });
+            term.potential.edges(term, Edges::Energies { names, geometry, energies });
         }
     }
 

@@ -8,7 +8,7 @@
 use super::elements::{Acting, angles_on_borders, at};
 use crate::error::Result;
 use crate::evaluator::{Survey, SurveyedTriangle};
-use crate::mesh::Cell;
+use crate::mesh::{Cell, NONE};
 use crate::mesh::borders::{BorderTotals, Borders};
 use crate::mesh::geometry::{Totals, TriangleGeometry, Vec3, VertexGeometry};
 use crate::mesh::triangulation::{Quad, Triangulation, Turn};
@@ -85,7 +85,9 @@ impl LocalEnergy {
             .map(|half| {
                 let geometry = self.edge_of(mesh, half);
                 let mut energy = [0.0];
-                self.add_edges(terms, &[geometry], &mut energy);
+                if mesh.twin(half) != NONE {
+                    self.add_edges(terms, &[geometry], &mut energy);
+                }
                 energy[0]
             })
             .sum();

@@ -116,10 +116,9 @@ pub trait TriangleFormula {
 
 /// A formula for the energy of an edge with a dihedral angle φ: the energy, and its derivatives by the scalars,
 /// and the derivative with respect to φ.
-/// All of them are to be 0 at φ = 0, the angle that rings of vertices are filled up with.
 pub trait EdgeFormula {
-    /// Apply it.
-    fn apply(&self, angle: f64) -> (Sums<f64>, f64);
+    /// Apply it; `edge` is the place of the edge among the values of edges, where these are asked for.
+    fn apply(&self, edge: u32, angle: f64) -> (Sums<f64>, f64);
 }
 
 /// A formula for the energy of a vertex; adds to the slopes.

@@ -27,6 +27,7 @@ use crate::real::Real;
 pub use codes::{Attraction, Contribution, MAX_PARAMETERS, Needs};
 pub use elements::*;
 pub use runs::*;
+use std::f64::consts::PI;
 use std::ffi::CStr;
 pub use surface_repulsion::ONLY_BETWEEN_PARTS;
 
@@ -53,6 +54,8 @@ pub enum Element {
     Vertex,
     /// A value for each triangle.
     Triangle,
+    /// A value for each edge, in lexicographic order of the particles at its ends, the lower one first.
+    Edge,
     /// A value for each of the term's particles that are no vertices.
     Particle,
 }
@@ -66,6 +69,8 @@ pub enum Domain {
     NonNegative,
     /// Finite.
     Real,
+    /// From −π to π.
+    Angle,
 }
 
 /// A scalar parameter of a potential. Its unit is (kJ/mol)^`energy` · nm^`length`.
@@ -83,12 +88,14 @@ pub struct Parameter {
     pub default: Option<f64>,
     /// For what it can be given one by one.
     pub per: Option<Element>,
+    /// Whether it stands behind the variant in constructors.
+    pub last: bool,
 }
 
 impl Parameter {
     /// A scalar that the user must give, with its powers of kJ/mol and nm.
     const fn new(name: &'static CStr, energy: i8, length: i8, domain: Domain) -> Self {
-        Self { name, energy, length, domain, default: None, per: None }
+        Self { name, energy, length, domain, default: None, per: None, last: false }
     }
 
     /// The same with a default.
@@ -101,12 +108,18 @@ impl Parameter {
         Self { per: Some(element), ..self }
     }
 
+    /// The same, but behind the variant in constructors, as what has come later must be.
+    const fn last(self) -> Self {
+        Self { last: true, ..self }
+    }
+
     /// Refuse a value outside the domain, NaN and infinity in any case.
     pub fn check(&self, value: f64) -> Result<()> {
         let (allowed, domain) = match self.domain {
             Domain::Positive => (value > 0.0, "a finite number above zero"),
             Domain::NonNegative => (value >= 0.0, "a finite number, zero or above"),
             Domain::Real => (true, "a finite number"),
+            Domain::Angle => (value.abs() <= PI, "an angle from -pi to pi"),
         };
         if allowed && value.is_finite() {
             return Ok(());
@@ -313,12 +326,14 @@ mod tests {
     #[test]
     fn domains_are_kept() {
         let parameter = |domain| Parameter::new(c"x", 0, 1, domain);
-        for domain in [Domain::Positive, Domain::NonNegative, Domain::Real] {
+        assert!(parameter(Domain::Angle).check(3.2).is_err());
+        for domain in [Domain::Positive, Domain::NonNegative, Domain::Real, Domain::Angle] {
             assert!(parameter(domain).check(f64::NAN).is_err());
             assert!(parameter(domain).check(f64::INFINITY).is_err());
             assert!(parameter(domain).check(1.0).is_ok());
             assert_eq!(parameter(domain).check(0.0).is_ok(), domain != Domain::Positive);
-            assert_eq!(parameter(domain).check(-1.0).is_ok(), domain == Domain::Real);
+            let negative = [Domain::Real, Domain::Angle].contains(&domain);
+            assert_eq!(parameter(domain).check(-1.0).is_ok(), negative);
         }
     }
 

@@ -5,6 +5,7 @@ use super::{
     Vertex, VertexFormula,
 };
 use crate::evaluator::simd::{BLOCK, EdgeBlock, Level, TriangleTile, VertexTile};
+use crate::mesh::NONE;
 use crate::mesh::geometry::{
     EdgeGeometry, EdgePartials, TriangleGeometry, TrianglePartials, VertexGeometry, VertexPartials,
 };
@@ -48,6 +49,8 @@ pub enum Triangles<'a> {
 pub enum Edges<'a> {
     /// Only energies, which are added.
     Energies {
+        /// Their places among the values of edges, as below.
+        names: &'a [u32],
         /// The edges.
         geometry: &'a [EdgeGeometry],
         /// One for each, kJ/mol.
@@ -55,6 +58,8 @@ pub enum Edges<'a> {
     },
     /// Each edge once.
     Plain {
+        /// Their places among the values of edges; [`NONE`] at borders.
+        names: &'a [u32],
         /// The edges.
         geometry: &'a [EdgeGeometry],
         /// To be added to.
@@ -175,18 +180,46 @@ impl Triangles<'_> {
 }
 
 impl Edges<'_> {
-    /// Apply a formula to all; returns the sum.
+    /// Apply a formula that asks for no edge by name to all; returns the sum. Its energy and derivatives are to be 0 at φ =
+    /// 0, the angle of borders and the one that rings of vertices are filled up with.
     pub fn apply(self, formula: &impl EdgeFormula) -> Contribution {
+        self.apply_where(formula, |_| Some(0), |_, _| Some(0))
+    }
+
+    /// Apply a formula to all edges with a dihedral angle, each by its name; returns the sum.
+    pub fn apply_to_each(self, term: &Term, formula: &impl EdgeFormula) -> Contribution {
+        let (names, in_lanes) = match &self {
+            Self::Energies { names, .. } => (*names, None),
+            Self::Plain { names, .. } => (*names, None),
+            Self::Lanes(block) => (&[] as &[u32], Some(block.names())),
+        };
+        let named = |name: u32| (name != NONE).then_some(name);
+        let of_lane = |step: usize, lane: usize| named(in_lanes?[step][lane]);
+        self.apply_where(formula, |index| named(names[index]), of_lane).without_hidden(term)
+    }
+
+    /// Apply a formula where edges have names.
+    #[inline(always)]
+    fn apply_where(
+        self,
+        formula: &impl EdgeFormula,
+        name: impl Fn(usize) -> Option<u32>,
+        name_in_lanes: impl Fn(usize, usize) -> Option<u32>,
+    ) -> Contribution {
         let mut sum = Contribution::default();
         match self {
-            Self::Energies { geometry, energies } => {
-                for (edge, energy) in geometry.iter().zip(energies) {
-                    *energy += formula.apply(edge.bend * edge.length_squared.sqrt()).0.energy;
+            Self::Energies { geometry, energies, .. } => {
+                for (index, (edge, energy)) in geometry.iter().zip(energies).enumerate() {
+                    let Some(name) = name(index) else { continue };
+                    let angle = edge.bend * edge.length_squared.sqrt();
+                    *energy += formula.apply(name, angle).0.energy;
                 }
             }
-            Self::Plain { geometry, partials } => {
-                for (edge, partial) in geometry.iter().zip(partials) {
-                    let (sums, slope) = formula.apply(edge.bend * edge.length_squared.sqrt());
+            Self::Plain { geometry, partials, .. } => {
+                for (index, (edge, partial)) in geometry.iter().zip(partials).enumerate() {
+                    let Some(name) = name(index) else { continue };
+                    let angle = edge.bend * edge.length_squared.sqrt();
+                    let (sums, slope) = formula.apply(name, angle);
                     sum.add(sums);
                     partial.angle += slope;
                 }
@@ -196,10 +229,12 @@ impl Edges<'_> {
                     block.bends.as_flattened().iter().zip(block.lengths_squared.as_flattened());
                 let moments = block.moments.as_flattened_mut();
                 for (index, ((bend, length_squared), moment)) in known.zip(moments).enumerate() {
+                    let (step, lane) = (index / BLOCK, index % BLOCK);
+                    let Some(name) = name_in_lanes(step, lane) else { continue };
                     let length = length_squared.sqrt();
-                    let (sums, slope) = formula.apply(bend * length);
+                    let (sums, slope) = formula.apply(name, bend * length);
                     *moment += slope / length;
-                    if index % BLOCK < block.lanes {
+                    if lane < block.lanes {
                         // The edge's other end adds the other half.
                         sum.add(Sums {
                             energy: 0.5 * sums.energy,

@@ -7,6 +7,7 @@ compute. A new potential is one new row; `test_forces.py` runs it over all membr
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cache
@@ -318,21 +319,44 @@ def _plaquette_area() -> list[Case]:
 
 
 def _dihedrals() -> list[Case]:
+    def flat(m: Membrane) -> dict[str, Any]:
+        return {"stiffness": 40.0}
+
+    def bent(m: Membrane) -> dict[str, Any]:
+        return {"stiffness": 40.0, "restAngle": 0.4}
+
+    def each(m: Membrane) -> dict[str, Any]:
+        rng = np.random.default_rng(12)
+        count = len(numpy_energies.has_angle(m.triangles))
+        return {"stiffness": rng.uniform(20, 60, count), "restAngle": rng.uniform(-0.5, 0.9, count)}
+
+    def strings(m: Membrane, a: Arguments, style: str, form: str) -> Result:
+        hinges = numpy_energies.has_angle(m.triangles)
+        stiffness, rest = (
+            value[hinges] if np.ndim(value) else value
+            for value in (a["stiffness"], a.get("restAngle", 0.0))
+        )
+        forces = string_forces.dihedral(m.triangles, stiffness, form, style, rest)
+        return oracle.evaluate(forces, m.positions)
+
+    forms = list(string_forces.DIHEDRAL_FORMS)
+    rows = [(form, "", flat) for form in forms] + [(form, ", at rest bent", bent) for form in forms]
+    rows += [(form, ", each its own", each) for form in ("Cosine", "SmoothExp46")]
+    invalid = _never_below("stiffness", zero=True)
+    invalid += tuple(Invalid("restAngle", value, "-pi to pi") for value in (3.2, -4.0, np.nan))
     return [
         Case(
-            name=f"dihedrals, {form}",
+            name=f"dihedrals, {form}{word}",
             force="DihedralForce",
             variant=("form", form),
-            arguments=lambda m: {"stiffness": 40.0},
+            arguments=arguments,
             energy=lambda m, a, form=form: numpy_energies.dihedral(
-                m.positions, m.triangles, a["stiffness"], form
+                m.positions, m.triangles, a["stiffness"], form, a.get("restAngle", 0.0)
             ),
-            strings=lambda m, a, style, form=form: oracle.evaluate(
-                string_forces.dihedral(m.triangles, a["stiffness"], form, style), m.positions
-            ),
-            invalid=_never_below("stiffness", zero=True) if form == "Quartic" else (),
+            strings=functools.partial(strings, form=form),
+            invalid=invalid if (form, word) == ("Quartic", "") else (),
         )
-        for form in string_forces.DIHEDRAL_FORMS
+        for form, word, arguments in rows
     ]
 
 

@@ -246,7 +246,19 @@ DIHEDRAL_FORMS = {
 }
 
 
-def dihedral(vertices, triangles, stiffness: float, form: str = "Quartic") -> float:
+def dihedral(vertices, triangles, stiffness, form: str = "Quartic", rest=0.0) -> float:
+    """Stiffness and angle at rest are one for all, or one for each edge in lexicographic order."""
     g = Geometry(vertices, triangles)
-    # Every edge appears as two half-edges of the same angle.
-    return float(stiffness * np.sum(DIHEDRAL_FORMS[form](g.angles)) / 2)
+    tail, head, _, _ = g.half_edges
+    once = (tail < head) | g.border
+    order = np.lexsort((np.maximum(tail, head)[once], np.minimum(tail, head)[once]))
+    angles = g.angles[once][order] - rest
+    energies = stiffness * DIHEDRAL_FORMS[form](angles - 2 * np.pi * np.round(angles / (2 * np.pi)))
+    return float(np.sum(energies[~g.border[once][order]]))
+
+
+def has_angle(triangles) -> np.ndarray:
+    """Which of the edges in lexicographic order are on no border."""
+    t = np.asarray(triangles, dtype=int)
+    ends = np.sort(np.stack([t, t[:, [1, 2, 0]]], axis=-1).reshape(-1, 2), axis=1)
+    return np.unique(ends, axis=0, return_counts=True)[1] == 2

@@ -359,7 +359,7 @@ def triangle_area_repulsion(
 
 # --- dihedrals ---------------------------------------------------------------------------------
 
-# u stands for 1 − cos φ, f for φ, K for the stiffness.
+# u stands for 1 − cos f, f for φ − φ₀ in (−π, π], K for the stiffness.
 DIHEDRAL_FORMS = {
     "Quartic": "K*u^2",
     "Cosine": "K*u",
@@ -369,14 +369,24 @@ DIHEDRAL_FORMS = {
 }
 
 
-def dihedral(triangles, stiffness: float, form: str, style: str) -> list[mm.Force]:
-    """A function of each edge's φ; the forms are in DIHEDRAL_FORMS."""
+def dihedral(
+    triangles, stiffness: Values, form: str, style: str, rest: Values = 0.0
+) -> list[mm.Force]:
+    """A function of each edge's φ − φ₀; the forms are in DIHEDRAL_FORMS.
+
+    Stiffness and angle at rest are one for all, or one for each edge that is no border.
+    """
     stencil = _stencil(style)
-    angle = stencil.define("f", stencil.turning(1, 2, 3, 4))
-    # Half-angle, because 1 − cos φ itself cancels where the surface is nearly flat.
+    turning = stencil.turning(1, 2, 3, 4)
+    bonds = edges_with_wings(triangles)
+    values = [np.broadcast_to(np.asarray(v, float), (len(bonds),)) for v in (stiffness, rest)]
+    turned = stencil.define("turned", f"{turning}-rest")
+    around = f"{turned}-{2 * np.pi}*(step({turned}-{PI})-step(-{PI}-{turned}))"
+    angle = stencil.define("f", around if np.any(rest) else turned)
+    # Half-angle, because 1 − cos x itself cancels where the surface is nearly at rest.
     stencil.define("u", f"2*sin(0.5*{angle})^2")
-    stencil.define("K", _number(stiffness))
-    return [_compound(stencil.expression(DIHEDRAL_FORMS[form]), edges_with_wings(triangles))]
+    expression = stencil.expression(DIHEDRAL_FORMS[form])
+    return [_compound(expression, bonds, ["K", "rest"], np.stack(values, axis=1))]
 
 
 # --- bending -----------------------------------------------------------------------------------

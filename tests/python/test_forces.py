@@ -334,6 +334,8 @@ VALUES = [
     ),
     ("TriangleAreaForce", "target", "setTriangleTargets", [np.nan, np.inf, -1.0, 0.0]),
     ("ParticleSurfaceForce", "radius", "setParticleRadius", [np.nan, np.inf, -1.0]),
+    ("DihedralForce", "stiffness", "setEdgeStiffness", [np.nan, np.inf, -1.0]),
+    ("DihedralForce", "restAngle", "setEdgeRestAngle", [np.nan, 3.2, -4.0]),
 ]
 
 
@@ -341,6 +343,8 @@ def _num_elements(case: Case, m: Membrane) -> int:
     """Of how many things each has a value of its own."""
     if case.others is not None:
         return len(case.others(m))
+    if case.force == "DihedralForce":
+        return 3 * len(m.triangles) // 2
     return len(m.members) if case.force == "BendingForce" else len(m.triangles)
 
 

@@ -147,6 +147,26 @@ fn every_instruction_set_agrees_with_the_reference() {
     }
 }
 
+#[test]
+fn values_of_edges_find_their_edges() {
+    let meshes = open_meshes(13).into_iter().chain([spheroid(9, 11, &mut random(14))]);
+    for mesh in meshes {
+        let edges = Topology::new(&mesh.1, mesh.0.len() / 3).unwrap().edges.len();
+        let mut noise = random(15);
+        let stiffness: Vec<f64> = (0..edges).map(|_| 2.0 + noise()).collect();
+        let rest: Vec<f64> = (0..edges).map(|_| 0.8 * noise()).collect();
+        let term = |own_stiffness: bool, own_rest: bool| {
+            let mut term = Term::new("DihedralForce", 2, &[1.3, 0.2]).unwrap();
+            term.wants_derivatives = true;
+            term.fields[0] = if own_stiffness { &stiffness } else { &[] };
+            term.fields[1] = if own_rest { &rest } else { &[] };
+            term
+        };
+        let terms = [term(true, true), term(false, true), term(true, false)];
+        instruction_sets_agree(&mesh, &terms, &terms, false);
+    }
+}
+
 /// With the reference, for each term, all together, and all pairs.
 fn instruction_sets_agree(mesh: &Mesh, with: &[Term], without: &[Term], pairs: bool) {
     let topology = Arc::new(Topology::new(&mesh.1, mesh.0.len() / 3).unwrap());

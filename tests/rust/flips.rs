@@ -519,7 +519,7 @@ fn small_terms() -> Vec<Term<'static>> {
         .map(|form| Term::new("BendingForce", form, &[1.0, 0.3]).unwrap())
         .collect();
     for (name, form, values) in [
-        ("DihedralForce", 0, &[1.5][..]),
+        ("DihedralForce", 0, &[1.5, 0.0][..]),
         ("SurfaceAreaForce", 0, &[0.5, 60.0]),
         ("EnclosedVolumeForce", 0, &[0.5, 25.0]),
         ("TriangleHeightForce", 0, &[3.0, 0.2]),

@@ -127,7 +127,8 @@ pub fn all_terms(wants_derivatives: bool) -> Vec<Term<'static>> {
         for spontaneous in [0.0, 0.13, -0.2] {
             add("BendingForce", form, &[2.0, spontaneous]);
         }
-        add("DihedralForce", form, &[1.5]);
+        add("DihedralForce", form, &[1.5, 0.0]);
+        add("DihedralForce", form, &[1.5, -0.4]);
     }
     add("SurfaceAreaForce", 0, &[3.0, 900.0]);
     add("EnclosedVolumeForce", 0, &[0.7, 3000.0]);

@@ -123,6 +123,8 @@ extern int Helfrich_TriangleHeightForce_setEpsilon(OpenMM_Force* force, double e
 extern OpenMM_Force* Helfrich_DihedralForce_create(const int* triangles, int numTriangles, double stiffness, int form);
 extern double Helfrich_DihedralForce_getStiffness(OpenMM_Force* force);
 extern int Helfrich_DihedralForce_setStiffness(OpenMM_Force* force, double stiffness);
+extern double Helfrich_DihedralForce_getRestAngle(OpenMM_Force* force);
+extern int Helfrich_DihedralForce_setRestAngle(OpenMM_Force* force, double restAngle);
 
 extern OpenMM_Force* Helfrich_TriangleAreaForce_create(const int* triangles, int numTriangles, double modulus,
                                                        double target);

@@ -81,7 +81,9 @@ void* helfrich_shim_createForce(const char* type, const int* triangles, int numT
     OpenMM::Force* created = nullptr;
     guarded([&] {
         std::unique_ptr<MembraneForce> force(makeForce(type));
-        if (numValues != force->getNumParameters())
+        HelfrichParameterInfo next;
+        bool lacksOne = Helfrich_Potential_parameter(type, numValues, &next) == 0 && std::isnan(next.defaultValue);
+        if (lacksOne || numValues > force->getNumParameters())
             throw OpenMMException(string(type) + ": needs " + std::to_string(force->getNumParameters()) + " scalars");
         for (int i = 0; i < numValues; i++)
             force->setParameterValue(force->getParameterName(i), values[i]);

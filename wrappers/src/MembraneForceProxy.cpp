@@ -4,6 +4,7 @@
 #include "XmlElements.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <set>
 #include <vector>
@@ -157,8 +158,16 @@ void MembraneForceProxy::readOtherParticles(const SerializationNode& node, Membr
 void MembraneForceProxy::readParameters(const SerializationNode& parameters, MembraneForce& force) const {
     allow(forceName, parameters, {}, {"Parameter"});
     set<string> missing;
-    for (int i = 0; i < force.getNumParameters(); i++)
-        missing.insert(force.getParameterName(i));
+    for (int i = 0; i < force.getNumParameters(); i++) {
+        // What has a default may have come later than the file.
+        HelfrichParameterInfo info;
+        check(Helfrich_Potential_parameter(forceName.c_str(), i, &info));
+        if (std::isnan(info.defaultValue))
+            missing.insert(info.name);
+        else
+            force.setParameterValue(info.name, info.defaultValue);
+    }
+    set<string> met;
     for (const SerializationNode& element : parameters.getChildren()) {
         allow(forceName, element, {"name", "value", "contextParameter"}, {"Element"});
         string parameter = text(forceName, element, "name");
@@ -173,7 +182,8 @@ void MembraneForceProxy::readParameters(const SerializationNode& parameters, Mem
             force.setContextParameter(parameter, element.getStringProperty("contextParameter", ""));
             force.setElementValues(parameter, values);
         });
-        if (missing.erase(parameter) == 0)
+        missing.erase(parameter);
+        if (!met.insert(parameter).second)
             throw OpenMMException(about(forceName, parameters) + "has \"" + parameter + "\" twice");
     }
     if (!missing.empty())

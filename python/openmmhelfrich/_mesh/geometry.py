@@ -18,6 +18,7 @@ __all__ = [
     "border_loops",
     "check_closed",
     "component_count",
+    "dihedral_angles",
     "edge_graph",
     "edges_of",
     "reduced_volume",
@@ -51,6 +52,25 @@ def edges_of(triangles: np.ndarray) -> np.ndarray:
     sides = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     sides.sort(axis=1)
     return np.unique(sides, axis=0)
+
+
+def dihedral_angles(corners: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """φ of each edge in the order of `edges_of`; 0 at borders, which have none."""
+    halves = np.stack([triangles, triangles[:, [1, 2, 0]]], axis=-1).reshape(-1, 2)
+    order = np.lexsort((halves.max(axis=1), halves.min(axis=1)))
+    keys = np.sort(halves[order], axis=1)
+    first = np.flatnonzero(np.r_[True, (keys[1:] != keys[:-1]).any(axis=1)])
+    inner = np.diff(np.r_[first, len(keys)]) == 2
+    left, right = order[first[inner]], order[first[inner] + 1]
+    sides = np.roll(corners, -1, axis=1) - corners
+    normals = np.cross(sides[:, 0], -sides[:, 2])
+    along = sides.reshape(-1, 3)[left]
+    along /= np.linalg.norm(along, axis=1)[:, None]
+    one, other = normals[left // 3], normals[right // 3]
+    sine = np.einsum("ij,ij->i", np.cross(one, other), along)
+    angles = np.zeros(len(first))
+    angles[inner] = np.arctan2(sine, np.einsum("ij,ij->i", one, other))
+    return angles
 
 
 def border_loops(triangles: np.ndarray) -> list[np.ndarray]:

@@ -6,6 +6,7 @@ forces over. Formulas are in the documentation of the force classes.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
@@ -22,7 +23,6 @@ from ..forces import (
     TriangleHeightForce,
 )
 from ..mesh import Mesh
-from .springs import bent_dihedrals
 
 if TYPE_CHECKING:
     from .config import Config, Membrane
@@ -166,6 +166,12 @@ def _dihedrals(cfg: Config, membrane: Membrane) -> Maker | None:
     if form is None or not stiffness:
         return None
     angle = settings["SpontaneousTriangleBendingAngleInDegrees"]
-    if angle == 180:
-        return lambda: DihedralForce(membrane.mesh, stiffness, form, offset=membrane.offset)
-    return lambda: bent_dihedrals(membrane, stiffness, form, angle)
+
+    def own() -> np.ndarray:
+        return membrane.mesh.dihedral_angles
+
+    rest = {180: lambda: 0.0, "Au": own, "Av": lambda: own().mean()}.get(angle)
+    if rest is None:
+        rest = functools.partial(float, np.pi - np.deg2rad(angle))
+    offset = membrane.offset
+    return lambda: DihedralForce(membrane.mesh, stiffness, form, rest(), offset=offset)

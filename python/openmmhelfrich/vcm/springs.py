@@ -1,4 +1,4 @@
-"""Bonds of all kinds: springs on edges, sticky bonds, the hold of a surface, bent dihedrals.
+"""Bonds of all kinds: springs on edges, sticky bonds, the hold of a surface.
 
 These are forces of OpenMM's own. Each maker is a function without arguments that makes a new one.
 """
@@ -12,13 +12,12 @@ import numpy as np
 import openmm
 from scipy.spatial import cKDTree
 
-from ..forces import DihedralForce
 from .keys import NotDone
 
 if TYPE_CHECKING:
     from .config import Config, Membrane
 
-__all__ = ["bent_dihedrals", "edge_lengths", "makers", "sticky_pairs"]
+__all__ = ["edge_lengths", "makers", "sticky_pairs"]
 
 Maker = Callable[[], openmm.Force]
 
@@ -154,67 +153,3 @@ def _lock_on(cfg: Config, membrane: Membrane) -> Maker | None:
         return force
 
     return make
-
-
-# Functions of c = 1 − cos(φ − φ0), as `DihedralForce` has them of 1 − cos φ.
-_BENT_FORMS = {
-    DihedralForce.Cosine: "c",
-    DihedralForce.Quartic: "c^2",
-    DihedralForce.Exp: "0.5*(exp(2*c)-1)",
-    DihedralForce.SmoothExp: "0.04*(exp(10*c)-1)",
-    # atan2 brings the difference of two angles to the range from −π to π.
-    DihedralForce.SmoothExp46: "0.5*(exp(2*c)-1-atan2(sin(d),cos(d))^2)",
-}
-
-
-def bent_dihedrals(membrane: Membrane, stiffness: float, form: int, angle) -> openmm.Force:
-    """Dihedrals whose energy is least at another angle than the flat one.
-
-    E = K Σ f(φ − φ0) with φ = π − (the angle between the triangles, measured inside) and f as in
-    `DihedralForce`.
-
-    Parameters
-    ----------
-    membrane : Membrane
-    stiffness : float
-        K, kJ/mol.
-    form : int
-        A form of `DihedralForce`.
-    angle : float or str
-        The inside angle, degrees; "Au" for each edge's own, "Av" for their mean.
-
-    Returns
-    -------
-    openmm.CustomTorsionForce
-        One torsion per edge; its parameter is θ0 = φ0 + π, the torsion at rest.
-    """
-    mesh = membrane.mesh
-    torsions = _edges_with_wings(mesh.triangles)
-    own = _turning(mesh.vertices, torsions)
-    bends = {"Au": own, "Av": np.full_like(own, own.mean())}.get(angle)
-    if bends is None:
-        bends = np.full_like(own, np.pi - np.deg2rad(angle))
-    force = openmm.CustomTorsionForce(
-        f"{float(stiffness)!r}*{_BENT_FORMS[form]};c=1-cos(d);d=theta-theta0"
-    )
-    force.addPerTorsionParameter("theta0")
-    for particles, bend in zip((torsions + membrane.offset).tolist(), bends.tolist(), strict=True):
-        force.addTorsion(*particles, [bend + np.pi])
-    return force
-
-
-def _edges_with_wings(triangles: np.ndarray) -> np.ndarray:
-    """Rows (c, a, b, d) for each edge ab: triangle abc on its left, triangle bad on its right."""
-    opposite = {}
-    for a, b, c in triangles.tolist():
-        opposite[a, b], opposite[b, c], opposite[c, a] = c, a, b
-    return np.array([(c, a, b, opposite[b, a]) for (a, b), c in sorted(opposite.items()) if a < b])
-
-
-def _turning(vertices: np.ndarray, torsions: np.ndarray) -> np.ndarray:
-    """φ of each edge: 0 if flat, positive if convex."""
-    c, a, b, d = (vertices[column] for column in torsions.T)
-    along = b - a
-    left, right = np.cross(along, c - a), np.cross(d - a, along)
-    sine = np.einsum("ij,ij->i", np.cross(left, right), along) / np.linalg.norm(along, axis=1)
-    return np.arctan2(sine, np.einsum("ij,ij->i", left, right))

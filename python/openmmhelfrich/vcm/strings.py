@@ -181,11 +181,23 @@ def _dihedral(ours, triangles: np.ndarray, style: str) -> list[mm.Force]:
     opposite = {}
     for a, b, c in triangles.tolist():
         opposite[a, b], opposite[b, c], opposite[c, a] = c, a, b
-    edges = [(c, a, b, opposite[b, a]) for (a, b), c in opposite.items() if a < b]
+    edges = [(c, a, b, opposite[b, a]) for (a, b), c in sorted(opposite.items()) if a < b]
     # The half angle, because 1 − cos φ itself cancels where the surface is nearly flat.
-    angle = f"; u=2*sin(0.5*phi)^2; phi={pi!r}-abs(dihedral(p1,p2,p3,p4))"
-    expression = _DIHEDRALS[ours.getForm()] + angle + _constants(K=ours.getStiffness())
-    return [_compound(expression, edges)]
+    expression = _DIHEDRALS[ours.getForm()] + "; u=2*sin(0.5*phi)^2"
+    values = {}
+    rest, stiffness = list(ours.getEdgeRestAngle()), list(ours.getEdgeStiffness())
+    if rest or ours.getRestAngle():
+        # The dihedral is ±π where the surface is flat, and turns round there.
+        expression += f"; phi=d-2*{pi!r}*floor(0.5+d/(2*{pi!r})); d=dihedral(p1,p2,p3,p4)+{pi!r}-rest"
+        values["rest"] = rest or [ours.getRestAngle()] * len(edges)
+    else:
+        expression += f"; phi={pi!r}-abs(dihedral(p1,p2,p3,p4))"
+    if stiffness:
+        values["K"] = stiffness
+    else:
+        expression += _constants(K=ours.getStiffness())
+    rows = np.array(list(values.values())).T if values else None
+    return [_compound(expression, edges, list(values), rows)]
 
 
 # --- bending -----------------------------------------------------------------------------------

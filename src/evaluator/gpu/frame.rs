@@ -7,7 +7,7 @@ use super::interface::{
 use super::lattice::Scale;
 use super::{Bytes, Precision, Reals, shaders};
 use crate::mesh::Topology;
-use crate::potentials::{Contribution, MAX_PARAMETERS, Needs, Potential, Term};
+use crate::potentials::{Contribution, Element, MAX_PARAMETERS, Needs, Potential, Term};
 use std::ops::Range;
 
 /// Workgroups for some elements.
@@ -45,7 +45,8 @@ pub struct Frame {
     /// How many numbers the results have.
     pub num_results: usize,
     sums: Vec<Sums>,
-    /// The values of single elements of all terms, end to end.
+    /// The values of single elements of all terms, end to end, as they were given and as shaders find them.
+    given: Vec<f64>,
     pub fields: Vec<f64>,
     /// Whether `fields` differ from those of the last evaluation.
     pub fields_changed: bool,
@@ -60,6 +61,7 @@ impl Frame {
             needs: Needs::empty(),
             num_results: 0,
             sums: Vec::new(),
+            given: Vec::new(),
             fields: Vec::new(),
             fields_changed: true,
             has_borders,
@@ -77,7 +79,7 @@ impl Frame {
         wishes: Wishes,
         longest: f64,
     ) -> bool {
-        self.update_fields(terms);
+        self.update_fields(topology, terms);
         self.needs = terms.iter().fold(Needs::empty(), |all, term| all | self.needs_of(term));
         self.bytes.clear();
         FrameRecord {
@@ -112,9 +114,9 @@ impl Frame {
     }
 
     /// Take over the values of single elements, if they are others than before.
-    fn update_fields(&mut self, terms: &[Term]) {
+    fn update_fields(&mut self, topology: &Topology, terms: &[Term]) {
         let fields = || terms.iter().flat_map(|term| term.fields);
-        let mut rest = self.fields.as_slice();
+        let mut rest = self.given.as_slice();
         let same = fields().all(|field| match rest.split_at_checked(field.len()) {
             Some((known, after)) if known == field => {
                 rest = after;
@@ -125,7 +127,29 @@ impl Frame {
         if !same || !rest.is_empty() {
             // It stays so until they have been uploaded, which may be later than now.
             self.fields_changed = true;
-            self.fields = fields().flatten().copied().collect();
+            self.given = fields().flatten().copied().collect();
+            self.fields.clone_from(&self.given);
+            self.arrange_edges(topology, terms);
+        }
+    }
+
+    /// Bring the values of edges into the order of the topology; those on borders have none.
+    fn arrange_edges(&mut self, topology: &Topology, terms: &[Term]) {
+        let mut names = Vec::new();
+        let mut start = 0;
+        for term in terms {
+            let per = term.potential.parameters().iter().map(|parameter| parameter.per);
+            for (per, field) in per.chain(std::iter::repeat(None)).zip(term.fields) {
+                if per == Some(Element::Edge) && !field.is_empty() {
+                    if names.is_empty() {
+                        names = topology.edge_names();
+                    }
+                    for (value, &name) in self.fields[start..].iter_mut().zip(&names) {
+                        *value = field.get(name as usize).copied().unwrap_or(0.0);
+                    }
+                }
+                start += field.len();
+            }
         }
     }
 

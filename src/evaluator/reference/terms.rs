@@ -46,10 +46,11 @@ impl ReferenceEvaluator {
                     });
             }
             if needs.contains(Needs::EDGES) {
-                let edges = &self.edges;
+                let (edges, names) = (&self.edges, &self.edge_names);
                 *contribution += fill(self.parallel, &mut self.edge_partials, |first, chunk| {
                     let geometry = &edges[first..][..chunk.len()];
-                    potential.edges(term, Edges::Plain { geometry, partials: chunk })
+                    let names = &names[first..][..chunk.len()];
+                    potential.edges(term, Edges::Plain { names, geometry, partials: chunk })
                 });
             }
             if needs.contains(Needs::VERTICES) {

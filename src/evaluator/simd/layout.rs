@@ -7,9 +7,9 @@
 
 use super::ghosts::Ghosts;
 use super::records::BLOCK;
-use crate::mesh::Triangulation;
 use crate::mesh::geometry::Vec3;
 use crate::mesh::triangulation::{next, previous};
+use crate::mesh::{NONE, Triangulation};
 use std::ops::Range;
 use std::sync::OnceLock;
 
@@ -59,6 +59,7 @@ pub struct Layout {
     /// Images of vertices, whose places are behind those of the last block of vertices.
     pub ghosts: Ghosts,
     opposite: OnceLock<Vec<[u32; BLOCK]>>,
+    edge_names: OnceLock<Vec<[u32; BLOCK]>>,
     /// The number of each vertex and triangle by its index in the mesh; kept for their memory.
     number: Vec<u32>,
     triangle_number: Vec<u32>,
@@ -85,6 +86,7 @@ impl Layout {
             frontier: Vec::new(),
             ghosts: Ghosts::default(),
             opposite: OnceLock::new(),
+            edge_names: OnceLock::new(),
             number: Vec::new(),
             triangle_number: Vec::new(),
         };
@@ -101,6 +103,7 @@ impl Layout {
         self.lay_corners(mesh);
         self.lay_ghosts(mesh);
         self.opposite = OnceLock::new();
+        self.edge_names = OnceLock::new();
     }
 
     /// Number of places of vertices, with those that fill the last block and the ghosts.
@@ -307,6 +310,55 @@ impl Layout {
                 place => index_of_place[(place & !3) as usize + ((place & 3) as usize + 1) % 3],
             };
             self.places.iter().map(|lanes| std::array::from_fn(|lane| of(&lanes[lane]))).collect()
+        })
+    }
+
+    /// For each step and lane, the place of the edge among all edges in lexicographic order of the particles at their
+    /// ends; [`NONE`] where the step has no dihedral angle: at borders, and where a ring has ended. Built when first asked
+    /// for.
+    pub fn edge_names(&self) -> &[[u32; BLOCK]] {
+        self.edge_names.get_or_init(|| {
+            let particle = |offset: u32| {
+                let place = offset as usize / 4;
+                let ghost = place.checked_sub(self.vertex_ids.len());
+                self.particles[ghost.map_or(place, |ghost| self.ghosts.vertex_and_shift(ghost).0)]
+            };
+            let ends = |a: u32, b: u32| {
+                let (a, b) = (particle(a), particle(b));
+                [a.min(b), a.max(b)]
+            };
+            let mut all: Vec<[u32; 2]> = self
+                .corners
+                .iter()
+                .flat_map(|block| {
+                    (0..BLOCK).flat_map(move |lane| {
+                        (0..3).map(move |k| ends(block[k][lane], block[(k + 1) % 3][lane]))
+                    })
+                })
+                .collect();
+            all.sort_unstable();
+            all.dedup();
+            let nothing = 4 * self.triangle_ids.len() as u32;
+            let mut names = vec![[NONE; BLOCK]; self.places.len()];
+            for vertex in 0..self.num_vertices {
+                let (block, lane) = (vertex / BLOCK, vertex % BLOCK);
+                let mut before = self.before[block][lane];
+                for step in self.steps[block] as usize..self.steps[block + 1] as usize {
+                    let place = self.places[step][lane];
+                    if place == nothing {
+                        break;
+                    }
+                    let triangle = place & !3;
+                    // At its first edge, the ring of a vertex on a border has its first triangle on both sides.
+                    if triangle != before {
+                        let edge = ends(4 * vertex as u32, self.neighbours[step][lane]);
+                        let name = all.binary_search(&edge).expect("a side of a triangle");
+                        names[step][lane] = name as u32;
+                    }
+                    before = triangle;
+                }
+            }
+            names
         })
     }
 }

@@ -246,7 +246,9 @@ impl Sweep<'_, '_> {
                 if term.potential.needs(term).contains(Needs::EDGES) {
                     let lanes = BLOCK.min(vertices.end - first);
                     let moments = &mut *moments;
-                    let block = EdgeBlock { bends, lengths_squared, moments, lanes };
+                    let first_step = steps.start;
+                    let block =
+                        EdgeBlock { bends, lengths_squared, moments, lanes, layout, first_step };
                     *contribution += term.potential.edges(term, Edges::Lanes(block));
                 }
             }

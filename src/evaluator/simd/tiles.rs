@@ -4,7 +4,7 @@
 
 use super::instructions::{Level, WithLanes, dispatch};
 use super::lanes::Lane;
-use super::layout::TILE;
+use super::layout::{Layout, TILE};
 use super::records::{BLOCK, Records};
 use super::triangles::COUNTS;
 use crate::potentials::{
@@ -108,6 +108,16 @@ pub struct EdgeBlock<'a> {
     pub moments: &'a mut [[f64; BLOCK]],
     /// How many of the lanes count; the rest repeat other vertices.
     pub lanes: usize,
+    /// The mesh, and where in it the block's steps begin.
+    pub layout: &'a Layout,
+    pub first_step: usize,
+}
+
+impl<'a> EdgeBlock<'a> {
+    /// The places of the edges among the values of edges; [`NONE`](crate::mesh::NONE) where there is no dihedral angle.
+    pub fn names(&self) -> &'a [[u32; BLOCK]] {
+        &self.layout.edge_names()[self.first_step..][..self.bends.len()]
+    }
 }
 
 impl TriangleTile {

@@ -205,7 +205,7 @@ private:
         std::string name;
         double value;
         std::string contextParameter;
-        /** Values of single vertices or triangles; empty if there is only the scalar. */
+        /** Values of single elements; empty if there is only the scalar. */
         std::vector<double> elementValues;
         /** Whether it may have those. */
         bool perElement;

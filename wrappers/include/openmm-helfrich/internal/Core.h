@@ -24,8 +24,11 @@ struct HelfrichParameterInfo {
     int energy, length;
     /** NaN if there is none. */
     double defaultValue;
-    /** 0: only as a scalar; 1: also for each vertex; 2: also for each triangle; 3: also for each particle. */
+    /** 0: only as a scalar; 1: also for each vertex; 2: also for each triangle; 3: also for each particle; 4: also for
+     * each edge. */
     int per;
+    /** Whether it stands behind the variant in constructors. */
+    int last;
 };
 
 struct HelfrichTerm {
