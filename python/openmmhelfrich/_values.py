@@ -57,7 +57,13 @@ class _ParameterInfo(ctypes.Structure):
 
 
 #: How the setters for values of single elements are called, by the core's code.
-_ELEMENT_SETTERS = {0: None, 1: "setVertex{}", 2: "setTriangle{}s", 3: "setParticle{}", 4: "setEdge{}"}
+_ELEMENT_SETTERS = {
+    0: None,
+    1: "setVertex{}",
+    2: "setTriangle{}s",
+    3: "setParticle{}",
+    4: "setEdge{}",
+}
 
 
 def scalars_of(force: str) -> list[Scalar]:

@@ -8,11 +8,11 @@
 use super::elements::{Acting, angles_on_borders, at};
 use crate::error::Result;
 use crate::evaluator::{Survey, SurveyedTriangle};
-use crate::mesh::{Cell, NONE};
 use crate::mesh::borders::{BorderTotals, Borders};
 use crate::mesh::geometry::{Totals, TriangleGeometry, Vec3, VertexGeometry};
 use crate::mesh::triangulation::{Quad, Triangulation, Turn};
 use crate::mesh::vertex_vectors::VertexVectors;
+use crate::mesh::{Cell, NONE};
 use crate::potentials::{Needs, Term};
 
 /// Below twice this area, nm², a triangle has none.

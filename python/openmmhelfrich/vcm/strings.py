@@ -188,7 +188,9 @@ def _dihedral(ours, triangles: np.ndarray, style: str) -> list[mm.Force]:
     rest, stiffness = list(ours.getEdgeRestAngle()), list(ours.getEdgeStiffness())
     if rest or ours.getRestAngle():
         # The dihedral is ±π where the surface is flat, and turns round there.
-        expression += f"; phi=d-2*{pi!r}*floor(0.5+d/(2*{pi!r})); d=dihedral(p1,p2,p3,p4)+{pi!r}-rest"
+        expression += (
+            f"; phi=d-2*{pi!r}*floor(0.5+d/(2*{pi!r})); d=dihedral(p1,p2,p3,p4)+{pi!r}-rest"
+        )
         values["rest"] = rest or [ours.getRestAngle()] * len(edges)
     else:
         expression += f"; phi={pi!r}-abs(dihedral(p1,p2,p3,p4))"

@@ -10,11 +10,11 @@ namespace HelfrichPlugin {
  *
  *     E = K sum over edges of f(phi - phi0)
  *
- * with phi the angle between the normals of the two triangles of an edge, 0 when flat and positive at a convex edge, and
- * phi0 the angle at rest. Unlike BendingForce its effect depends on the mesh. K and phi0 can be given for each edge of
- * its own; edges are in lexicographic order of the particles at their ends, the lower one first (in Python Mesh.edges),
- * those on borders among them, which have no angle and no energy. Such values do not follow bond flips, which are
- * refused then.
+ * with phi the angle between the normals of the two triangles of an edge, 0 when flat and positive at a convex edge,
+ * and phi0 the angle at rest. Unlike BendingForce its effect depends on the mesh. K and phi0 can be given for each edge
+ * of its own; edges are in lexicographic order of the particles at their ends, the lower one first (in Python
+ * Mesh.edges), those on borders among them, which have no angle and no energy. Such values do not follow bond flips,
+ * which are refused then.
  *
  * Sources: (B5) and the potential of fourth order of Farnudi, Ejtehadi and Everaers, Phys. Rev. E 108, 015301 (2023),
  * doi:10.1103/PhysRevE.108.015301. Angles at rest: Kantor and Nelson, Phys. Rev. Lett. 58, 2774 (1987),
