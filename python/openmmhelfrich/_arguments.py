@@ -23,6 +23,7 @@ from ._values import (
     scalars_of,
     triangles,
 )
+from ._vertex_numbers import accept_vertex_numbers, vertex_numbers_of
 
 __all__ = [
     "accept_arrays",
@@ -46,13 +47,18 @@ def accept_units(force: type) -> None:
     if has_particles:
         parameters.append(inspect.Parameter("particles", keyword))
     parameters += [inspect.Parameter(s.name, keyword, default=s.default) for s in known]
+    numbers = vertex_numbers_of(name)
+    if numbers is not None:
+        # After all that must be given.
+        first = next((n for n, p in enumerate(parameters) if p.default is not p.empty), None)
+        parameters.insert(len(parameters) if first is None else first, inspect.Parameter(numbers, keyword))
     if form is not None:
         parameters.append(inspect.Parameter(form, keyword, default=0))
     parameters.append(inspect.Parameter("offset", inspect.Parameter.KEYWORD_ONLY, default=0))
 
     def start(self, swig_init, arguments):
         corners = triangles(name, arguments["triangles"], arguments["offset"])
-        values, elements = [], {}
+        values, elements = {}, {}
         for s in known:
             given = arguments[s.name]
             where = f"{name}: {s.name}"
@@ -60,14 +66,15 @@ def accept_units(force: type) -> None:
                 elements[s] = element_values(name, s, given)
                 # Any scalar is allowed to be 1, until the values themselves are accepted.
                 given = 1.0
-            values.append(scalar(name, s, given))
+            values[s.name] = scalar(name, s, given)
         if form is not None:
-            values.append(form_number(name, form, arguments[form]))
+            values[form] = form_number(name, form, arguments[form])
+        # What comes as an array is set afterwards.
+        swig_init(self, *(values.get(p.name, []) for p in parameters if p.kind is keyword))
         if has_particles:
-            swig_init(self, [], [], *values)
             self.setParticles(arguments["particles"])
-        else:
-            swig_init(self, [], *values)
+        if numbers is not None:
+            getattr(self, "set" + capitalised(numbers))(arguments[numbers])
         for s, list_ in elements.items():
             if not list_:
                 raise ValueError(f"{name}: {s.name} is an empty list; give one value or many")
@@ -88,6 +95,8 @@ def accept_units(force: type) -> None:
         accept_in_setter(force, "set" + capitalised(form), read)
     if has_particles:
         _accept_particles(force)
+    if numbers is not None:
+        accept_vertex_numbers(force, numbers, give_method)
     own_what_is_cast(force)
 
 
