@@ -54,6 +54,14 @@ using namespace HelfrichPlugin;
 %ignore HelfrichPlugin::MonteCarloMembraneTension::saveState;
 %ignore HelfrichPlugin::MonteCarloMembraneTension::restoreState;
 %ignore HelfrichPlugin::MembraneForce::getParticles;
+%ignore HelfrichPlugin::MembraneForce::getVertexNumbers;
+%ignore HelfrichPlugin::MembraneForce::setVertexNumbers;
+%ignore HelfrichPlugin::MembraneForce::getReferenceBox;
+%ignore HelfrichPlugin::MembraneForce::setReferenceBox;
+%ignore *::getReference;
+%ignore *::setReference;
+%ignore *::getDomains;
+%ignore *::setDomains;
 %ignore HelfrichPlugin::ParticleSurfaceForce::setParticles;
 %ignore HelfrichPlugin::MembraneForce::setParameterValue;
 %rename(_setElementValues) HelfrichPlugin::MembraneForce::setElementValues;
@@ -111,6 +119,29 @@ static PyObject* toDict(const Mover& mover, OpenMM::Context& context) {
     return statistics;
 }
 %}
+%{
+static std::vector<double> toDoubles(const char* data, size_t size) {
+    const double* numbers = reinterpret_cast<const double*>(data);
+    return std::vector<double>(numbers, numbers + size / sizeof(double));
+}
+%}
+%extend HelfrichPlugin::MembraneForce {
+    void _setVertexBuffer(const char* data, size_t size) {
+        $self->setVertexNumbers(toDoubles(data, size));
+    }
+    PyObject* _vertexBuffer() {
+        const std::vector<double>& numbers = $self->getVertexNumbers();
+        return toBytes(numbers.data(), numbers.size() * sizeof(double));
+    }
+    void _setReferenceBoxBuffer(const char* data, size_t size) {
+        $self->setReferenceBox(toDoubles(data, size));
+    }
+    PyObject* _referenceBoxBuffer() {
+        const std::vector<double>& vectors = $self->getReferenceBox();
+        return toBytes(vectors.data(), vectors.size() * sizeof(double));
+    }
+}
+
 %extend HelfrichPlugin::ParticleSurfaceForce {
     void _setParticleBuffer(const char* data, size_t size) {
         const int* indices = reinterpret_cast<const int*>(data);

@@ -15,3 +15,8 @@ fn value(term: u32, parameter: u32, element: u32) -> real {
 fn is_scalar(term: u32, parameter: u32) -> real {
     return select(real(0.0), real(1.0), frame.terms[term].field_starts[parameter] == NO_FIELD);
 }
+
+// Where a constant of a triangle is for a term.
+fn constant_place(term: u32, triangle: u32, k: u32) -> u32 {
+    return frame.terms[term].constants_start + CONSTANTS * triangle + k;
+}

@@ -11,7 +11,7 @@ use std::fs;
 use std::path::Path;
 
 /// What every module is made of, beside its potentials; `*` stands for its precision.
-const BEFORE: [&str; 8] = [
+const BEFORE: [&str; 9] = [
     "precision_*.wgsl",
     "bindings.wgsl",
     "functions.wgsl",
@@ -20,6 +20,7 @@ const BEFORE: [&str; 8] = [
     "sums.wgsl",
     "totals_*.wgsl",
     "springs.wgsl",
+    "strain.wgsl",
 ];
 const AFTER: &str = "passes.wgsl";
 

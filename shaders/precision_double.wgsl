@@ -4,6 +4,7 @@ alias real = f64;
 alias vec3r = vec3<f64>;
 alias vec4r = vec4<f64>;
 alias coordinate = f64;
+alias constant = f64;
 
 // Only what has no area at all is refused, as on the processor.
 const THINNEST = 0.0;

@@ -6,6 +6,8 @@ alias real = f32;
 alias vec3r = vec3<f32>;
 alias vec4r = vec4<f32>;
 alias coordinate = i32;
+// The sum of two.
+alias constant = vec2<f32>;
 
 // A triangle whose height is a smaller share of its longest side is left to the processor, or on OpenMM's platforms reported:
 // the digits that its normal has lost in single precision are missed in the forces (2e-4 of the largest at a share of 1e-4).

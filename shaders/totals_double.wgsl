@@ -60,3 +60,12 @@ fn total_slopes(groups: u32) -> TotalSlopes {
     let stored = totals[groups];
     return TotalSlopes(stored.x, stored.y);
 }
+
+fn constant_of(term: u32, triangle: u32, k: u32) -> real {
+    return constants[constant_place(term, triangle, k)];
+}
+
+// By how much the scalar product of the sides that leave corner k exceeds constant k.
+fn dot_excess(term: u32, index: u32, triangle: TriangleGeometry, k: u32) -> real {
+    return triangle.dots[k] - constants[constant_place(term, index, k)];
+}

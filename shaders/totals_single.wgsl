@@ -213,3 +213,40 @@ fn total_slopes(groups: u32) -> TotalSlopes {
     let stored = totals[2u * groups];
     return TotalSlopes(bitcast<f32>(stored.x), bitcast<f32>(stored.y));
 }
+
+fn constant_of(term: u32, triangle: u32, k: u32) -> real {
+    return constants[constant_place(term, triangle, k)].x;
+}
+
+// What is a whole number as one of 64 bits; of others without their fractions.
+fn integer64(x: f32) -> vec2<u32> {
+    let bits = bitcast<u32>(x) & 0x7fffffffu;
+    let exponent = i32(bits >> 23u) - 150;
+    let mantissa = (bits & 0x7fffffu) | 0x800000u;
+    var size = vec2<u32>();
+    if exponent >= 32 {
+        size = vec2<u32>(0u, mantissa << u32(exponent - 32));
+    } else if exponent >= 0 {
+        size = shift_left64(vec2<u32>(mantissa, 0u), u32(exponent));
+    } else if exponent > -24 {
+        size = vec2<u32>(mantissa >> u32(-exponent), 0u);
+    }
+    return select(size, negative64(size), x < 0.0);
+}
+
+// By how much the scalar product of the sides that leave corner k exceeds constant k. On the lattice it is a whole number,
+// and so the difference has as many digits as a float, however small it is.
+fn dot_excess(term: u32, index: u32, triangle: TriangleGeometry, k: u32) -> real {
+    let rest = constants[constant_place(term, index, k)];
+    let step = frame.quantum * frame.quantum;
+    // Rest lengths that are larger than the lattice need no digits to differ from those of now.
+    if abs(rest.x) >= step * 2305843009213693952.0 {
+        return triangle.dots[k] - rest.x;
+    }
+    let here = corner_vertex(index, k);
+    let u = lattice_separation(here, corner_vertex(index, (k + 1u) % 3u));
+    let v = lattice_separation(here, corner_vertex(index, (k + 2u) % 3u));
+    let product = add64(add64(signed_product(u.x, v.x), signed_product(u.y, v.y)), signed_product(u.z, v.z));
+    let at_rest = add64(integer64(rest.x / step), integer64(rest.y / step));
+    return float64(add64(product, negative64(at_rest))) * step;
+}

@@ -96,6 +96,9 @@ forward! {
     /// Set the particles that a ParticleSurfaceForce acts on.
     Helfrich_ParticleSurfaceForce_setParticles =>
         helfrich_shim_setParticles(force: *mut Force, particles: *const c_int, count: c_int) -> c_int;
+    /// Set where the vertices are at rest, in ascending order of particle index, and in which periodic box; null for none.
+    Helfrich_MembraneForce_setReference =>
+        helfrich_shim_setReference(force: *mut Force, positions: *const c_double, num_vertices: c_int, box_vectors: *const c_double) -> c_int;
     /// Choose the variant of the potential.
     Helfrich_MembraneForce_setForm => helfrich_shim_setForm(force: *mut Force, form: c_int) -> c_int;
     /// Switch something on or off.
@@ -234,3 +237,4 @@ force_class!(SurfaceRepulsionForce(distance, epsilon));
 force_class!(ParticleSurfaceForce(distance, epsilon, adhesion, radius) attraction);
 force_class!(EdgeTensionForce(tension));
 force_class!(GaussianCurvatureForce(modulus));
+force_class!(SkalakForce(shearModulus, areaModulus));

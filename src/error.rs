@@ -119,6 +119,24 @@ pub enum Error {
     )]
     TouchingParticle { force: &'static str, particle: u32, triangle: usize, corners: [u32; 3] },
 
+    /// The corners of a triangle are in one line in the reference.
+    #[error(
+        "triangle {triangle} ({}, {}, {}) has no area in the reference, so that no strain can be measured against it; give a reference in which its corners are not in one line", .corners[0], .corners[1], .corners[2]
+    )]
+    FlatReference { force: &'static str, triangle: usize, corners: [u32; 3] },
+
+    /// A side of the reference has no image that is certainly the nearest.
+    #[error(
+        "particles {} and {} are {length:.6} nm apart in the reference, but in its periodic box edges must be shorter than {limit:.6} nm, half of the least width, so that it is clear which images they connect; give the box that belongs to the reference, or a reference of a larger one", .edge[0], .edge[1]
+    )]
+    LongReference { force: &'static str, edge: [u32; 2], length: f64, limit: f64 },
+
+    /// A surface spans the periodic box, but its reference has none.
+    #[error(
+        "the surface with particle {particle} spans the periodic box, but the reference of {force} has no box, which says where it goes on; give a Mesh that has one for the reference, or call setReferenceBox()"
+    )]
+    NoReferenceBox { force: &'static str, particle: u32 },
+
     /// A scalar outside its domain.
     #[error("{parameter} must be {domain}, got {value}")]
     Parameter { parameter: String, domain: &'static str, value: f64 },
@@ -178,6 +196,9 @@ impl Error {
             Self::InsideOut { force, .. }
             | Self::Border { force, .. }
             | Self::Spanning { force, .. }
+            | Self::FlatReference { force, .. }
+            | Self::LongReference { force, .. }
+            | Self::NoReferenceBox { force, .. }
             | Self::Touching { force }
             | Self::TouchingSurface { force, .. }
             | Self::TouchingParticle { force, .. } => Some(force),

@@ -127,6 +127,25 @@ impl MembraneForce {
         Ok(self)
     }
 
+    /// Set where the vertices are at rest, nm, in ascending order of particle index, and in which periodic box.
+    ///
+    /// # Errors
+    /// A class that has no reference, a position that is not finite, or no box.
+    pub fn set_reference(
+        &mut self,
+        positions: &[[f64; 3]],
+        box_vectors: Option<&[[f64; 3]; 3]>,
+    ) -> Result<&mut Self> {
+        let (numbers, count) = (positions.as_ptr().cast(), positions.len() as c_int);
+        let vectors = box_vectors.map_or(std::ptr::null(), |rows| rows.as_ptr().cast());
+        // SAFETY: the force is alive, and the positions are as many as is said.
+        check(unsafe {
+            let force = self.force.as_ptr();
+            c_api::Helfrich_MembraneForce_setReference(force, numbers, count, vectors)
+        })?;
+        Ok(self)
+    }
+
     /// Choose a variant by its name, such as a bending scheme.
     ///
     /// # Errors

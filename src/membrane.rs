@@ -12,10 +12,12 @@ use std::sync::atomic::{AtomicI64, Ordering};
 
 mod checks;
 mod connectivity;
+mod constants;
 mod flips;
 mod surface;
 
 pub use connectivity::Connectivity;
+use constants::{Equipped, Workshop, need_constants};
 pub use flips::Follower;
 use surface::Surface;
 
@@ -49,6 +51,7 @@ pub struct Membrane {
     initial_fingerprint: u64,
     local: LocalEnergy,
     contacts: Contacts,
+    workshop: Workshop,
     /// The forces after the last flips, which the time step asks for next.
     remembered: Remembered,
     /// The forces before them; kept for its memory.
@@ -69,6 +72,7 @@ impl Membrane {
             surface: Surface::new(mesh),
             local: LocalEnergy::default(),
             contacts: Contacts::default(),
+            workshop: Workshop::default(),
             remembered: Remembered::default(),
             before: Vec::new(),
             num_particles,
@@ -137,13 +141,22 @@ impl Membrane {
             return Ok(());
         }
         contributions.fill(Contribution::default());
+        let surface = &mut self.surface;
+        let equipped;
+        let terms = match need_constants(terms) {
+            false => terms,
+            true => {
+                equipped = self.workshop.equip(&surface.mesh, surface.generation, terms)?;
+                &equipped
+            }
+        };
         // A surface that only contacts act on may be in no condition for the others.
         if terms.is_empty() || !terms.iter().all(is_contact) {
-            let mut placed = self.surface.place(at)?;
+            let mut placed = surface.place(at)?;
             placed.look_for_outside(terms)?;
             placed.evaluate(terms, contributions, forces.as_deref_mut())?;
         }
-        self.contacts.evaluate(&self.surface.mesh, cell, terms, positions, contributions, forces)
+        self.contacts.evaluate(&surface.mesh, cell, terms, positions, contributions, forces)
     }
 
     /// Whether [`Self::look`] has to come before terms are evaluated elsewhere: one of them needs an outside, and nobody
@@ -158,9 +171,23 @@ impl Membrane {
     /// # Errors
     /// Those of [`Self::evaluate`].
     pub fn look(&mut self, terms: &[Term], at: Configuration, forces: &mut [f64]) -> Result<()> {
-        let mut placed = self.surface.place(at)?;
-        placed.look_for_outside(terms)?;
-        placed.look(terms, forces)
+        let surface = &mut self.surface;
+        let terms = self.workshop.equip(&surface.mesh, surface.generation, terms)?;
+        let mut placed = surface.place(at)?;
+        placed.look_for_outside(&terms)?;
+        placed.look(&terms, forces)
+    }
+
+    /// Some terms with their constants of triangles, for who evaluates them elsewhere; and the mesh.
+    ///
+    /// # Errors
+    /// A triangle that has no shape at rest.
+    pub fn equip<'a>(
+        &'a mut self,
+        terms: &[Term<'a>],
+    ) -> Result<(Equipped<'a>, &'a Triangulation)> {
+        let surface = &self.surface;
+        Ok((self.workshop.equip(&surface.mesh, surface.generation, terms)?, &surface.mesh))
     }
 
     /// ∂E/∂ε of some terms for a homogeneous strain ε of all positions and of the periodic box, kJ/mol: where there is
@@ -171,12 +198,13 @@ impl Membrane {
     pub fn virial(&mut self, terms: &[Term], at: Configuration) -> Result<Matrix3<f64>> {
         // What this refuses, nothing below has to.
         self.evaluate(terms, at, &mut [], None)?;
-        let mesh = &self.surface.mesh;
-        let of_contacts = self.contacts.virial(mesh, at.cell, terms, at.positions)?;
+        let surface = &mut self.surface;
+        let of_contacts = self.contacts.virial(&surface.mesh, at.cell, terms, at.positions)?;
         if terms.iter().all(is_contact) {
             return Ok(of_contacts);
         }
-        Ok(self.surface.place(at)?.virial(terms)? + of_contacts)
+        let terms = self.workshop.equip(&surface.mesh, surface.generation, terms)?;
+        Ok(surface.place(at)?.virial(&terms)? + of_contacts)
     }
 }
 

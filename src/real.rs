@@ -1,5 +1,6 @@
 //! Numbers that a formula can be written for once: one `f64`, or a processor's whole register of them.
 
+use crate::potentials::{CONSTANTS, Constants};
 use std::ops::{Add, Div, Mul, Sub};
 
 /// A real number, or several side by side (lanes) that go through the same formula.
@@ -45,6 +46,9 @@ pub trait Real:
 
     /// A function that exists for `f64` only, lane by lane.
     fn map(self, function: impl FnMut(f64) -> f64) -> Self;
+
+    /// A record for each lane, number by number: those at some places, of which lanes beyond repeat the last.
+    fn gather(self, records: &[Constants], places: &[u32]) -> [Self; CONSTANTS];
 
     /// 0 in every lane.
     #[inline(always)]
@@ -100,6 +104,11 @@ impl Real for f64 {
     #[inline(always)]
     fn map(self, mut function: impl FnMut(f64) -> f64) -> Self {
         function(self)
+    }
+
+    #[inline(always)]
+    fn gather(self, records: &[Constants], places: &[u32]) -> [Self; CONSTANTS] {
+        records[places[0] as usize]
     }
 }
 

@@ -22,6 +22,8 @@ struct RememberedTerm {
     values: [f64; MAX_PARAMETERS],
     fields: [Vec<f64>; MAX_PARAMETERS],
     particles: Vec<u32>,
+    /// Owner and version of the numbers of vertices.
+    numbers: [u64; 2],
 }
 
 impl Remembered {
@@ -89,6 +91,7 @@ impl RememberedTerm {
             values: term.values,
             fields: term.fields.map(<[f64]>::to_vec),
             particles: term.particles.to_vec(),
+            numbers: [term.numbers.owner, term.numbers.version],
         }
     }
 
@@ -97,6 +100,7 @@ impl RememberedTerm {
             && (self.form, self.switches) == (term.form, term.switches)
             && self.values == term.values
             && self.particles == term.particles
+            && self.numbers == [term.numbers.owner, term.numbers.version]
             && self.fields.iter().zip(term.fields).all(|(known, field)| known == field)
     }
 }

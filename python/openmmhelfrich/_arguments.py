@@ -23,6 +23,7 @@ from ._values import (
     scalars_of,
     triangles,
 )
+from ._vertex_numbers import accept_vertex_numbers, vertex_numbers_of
 
 __all__ = [
     "accept_arrays",
@@ -48,6 +49,11 @@ def accept_units(force: type) -> None:
     scalars = [inspect.Parameter(s.name, keyword, default=s.default) for s in known]
     last = [parameter for s, parameter in zip(known, scalars, strict=True) if s.last]
     parameters += [parameter for parameter in scalars if parameter not in last]
+    numbers = vertex_numbers_of(name)
+    if numbers is not None:
+        # After all that must be given.
+        given = [p for p in parameters if p.default is p.empty]
+        parameters.insert(len(given), inspect.Parameter(numbers, keyword))
     if form is not None:
         parameters.append(inspect.Parameter(form, keyword, default=0))
     parameters += last
@@ -63,16 +69,15 @@ def accept_units(force: type) -> None:
                 elements[s] = element_values(name, s, given)
                 # Any scalar is allowed to be 1, until the values themselves are accepted.
                 given = 1.0
-            values[s] = scalar(name, s, given)
-        plain = [value for s, value in values.items() if not s.last]
+            values[s.name] = scalar(name, s, given)
         if form is not None:
-            plain.append(form_number(name, form, arguments[form]))
-        plain += [value for s, value in values.items() if s.last]
+            values[form] = form_number(name, form, arguments[form])
+        # What comes as an array is set afterwards.
+        swig_init(self, *(values.get(p.name, []) for p in parameters if p.kind is keyword))
         if has_particles:
-            swig_init(self, [], [], *plain)
             self.setParticles(arguments["particles"])
-        else:
-            swig_init(self, [], *plain)
+        if numbers is not None:
+            getattr(self, "set" + capitalised(numbers))(arguments[numbers])
         for s, list_ in elements.items():
             if not list_:
                 raise ValueError(f"{name}: {s.name} is an empty list; give one value or many")
@@ -93,6 +98,8 @@ def accept_units(force: type) -> None:
         accept_in_setter(force, "set" + capitalised(form), read)
     if has_particles:
         _accept_particles(force)
+    if numbers is not None:
+        accept_vertex_numbers(force, numbers, give_method)
     own_what_is_cast(force)
 
 

@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::membrane::{self, Configuration, Membrane};
 use crate::mesh::Cell;
 use crate::mesh::triangulation::next;
-use crate::potentials::{Contribution, REGISTRY, Term};
+use crate::potentials::{Contribution, REGISTRY, Term, TriangleConstants, VertexNumbers};
 use smallvec::SmallVec;
 use std::ffi::{c_char, c_int};
 use std::slice as slices;
@@ -101,6 +101,14 @@ impl TermInput {
             values: self.values,
             fields: std::array::from_fn(field),
             particles: unsafe { slice(self.particles, self.num_particles as usize) },
+            numbers: VertexNumbers {
+                values: unsafe { slice(self.numbers, self.num_numbers as usize) },
+                // What is no box has been refused when it was given.
+                cell: unsafe { cell(self.numbers_box) }.unwrap_or_default(),
+                owner: self.numbers_owner,
+                version: self.numbers_version,
+            },
+            constants: TriangleConstants::default(),
             wants_derivatives: self.wants_derivatives != 0,
         }
     }
@@ -118,18 +126,21 @@ pub(super) unsafe fn read_terms<'a>(
     inputs.iter().map(|input| unsafe { input.term() }).collect()
 }
 
-/// Refuse a term that cannot be evaluated on a membrane.
+/// Refuse a term that cannot be evaluated on a membrane, or that has no constants of its triangles.
 ///
 /// # Safety
 /// `subject` must end with a NUL; `membrane` must be alive; `term` must be readable with its fields.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn Helfrich_Membrane_checkTerm(
     subject: *const c_char,
-    membrane: *const Membrane,
+    membrane: *mut Membrane,
     term: *const TermInput,
 ) -> c_int {
-    let subject = unsafe { text(subject) };
-    guarded(subject, || unsafe { &*membrane }.check(&unsafe { (*term).term() }))
+    guarded(unsafe { text(subject) }, || {
+        let (membrane, term) = unsafe { (&mut *membrane, (*term).term()) };
+        membrane.check(&term)?;
+        membrane.equip(&[term]).map(|_| ())
+    })
 }
 
 /// Refuse particles of a term that do not exist, come twice or are vertices.

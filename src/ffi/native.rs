@@ -94,7 +94,7 @@ pub unsafe extern "C" fn Helfrich_Native_look(
 pub unsafe extern "C" fn Helfrich_Native_plan(
     subject: *const c_char,
     native: *mut Native,
-    membrane: *const Membrane,
+    membrane: *mut Membrane,
     box_vectors: *const [[f64; 3]; 3],
     terms: *const TermInput,
     num_terms: i64,
@@ -106,10 +106,12 @@ pub unsafe extern "C" fn Helfrich_Native_plan(
     guarded(unsafe { text(subject) }, || {
         let terms = unsafe { read_terms(terms, num_terms) };
         let derivatives = unsafe { slice(derivatives, num_terms as usize) };
-        let (native, membrane) = unsafe { (&mut *native, &*membrane) };
+        let (native, membrane) = unsafe { (&mut *native, &mut *membrane) };
         for term in &terms {
             membrane.check(term)?;
         }
+        let generation = membrane.generation();
+        let (terms, mesh) = membrane.equip(&terms)?;
         let cell = unsafe { cell(box_vectors) }?;
         let wanted = Wanted {
             cell: cell.as_ref(),
@@ -117,7 +119,7 @@ pub unsafe extern "C" fn Helfrich_Native_plan(
             forces: forces != 0,
             derivatives,
         };
-        native.plan(membrane.mesh(), membrane.generation(), &terms, &wanted)?;
+        native.plan(mesh, generation, &terms, &wanted)?;
         let (particles, anchors) = native.vertices();
         let made = native.last_plan();
         unsafe {

@@ -1,6 +1,7 @@
 //! The C interface to [`crate::potentials`]: names, units, defaults and domains, which C++ and Python ask for.
 
-use super::{ParameterInfo, guarded, text};
+use super::membrane::cell;
+use super::{ParameterInfo, guarded, slice, text};
 use crate::error::Error;
 use crate::potentials::{self, Element, REGISTRY, particle_surface, surface_repulsion};
 use std::ffi::{c_char, c_int};
@@ -102,6 +103,43 @@ pub unsafe extern "C" fn Helfrich_Potential_check(
     guarded(subject, || match potentials::find(subject)?.parameters().get(index as usize) {
         Some(parameter) => parameter.check(value),
         None => Err(Error::Contract(format!("there is no parameter {index}"))),
+    })
+}
+
+/// How many numbers a potential wants for each vertex, 0 if none, and what they are called, null if nothing.
+///
+/// # Safety
+/// `potential` must end with a NUL; `name` must be writable.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Potential_numbers(
+    potential: *const c_char,
+    name: *mut *const c_char,
+) -> c_int {
+    let found = potentials::find(unsafe { text(potential) }).ok();
+    let made_of = found.and_then(|potential| potential.constants());
+    unsafe { name.write(made_of.map_or(std::ptr::null(), |made_of| made_of.name().as_ptr())) };
+    made_of.map_or(0, |made_of| made_of.width() as c_int)
+}
+
+/// Refuse numbers that vertices cannot have. `box_vectors` has those of the periodic box that positions among them are in,
+/// or is null.
+///
+/// # Safety
+/// `potential` must end with a NUL; `numbers` must hold `count` values; `box_vectors` must be readable or null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Potential_checkNumbers(
+    potential: *const c_char,
+    numbers: *const f64,
+    count: i64,
+    box_vectors: *const [[f64; 3]; 3],
+) -> c_int {
+    let subject = unsafe { text(potential) };
+    guarded(subject, || {
+        let made_of = potentials::find(subject)?.constants().ok_or_else(|| {
+            Error::Contract("has no reference and no domains; it cannot be given any".to_owned())
+        })?;
+        unsafe { cell(box_vectors) }?;
+        made_of.check(unsafe { slice(numbers, count as usize) })
     })
 }
 

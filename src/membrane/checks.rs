@@ -69,6 +69,17 @@ impl Membrane {
                 )));
             }
         }
+        if let Some(made_of) = term.potential.constants() {
+            let (count, vertices) = (term.numbers.values.len(), self.mesh().num_vertices());
+            if count != made_of.width() * vertices {
+                return Err(Error::Contract(format!(
+                    "{} is of {} vertices, but there are {vertices}; give one row for each, in ascending order of \
+                     particle index",
+                    made_of.name().to_string_lossy(),
+                    count / made_of.width()
+                )));
+            }
+        }
         Ok(())
     }
 }

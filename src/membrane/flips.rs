@@ -52,9 +52,13 @@ impl Membrane {
             self.before.resize(positions.len(), 0.0);
         }
         let mut before = wants_forces.then_some(self.before.as_mut_slice());
-        let mut placed = self.surface.place(at)?;
+        let surface = &mut self.surface;
+        let equipped = self.workshop.equip(&surface.mesh, surface.generation, terms)?;
+        let mut placed = surface.place(at)?;
+        placed.check_references(terms)?;
         let (mesh, into) = (placed.present.mesh, before.as_deref_mut());
-        self.local.fill(mesh, terms, cell, |survey| placed.survey(terms, into, survey))?;
+        self.local.fill(mesh, terms, cell, |survey| placed.survey(&equipped, into, survey))?;
+        drop(equipped);
 
         let mut touched: SmallVec<[Touched; 2]> = SmallVec::new();
         if terms.iter().any(is_contact) {
@@ -101,9 +105,11 @@ impl Membrane {
         change: &mut [f64],
     ) -> Result<()> {
         let Configuration { positions, cell } = at;
-        let mut placed = self.surface.place(at)?;
+        let surface = &mut self.surface;
+        let equipped = self.workshop.equip(&surface.mesh, surface.generation, terms)?;
+        let mut placed = surface.place(at)?;
         let after = self.remembered.fill(terms, positions, cell, |forces| {
-            placed.evaluate(terms, &mut [], Some(&mut *forces))?;
+            placed.evaluate(&equipped, &mut [], Some(&mut *forces))?;
             self.contacts.evaluate(
                 placed.present.mesh,
                 cell,

@@ -9,7 +9,7 @@ use crate::mesh::geometry::{
 };
 use crate::mesh::triangulation::{Quad, Triangulation, next, previous};
 use crate::mesh::vertex_vectors::{VertexVectors, add_corner};
-use crate::potentials::{Edges, Needs, Term, Triangles, Vertices};
+use crate::potentials::{Constants, Edges, Flaw, MadeOf, Needs, Term, Triangles, Vertices};
 use smallvec::SmallVec;
 
 /// The terms that act on each kind of element, by their places among all.
@@ -64,14 +64,32 @@ impl LocalEnergy {
             .sum()
     }
 
-    /// Energies of I and J, less those of the triangles that they replace.
-    pub(super) fn triangles_of(&self, terms: &[Term], flipped: &mut Flipped) -> f64 {
+    /// Energies of I and J, less those of the triangles that they replace; not a number where one has no shape at rest.
+    pub(super) fn triangles_of(
+        &self,
+        mesh: &Triangulation,
+        terms: &[Term],
+        quad: &Quad,
+        flipped: &mut Flipped,
+    ) -> f64 {
         let ids = &flipped.slots.map(|slot| slot as u32);
         flipped.triangle_energies = [0.0; 2];
         let (geometry, energies) = (&flipped.triangles, &mut flipped.triangle_energies);
         for term in at(terms, &self.acting.triangles) {
             let energies = &mut energies[..];
-            term.potential.triangles(term, Triangles::Energies { ids, geometry, energies });
+            let made;
+            let constants = match term.potential.constants() {
+                None => &[][..],
+                Some(made_of) => match constants_of(mesh, quad, term, made_of) {
+                    Ok(constants) => {
+                        made = constants;
+                        &made
+                    }
+                    Err(_) => return f64::NAN,
+                },
+            };
+            let run = Triangles::Energies { ids, geometry, constants, energies };
+            term.potential.triangles(term, run);
         }
         let before = flipped.slots.map(|slot| self.survey.triangles[slot].energy);
         energies[0] + energies[1] - before[0] - before[1]
@@ -258,6 +276,25 @@ impl LocalEnergy {
             flipped.vertices[corners[k]].voronoi_area += scalars.voronoi_area * sign;
         }
     }
+}
+
+/// The constants that I and J will have for a term.
+// Apart, so that attempts without it stay short.
+#[inline(never)]
+fn constants_of(
+    mesh: &Triangulation,
+    quad: &Quad,
+    term: &Term,
+    made_of: MadeOf,
+) -> Result<[Constants; 2], Flaw> {
+    let ([i, j, k, l], [a, b]) = (quad.vertices, quad.halves);
+    let is_border = |half| mesh.twin(half) == NONE;
+    let make = |corners, on_border| made_of.constants(&term.numbers, corners, on_border);
+    Ok([
+        // The sides of I are il, lk and ki, those of J are jk, kl and lj.
+        make([i, l, k], [is_border(next(b)), false, is_border(previous(a))])?,
+        make([j, k, l], [is_border(next(a)), false, is_border(previous(b))])?,
+    ])
 }
 
 /// By how much the angles at those of the four vertices that are on borders will grow.

@@ -193,7 +193,7 @@ impl LocalEnergy {
                 - self.energy_of_borders(terms, &self.borders);
         }
         if survey.needs.contains(Needs::TRIANGLES) {
-            difference += self.triangles_of(terms, flipped);
+            difference += self.triangles_of(mesh, terms, quad, flipped);
         }
         // The most that the vertices can give.
         let known = quad.vertices.map(|vertex| survey.vertices[vertex as usize].energy);

@@ -9,6 +9,9 @@ use std::ffi::CStr;
 /// The most scalars that a potential can have.
 pub const MAX_PARAMETERS: usize = 4;
 
+/// How many constants a triangle has for a potential: a cache line of them.
+pub const CONSTANTS: usize = 8;
+
 bitflags! {
     /// On which elements of the mesh a potential adds energy, and what it wants to know of them
     /// beyond areas, lengths and volume.

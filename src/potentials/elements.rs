@@ -3,7 +3,7 @@
 //! A formula is generic over [`Real`], so it is written once for lanes and for single numbers. Those of dihedral angles,
 //! with their sines and exponentials, take one number at a time.
 
-use super::{Needs, Term};
+use super::{CONSTANTS, Constants, Needs, Term};
 use crate::mesh::geometry::VertexGeometry;
 use crate::mesh::vertex_vectors::VertexVectors;
 use crate::real::Real;
@@ -77,9 +77,31 @@ pub struct Place<'a> {
     pub term: &'a Term<'a>,
     /// The indices in the mesh, one for each lane; lanes beyond the last element have none.
     pub ids: &'a [u32],
+    constants: &'a [Constants],
+    /// Where among the constants those of the lanes are.
+    places: &'a [u32],
 }
 
-impl Place<'_> {
+impl<'a> Place<'a> {
+    /// Elements of the mesh as it is.
+    #[inline(always)]
+    pub fn new(term: &'a Term<'a>, ids: &'a [u32]) -> Self {
+        Self { term, ids, constants: term.constants.values, places: ids }
+    }
+
+    /// A triangle that has constants of its own, if any.
+    #[inline(always)]
+    pub fn alone(term: &'a Term<'a>, id: &'a u32, constants: Option<&'a Constants>) -> Self {
+        let constants = constants.map_or(&[][..], std::slice::from_ref);
+        Self { term, ids: std::slice::from_ref(id), constants, places: &[0] }
+    }
+
+    /// The constants of the triangles there; `like` only says how many lanes there are.
+    #[inline(always)]
+    pub fn constants<R: Real>(&self, like: R) -> [R; CONSTANTS] {
+        like.gather(self.constants, self.places)
+    }
+
     /// The value of a parameter there; `like` only says how many lanes there are.
     #[inline(always)]
     pub fn value<R: Real>(&self, parameter: usize, like: R) -> R {

@@ -6,6 +6,7 @@
 
 mod bending;
 pub mod codes;
+mod constants;
 mod dihedral;
 mod edge_tension;
 mod elements;
@@ -14,6 +15,8 @@ mod gaussian_curvature;
 pub(crate) mod particle_surface;
 mod plaquette_area;
 mod runs;
+mod skalak;
+mod strain;
 mod surface_area;
 pub(crate) mod surface_repulsion;
 mod triangle_area;
@@ -24,7 +27,8 @@ use crate::error::{Error, Result};
 use crate::mesh::borders::{BorderPartials, BorderTotals};
 use crate::mesh::geometry::{TotalPartials, Totals};
 use crate::real::Real;
-pub use codes::{Attraction, Contribution, MAX_PARAMETERS, Needs};
+pub use codes::{Attraction, CONSTANTS, Contribution, MAX_PARAMETERS, Needs};
+pub use constants::{Constants, Flaw, MadeOf, TriangleConstants, VertexNumbers};
 pub use elements::*;
 pub use runs::*;
 use std::f64::consts::PI;
@@ -32,7 +36,7 @@ use std::ffi::CStr;
 pub use surface_repulsion::ONLY_BETWEEN_PARTS;
 
 /// All potentials, by the names of their OpenMM classes.
-pub static REGISTRY: [&dyn Potential; 12] = [
+pub static REGISTRY: [&dyn Potential; 13] = [
     &surface_area::SurfaceArea,
     &enclosed_volume::EnclosedVolume,
     &bending::Bending,
@@ -45,6 +49,7 @@ pub static REGISTRY: [&dyn Potential; 12] = [
     &gaussian_curvature::GaussianCurvature,
     &surface_repulsion::SurfaceRepulsion,
     &particle_surface::ParticleSurface,
+    &skalak::Skalak,
 ];
 
 /// What a scalar may be given for one by one.
@@ -162,6 +167,16 @@ pub trait Potential: Sync {
     /// Where energy is added, and from what.
     fn needs(&self, term: &Term) -> Needs;
 
+    /// The constants that it has for each triangle, if any: what the user gives for each vertex, and what becomes of it.
+    fn constants(&self) -> Option<MadeOf> {
+        None
+    }
+
+    /// The units of the constants, as powers of nm.
+    fn constant_lengths(&self) -> [i8; CONSTANTS] {
+        [0; CONSTANTS]
+    }
+
     /// Whether the energy makes no sense on a surface that is turned inside out. Such a surface is refused when it is
     /// first evaluated; what a shape becomes later is not. One with a border, which has no outside, is refused at once.
     fn needs_outside(&self) -> bool {
@@ -220,6 +235,10 @@ pub struct Term<'a> {
     pub fields: [&'a [f64]; MAX_PARAMETERS],
     /// Particles beside the vertices that the term acts on, by their indices in the System.
     pub particles: &'a [u32],
+    /// What the user has given for each vertex, if the potential has constants of triangles.
+    pub numbers: VertexNumbers<'a>,
+    /// These constants; a [`Membrane`](crate::membrane::Membrane) makes them.
+    pub constants: TriangleConstants<'a>,
     /// Whether the derivatives with respect to the scalars will be read; those that cost extra may be
     /// wrong otherwise.
     pub wants_derivatives: bool,
@@ -242,12 +261,24 @@ impl<'a> Term<'a> {
         }
         let mut padded = Values::default();
         padded[..count].copy_from_slice(values);
-        let fields = [&[] as &[f64]; MAX_PARAMETERS];
-        let values = padded;
-        let (switches, particles, wants_derivatives) = (0, &[] as &[u32], false);
-        let term = Self { potential, form, switches, values, fields, particles, wants_derivatives };
+        let term = Self { form, values: padded, ..Self::of(potential) };
         term.check()?;
         Ok(term)
+    }
+
+    /// A potential with zeros for values, and nothing else.
+    pub fn of(potential: &'static dyn Potential) -> Self {
+        Self {
+            potential,
+            form: 0,
+            switches: 0,
+            values: Values::default(),
+            fields: Default::default(),
+            particles: &[],
+            numbers: VertexNumbers::default(),
+            constants: TriangleConstants::default(),
+            wants_derivatives: false,
+        }
     }
 
     /// Refuse values outside their domains.

@@ -1,8 +1,8 @@
 //! Runs of elements that formulas are applied to, each in three forms: the reference's, the lanes', and energies alone.
 
 use super::{
-    Contribution, EdgeFormula, Place, Sums, Term, Triangle, TriangleFormula, TriangleSlopes,
-    Vertex, VertexFormula,
+    Constants, Contribution, EdgeFormula, Place, Sums, Term, Triangle, TriangleFormula,
+    TriangleSlopes, Vertex, VertexFormula,
 };
 use crate::evaluator::simd::{BLOCK, EdgeBlock, Level, TriangleTile, VertexTile};
 use crate::mesh::NONE;
@@ -22,6 +22,8 @@ pub enum Triangles<'a> {
         ids: &'a [u32],
         /// The triangles.
         geometry: &'a [TriangleGeometry],
+        /// The constants of each; empty unless the potential has any.
+        constants: &'a [Constants],
         /// One for each, kJ/mol.
         energies: &'a mut [f64],
     },
@@ -146,12 +148,13 @@ impl Triangles<'_> {
     /// Apply a formula to all; returns the sum.
     pub fn apply(self, term: &Term, formula: &impl TriangleFormula) -> Contribution {
         let sum = match self {
-            Self::Energies { ids, geometry, energies } => {
-                for ((id, known), energy) in ids.iter().zip(geometry).zip(energies) {
+            Self::Energies { ids, geometry, constants, energies } => {
+                for (n, ((id, known), energy)) in ids.iter().zip(geometry).zip(energies).enumerate()
+                {
                     let triangle = Triangle { twice_area: known.twice_area, dots: known.dots };
                     if !formula.vanishes(&triangle) {
                         let mut unused = TriangleSlopes { area: 0.0, length_squared: [0.0; 3] };
-                        let place = Place { term, ids: std::slice::from_ref(id) };
+                        let place = Place::alone(term, id, constants.get(n));
                         *energy += formula.apply(place, &triangle, &mut unused).energy;
                     }
                 }
@@ -167,7 +170,7 @@ impl Triangles<'_> {
                     }
                     let TrianglePartials { area, length_squared } = *partial;
                     let mut slopes = TriangleSlopes { area, length_squared };
-                    sum.add(formula.apply(Place { term, ids }, &triangle, &mut slopes));
+                    sum.add(formula.apply(Place::new(term, ids), &triangle, &mut slopes));
                     let TriangleSlopes { area, length_squared } = slopes;
                     *partial = TrianglePartials { area, length_squared };
                 }
@@ -265,7 +268,7 @@ impl Vertices<'_> {
                 for (index, (known, energy)) in scalars.iter().zip(energies).enumerate() {
                     let vertex = Vertex::plain(*known, vectors.get(index));
                     let mut unused = Vertex::plain(VertexGeometry::default(), None);
-                    let place = Place { term, ids: &ids[index..=index] };
+                    let place = Place::new(term, &ids[index..=index]);
                     *energy += formula.apply(place, &vertex, &mut unused).energy;
                 }
                 Contribution::default()
@@ -294,7 +297,7 @@ impl Vertices<'_> {
                         },
                         vector_partials.get(index),
                     );
-                    sum.add(formula.apply(Place { term, ids }, &vertex, &mut slopes));
+                    sum.add(formula.apply(Place::new(term, ids), &vertex, &mut slopes));
                     *partial = VertexPartials {
                         area: slopes.area,
                         voronoi_area: slopes.voronoi_area,

@@ -12,6 +12,7 @@
 #include "openmm-helfrich/MonteCarloMembraneTension.h"
 #include "openmm-helfrich/ParticleSurfaceForce.h"
 #include "openmm-helfrich/PlaquetteAreaForce.h"
+#include "openmm-helfrich/SkalakForce.h"
 #include "openmm-helfrich/SurfaceAreaForce.h"
 #include "openmm-helfrich/SurfaceRepulsionForce.h"
 #include "openmm-helfrich/TriangleAreaForce.h"
@@ -32,7 +33,8 @@
     apply(SurfaceRepulsionForce) \
     apply(ParticleSurfaceForce) \
     apply(EdgeTensionForce) \
-    apply(GaussianCurvatureForce)
+    apply(GaussianCurvatureForce) \
+    apply(SkalakForce)
 // clang-format on
 
 #endif /*OPENMM_HELFRICH_H_*/

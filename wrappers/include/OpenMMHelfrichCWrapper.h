@@ -42,6 +42,12 @@ extern int Helfrich_MembraneForce_setParameterValue(OpenMM_Force* force, const c
 /** One value for each vertex (in ascending order of particle index) or triangle; count 0 goes back. */
 extern int Helfrich_MembraneForce_setElementValues(OpenMM_Force* force, const char* parameter, const double* values,
                                                    int count);
+/**
+ * Set where the vertices are at rest: three numbers for each, nm, in ascending order of particle index. `boxVectors` are
+ * the nine numbers of the periodic box in which that is, nm, or null. SkalakForce needs it after its creation.
+ */
+extern int Helfrich_MembraneForce_setReference(OpenMM_Force* force, const double* positions, int numVertices,
+                                               const double* boxVectors);
 /** Choose a bending scheme or a form of the dihedral potential. */
 extern int Helfrich_MembraneForce_setForm(OpenMM_Force* force, int form);
 /** Switch something on or off: "unsignedSpontaneousCurvature" of a BendingForce. */
@@ -175,6 +181,14 @@ extern int Helfrich_EdgeTensionForce_setTension(OpenMM_Force* force, double tens
 extern OpenMM_Force* Helfrich_GaussianCurvatureForce_create(const int* triangles, int numTriangles, double modulus);
 extern double Helfrich_GaussianCurvatureForce_getModulus(OpenMM_Force* force);
 extern int Helfrich_GaussianCurvatureForce_setModulus(OpenMM_Force* force, double modulus);
+
+/* Helfrich_MembraneForce_setReference() gives it its shape at rest. */
+extern OpenMM_Force* Helfrich_SkalakForce_create(const int* triangles, int numTriangles, double shearModulus,
+                                                 double areaModulus);
+extern double Helfrich_SkalakForce_getShearModulus(OpenMM_Force* force);
+extern int Helfrich_SkalakForce_setShearModulus(OpenMM_Force* force, double shearModulus);
+extern double Helfrich_SkalakForce_getAreaModulus(OpenMM_Force* force);
+extern int Helfrich_SkalakForce_setAreaModulus(OpenMM_Force* force, double areaModulus);
 
 /** Who pays for the flips of a MonteCarloBondFlip. */
 typedef enum {

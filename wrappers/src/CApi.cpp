@@ -138,6 +138,16 @@ int helfrich_shim_setParticles(void* force, const int* particles, int count) {
     });
 }
 
+int helfrich_shim_setReference(void* force, const double* positions, int numVertices, const double* boxVectors) {
+    return guarded([&] {
+        MembraneForce& owner = asForce(force);
+        if (numVertices < 0)
+            throw OpenMMException(owner.getTypeName() + ": the number of vertices is negative");
+        owner.setReferenceBox(boxVectors == nullptr ? vector<double>() : vector<double>(boxVectors, boxVectors + 9));
+        owner.setVertexNumbers(vector<double>(positions, positions + 3 * (size_t) numVertices));
+    });
+}
+
 int helfrich_shim_setForm(void* force, int form) {
     return guarded([&] { asForce(force).setForm(form); });
 }

@@ -7,11 +7,14 @@
 
 namespace HelfrichPlugin {
 
-/** A force of a class without triangles or particles and with scalars that every potential allows. */
+/** A force of a class without triangles, particles or a reference, and with scalars that every potential allows. */
 template <class ForceClass>
 MembraneForce* makeForce() {
+    using Reference = std::vector<double>;
     std::vector<int> none;
-    if constexpr (std::is_constructible_v<ForceClass, std::vector<int>, double, double>)
+    if constexpr (std::is_constructible_v<ForceClass, std::vector<int>, double, double, Reference>)
+        return new ForceClass(none, 1.0, 1.0, Reference());
+    else if constexpr (std::is_constructible_v<ForceClass, std::vector<int>, double, double>)
         return new ForceClass(none, 1.0, 1.0);
     else if constexpr (std::is_constructible_v<ForceClass, std::vector<int>, std::vector<int>, double, double>)
         return new ForceClass(none, none, 1.0, 1.0);

@@ -5,6 +5,7 @@
 #include <openmm/reference/ReferencePlatform.h>
 
 #include <algorithm>
+#include <atomic>
 
 using namespace HelfrichPlugin;
 using namespace OpenMM;
@@ -31,6 +32,10 @@ void MembraneForceImpl::initialize(ContextImpl& context) {
     PlatformChoice::end();
     inPlace = dynamic_cast<const ReferencePlatform*>(&context.getPlatform()) != nullptr;
     check(Helfrich_Potential_find(owner.getTypeName().c_str(), &term.potential));
+    static std::atomic<uint64_t> lastOwner(0);
+    const char* name;
+    if (Helfrich_Potential_numbers(owner.getTypeName().c_str(), &name) != 0)
+        term.numbersOwner = ++lastOwner;
     term.wantsDerivatives = !derivatives.empty();
     membrane = SharedMembrane::acquire(owner.getTypeName(), context, owner.getTriangles());
     try {
@@ -73,11 +78,20 @@ void MembraneForceImpl::copyValues() {
     vector<int> indices = owner.getParticles();
     updated.particles = indices.data();
     updated.numParticles = (int64_t) indices.size();
+    vector<double> rows = owner.getVertexNumbers(), vectors = owner.getReferenceBox();
+    updated.numbers = rows.data();
+    updated.numNumbers = (int64_t) rows.size();
+    updated.numbersBox = vectors.empty() ? nullptr : vectors.data();
+    static std::atomic<uint64_t> lastVersion(0);
+    if (rows != numbers || vectors != numbersBox)
+        updated.numbersVersion = ++lastVersion;
     membrane->checkTerm(owner.getTypeName(), updated);
     membrane->checkParticles(owner.getTypeName(), updated);
     // Moving the vectors leaves their contents where the term points.
     fields = std::move(copies);
     particles = std::move(indices);
+    numbers = std::move(rows);
+    numbersBox = std::move(vectors);
     term = updated;
 }
 

@@ -79,6 +79,7 @@ private:
     /** What the fields of the term point to. */
     std::vector<std::vector<double>> fields;
     std::vector<int> particles;
+    std::vector<double> numbers, numbersBox;
     /** For each scalar the Context parameter that stands in for it, or an empty text. */
     std::vector<std::string> contextParameters;
     std::vector<std::string> derivatives;

@@ -31,6 +31,41 @@ bool findForm(const string& force, int index, string& what, string& name) {
     return true;
 }
 
+/** What a class calls the numbers that it has for each vertex, as an element: "Reference"; empty if it has none. */
+string findNumbers(const string& force) {
+    const char* name;
+    if (Helfrich_Potential_numbers(force.c_str(), &name) == 0)
+        return "";
+    string element = name;
+    element[0] = (char) std::toupper(element[0]);
+    return element;
+}
+
+/** The attributes of a vertex there. */
+const vector<string> coordinates = {"x", "y", "z"}, label = {"number"};
+
+void writeRows(SerializationNode& node, const string& name, const vector<string>& attributes,
+               const vector<double>& numbers) {
+    for (size_t i = 0; i + attributes.size() <= numbers.size(); i += attributes.size()) {
+        SerializationNode& row = node.createChildNode(name);
+        for (size_t k = 0; k < attributes.size(); k++)
+            row.setDoubleProperty(attributes[k], numbers[i + k]);
+    }
+}
+
+vector<double> readRows(const string& force, const SerializationNode& node, const string& name,
+                        const vector<string>& attributes) {
+    vector<double> numbers;
+    for (const SerializationNode& row : node.getChildren()) {
+        if (row.getName() != name)
+            continue;
+        allow(force, row, set<string>(attributes.begin(), attributes.end()), {});
+        for (const string& attribute : attributes)
+            numbers.push_back(number(force, row, attribute));
+    }
+    return numbers;
+}
+
 /** The names of a potential's switches. */
 vector<string> findSwitches(const string& force) {
     vector<string> names;
@@ -76,6 +111,13 @@ void MembraneForceProxy::serialize(const void* object, SerializationNode& node) 
         derivatives.createChildNode("Derivative")
             .setStringProperty("contextParameter", force.getEnergyParameterDerivativeName(i));
     writeTriangles(force, node);
+    string numbers = findNumbers(forceName);
+    if (!numbers.empty()) {
+        bool isReference = numbers == "Reference";
+        SerializationNode& vertices = node.createChildNode(numbers);
+        writeRows(vertices, "Vertex", isReference ? coordinates : label, force.getVertexNumbers());
+        writeRows(vertices, "BoxVector", coordinates, force.getReferenceBox());
+    }
     if (!force.getParticles().empty()) {
         SerializationNode& particles = node.createChildNode("Particles");
         for (int particle : force.getParticles())
@@ -102,7 +144,11 @@ void MembraneForceProxy::readForce(const SerializationNode& node, MembraneForce&
     attributes.insert(switches.begin(), switches.end());
     if (hasForms)
         attributes.insert(what);
-    allow(forceName, node, attributes, {"Parameters", "EnergyParameterDerivatives", "Triangles", "Particles"});
+    set<string> children = {"Parameters", "EnergyParameterDerivatives", "Triangles", "Particles"};
+    string numbers = findNumbers(forceName);
+    if (!numbers.empty())
+        children.insert(numbers);
+    allow(forceName, node, attributes, children);
     // What has a default may be left out, as in OpenMM's own XML.
     if (node.hasProperty("forceGroup"))
         force.setForceGroup(integer(forceName, node, "forceGroup"));
@@ -135,6 +181,18 @@ void MembraneForceProxy::readForce(const SerializationNode& node, MembraneForce&
     }
     readTriangles(forceName, node, force);
     readOtherParticles(node, force);
+    if (numbers.empty())
+        return;
+    const SerializationNode& vertices = child(forceName, node, numbers);
+    bool isReference = numbers == "Reference";
+    allow(forceName, vertices, {},
+          isReference ? set<string>{"Vertex", "BoxVector"} : set<string>{"Vertex"});
+    within(forceName, vertices, [&] {
+        force.setVertexNumbers(readRows(forceName, vertices, "Vertex", isReference ? coordinates : label));
+        vector<double> box = readRows(forceName, vertices, "BoxVector", coordinates);
+        if (!box.empty())
+            force.setReferenceBox(box);
+    });
 }
 
 void MembraneForceProxy::readOtherParticles(const SerializationNode& node, MembraneForce& force) const {

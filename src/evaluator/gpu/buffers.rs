@@ -13,6 +13,7 @@ use wgpu::BufferUsages as Usage;
 pub struct Demand {
     pub frame: usize,
     pub fields: usize,
+    pub constants: usize,
     pub results: usize,
     pub needs: Needs,
 }
@@ -75,6 +76,7 @@ impl Buffers {
         let mut wanted = vec![
             (Binding::Frame, demand.frame),
             (Binding::Fields, demand.fields),
+            (Binding::Constants, demand.constants),
             (Binding::Results, demand.results),
         ];
         for &(binding, needs, size) in &self.optional {

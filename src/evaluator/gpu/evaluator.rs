@@ -147,6 +147,7 @@ impl GpuEvaluator {
             &Demand {
                 frame: self.frame.bytes.len(),
                 fields: self.frame.fields.len() * real,
+                constants: self.frame.constants.bytes.len(),
                 results: self.frame.num_results * real,
                 needs: self.frame.needs,
             },
@@ -161,6 +162,7 @@ impl GpuEvaluator {
             uploaded
         })?;
         self.frame.fields_changed = false;
+        self.frame.constants.changed = false;
         let computed = self.read(scale, terms, first, bytes, contributions, forces);
         if computed.is_ok() {
             self.buffers.readback.unmap();
@@ -183,6 +185,10 @@ impl GpuEvaluator {
             let mut sink = Bytes { precision: self.precision, bytes: &mut bytes };
             self.frame.fields.iter().for_each(|value| sink.real(*value));
             write(Binding::Fields, &bytes);
+        }
+        let constants = &self.frame.constants;
+        if constants.changed && !constants.bytes.is_empty() {
+            write(Binding::Constants, &constants.bytes);
         }
     }
 

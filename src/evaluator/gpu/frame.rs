@@ -1,13 +1,13 @@
 //! The terms of an evaluation as the shaders read them, and where in the results each of them leaves its sums.
 
 use super::interface::{
-    FrameRecord, GROUP_SIZE, KINDS, NO_FIELD, SUMS_OF_EDGES, SUMS_OF_TOTALS, SUMS_OF_TRIANGLES,
-    SUMS_OF_VERTICES, TermRecord, Wishes,
+    FrameRecord, GROUP_SIZE, Item, KINDS, NO_FIELD, SUMS_OF_EDGES, SUMS_OF_TOTALS,
+    SUMS_OF_TRIANGLES, SUMS_OF_VERTICES, TermRecord, Wishes,
 };
 use super::lattice::Scale;
 use super::{Bytes, Precision, Reals, shaders};
 use crate::mesh::Topology;
-use crate::potentials::{Contribution, Element, MAX_PARAMETERS, Needs, Potential, Term};
+use crate::potentials::{CONSTANTS, Contribution, Element, MAX_PARAMETERS, Needs, Potential, Term};
 use std::ops::Range;
 
 /// Workgroups for some elements.
@@ -36,6 +36,17 @@ struct Sums {
     derivatives: bool,
 }
 
+/// The constants of triangles of all terms that have any, end to end.
+pub struct FrameConstants {
+    /// As the shaders read them.
+    pub bytes: Vec<u8>,
+    /// Whether they differ from those of the last evaluation.
+    pub changed: bool,
+    /// The terms' versions of them, and the unit of length.
+    versions: Vec<u64>,
+    unit: f64,
+}
+
 /// What an evaluation asks of the device.
 pub struct Frame {
     /// What the shaders read.
@@ -50,6 +61,8 @@ pub struct Frame {
     pub fields: Vec<f64>,
     /// Whether `fields` differ from those of the last evaluation.
     pub fields_changed: bool,
+    /// What terms have for triangles.
+    pub constants: FrameConstants,
     /// Whether the device computes the terms of borders too, triangle by triangle; otherwise the processor does.
     has_borders: bool,
 }
@@ -64,6 +77,12 @@ impl Frame {
             given: Vec::new(),
             fields: Vec::new(),
             fields_changed: true,
+            constants: FrameConstants {
+                bytes: Vec::new(),
+                changed: true,
+                versions: Vec::new(),
+                unit: 0.0,
+            },
             has_borders,
         }
     }
@@ -80,6 +99,7 @@ impl Frame {
         longest: f64,
     ) -> bool {
         self.update_fields(topology, terms);
+        self.constants.update(terms, precision, scale.unit);
         self.needs = terms.iter().fold(Needs::empty(), |all, term| all | self.needs_of(term));
         self.bytes.clear();
         FrameRecord {
@@ -97,9 +117,9 @@ impl Frame {
         self.sums.clear();
         self.num_results = 3 * topology.num_vertices();
         let mut fits = true;
-        let mut field_start = 0;
+        let mut starts = Starts::default();
         for term in terms {
-            fits &= self.put_term(topology, precision, scale, term, &mut field_start);
+            fits &= self.put_term(topology, precision, scale, term, &mut starts);
         }
         fits
     }
@@ -159,7 +179,7 @@ impl Frame {
         precision: Precision,
         scale: Scale,
         term: &Term,
-        field_start: &mut usize,
+        starts: &mut Starts,
     ) -> bool {
         let needs = self.needs_of(term);
         let mut wishes = Wishes::empty();
@@ -182,10 +202,12 @@ impl Frame {
         self.sums.push(Sums { places, derivatives: term.wants_derivatives });
 
         let field_starts = term.fields.map(|field| {
-            let start = if field.is_empty() { NO_FIELD } else { *field_start as u32 };
-            *field_start += field.len();
+            let start = if field.is_empty() { NO_FIELD } else { starts.fields as u32 };
+            starts.fields += field.len();
             start
         });
+        let constants_start = starts.constants as u32;
+        starts.constants += CONSTANTS * term.constants.values.len();
         let reference =
             if needs.contains(Needs::TOTALS) { reference(scale, term) } else { Some(0) };
         let limbs = reference.unwrap_or(0);
@@ -198,6 +220,10 @@ impl Frame {
             sums: places.map(|place| place.map_or(0, |(first, _)| first as u32)),
             field_starts,
             reference: std::array::from_fn(|limb| (limbs >> (32 * limb)) as u32),
+            constants_start,
+            padding: 0,
+            more_padding: [0; 2],
+            most_padding: [0; 4],
             values: std::array::from_fn(|k| term.values[k] / units[k]),
             field_units: units.map(|unit| 1.0 / unit),
         }
@@ -255,6 +281,55 @@ impl Frame {
     /// The bytes of the results that hold sums.
     pub fn sums_range(&self, topology: &Topology) -> Range<usize> {
         3 * topology.num_vertices()..self.num_results
+    }
+}
+
+/// Where in the fields and constants those of the next term begin.
+#[derive(Default)]
+struct Starts {
+    fields: usize,
+    constants: usize,
+}
+
+impl FrameConstants {
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.bytes.len() / Item::Constant.size(0)
+    }
+
+    /// Take over those of some terms in a unit of length, if they are others than before.
+    fn update(&mut self, terms: &[Term], precision: Precision, unit: f64) {
+        let with = || terms.iter().filter(|term| !term.constants.values.is_empty());
+        let versions = || with().map(|term| term.constants.version);
+        if versions().eq(self.versions.iter().copied()) && unit == self.unit {
+            return;
+        }
+        // It stays so until they have been uploaded, which may be later than now.
+        self.changed = true;
+        self.versions = versions().collect();
+        self.unit = unit;
+        self.bytes.clear();
+        for term in with() {
+            let scales =
+                term.potential.constant_lengths().map(|length| unit.powi((-length).into()));
+            for values in term.constants.values {
+                for (value, scale) in values.iter().zip(scales) {
+                    self.put(precision, value * scale);
+                }
+            }
+        }
+    }
+
+    fn put(&mut self, precision: Precision, value: f64) {
+        match precision {
+            Precision::Double => self.bytes.extend_from_slice(&value.to_ne_bytes()),
+            Precision::Single => {
+                let high = value as f32;
+                let low = (value - f64::from(high)) as f32;
+                self.bytes.extend_from_slice(&high.to_ne_bytes());
+                self.bytes.extend_from_slice(&low.to_ne_bytes());
+            }
+        }
     }
 }
 

@@ -48,6 +48,8 @@ numbers! {
     NO_FIELD = u32::MAX;
     /// Scalars of a term, used or not.
     PARAMETERS = MAX_PARAMETERS as u32;
+    /// Constants that a triangle has in [`Binding::Constants`] for a term.
+    CONSTANTS = crate::potentials::CONSTANTS as u32;
     /// Numbers that a vertex has in [`Binding::VectorSlopes`].
     SLOPES_PER_VERTEX = 9;
     /// Numbers that a triangle has in [`Binding::CornerForces`].
@@ -184,6 +186,12 @@ record! {
         field_starts: [u32; MAX_PARAMETERS],
         /// The target of the total area or volume as a whole number of the lattice's units, two's complement.
         reference: [u32; 4],
+        /// Where in the constants of triangles its own begin.
+        constants_start: u32,
+        /// Values begin at a multiple of the size of four doubles.
+        padding: u32,
+        more_padding: [u32; 2],
+        most_padding: [u32; 4],
         values: [f64; MAX_PARAMETERS],
         /// What one unit of a field is.
         field_units: [f64; MAX_PARAMETERS],
@@ -199,6 +207,8 @@ pub enum Item {
     WordPair,
     Real,
     RealQuad,
+    /// In single precision the sum of two numbers, else one.
+    Constant,
     /// A whole number in single precision, else a real one.
     Coordinate,
     /// A sum in 128 bits: a whole number in single precision, else two real ones.
@@ -216,6 +226,7 @@ impl Item {
             Self::WordPair => "array<vec2<u32>>",
             Self::Real => "array<real>",
             Self::RealQuad => "array<vec4r>",
+            Self::Constant => "array<constant>",
             Self::Coordinate => "array<coordinate>",
             Self::Total => "array<total>",
             Self::Counter => "atomic<u32>",
@@ -227,7 +238,7 @@ impl Item {
         match self {
             Self::Frame => 0,
             Self::Word | Self::Counter => 4,
-            Self::WordPair => 8,
+            Self::WordPair | Self::Constant => 8,
             Self::Real | Self::Coordinate => real,
             Self::RealQuad => 4 * real,
             Self::Total => 16,
@@ -272,6 +283,8 @@ bindings! {
     Rings: "read" Word;
     /// Values of single elements.
     Fields: "read" Real;
+    /// Constants of triangles, term by term.
+    Constants: "read" Constant;
     /// Normal and twice the area.
     TriangleGeometry: "read_write" RealQuad;
     /// l², φ / l, and the bending moment per length of potentials of the angle.

@@ -55,7 +55,7 @@ pub fn items(
         Binding::VertexSlopes => (v, Needs::VERTICES),
         Binding::VectorSlopes => (SLOPES_PER_VERTEX as usize * v, Needs::VECTORS),
         Binding::ThinTriangles => (1, always),
-        Binding::Frame | Binding::Fields | Binding::Results => return None,
+        Binding::Frame | Binding::Fields | Binding::Constants | Binding::Results => return None,
     })
 }
 

@@ -98,17 +98,8 @@ pub fn source(precision: Precision) -> &'static CStr {
 /// Whether a platform can evaluate a potential: those of contacts are computed on the processor, and in a periodic box
 /// volumes, for which a surface has to be in one piece.
 pub fn is_native(potential: &'static dyn Potential, is_periodic: bool) -> bool {
-    let term = Term {
-        potential,
-        form: 0,
-        switches: 0,
-        values: Default::default(),
-        fields: Default::default(),
-        particles: &[],
-        wants_derivatives: false,
-    };
     let wants_one_piece = is_periodic && potential.needs_outside();
-    !wants_one_piece && !potential.needs(&term).contains(Needs::CONTACTS)
+    !wants_one_piece && !potential.needs(&Term::of(potential)).contains(Needs::CONTACTS)
 }
 
 impl Native {
@@ -202,6 +193,7 @@ impl Native {
             let (count, needs) = match binding {
                 Binding::Frame => (frame.bytes.len() / 4, Needs::empty()),
                 Binding::Fields => (frame.fields.len(), Needs::empty()),
+                Binding::Constants => (frame.constants.len(), Needs::empty()),
                 Binding::Results => (frame.num_results, Needs::empty()),
                 _ => items(binding, topology, *precision).unwrap_or_default(),
             };
@@ -223,6 +215,10 @@ impl Native {
             let mut sink = Bytes { precision: *precision, bytes: &mut bytes };
             frame.fields.iter().for_each(|value| sink.real(*value));
             plan.buffers[Binding::Fields as usize].set(&bytes);
+        }
+        let constants = &mut frame.constants;
+        if std::mem::take(&mut constants.changed) && !constants.bytes.is_empty() {
+            plan.buffers[Binding::Constants as usize].set(&constants.bytes);
         }
         plan.passes.clear();
         plan.passes.extend(

@@ -3,6 +3,7 @@
 //! The crate `pulp` has the arithmetic of each; here are operators on it, so that formulas read as formulas.
 
 use super::records::{BLOCK, Records};
+use crate::potentials::{CONSTANTS, Constants};
 use crate::real::Real;
 use pulp::Simd;
 use pulp::bytemuck::cast;
@@ -265,5 +266,26 @@ impl<S: Records> Real for Lane<S> {
             }
         }
         Self { value, ..self }
+    }
+
+    #[inline(always)]
+    fn gather(self, records: &[Constants], places: &[u32]) -> [Self; CONSTANTS] {
+        // Offsets count numbers.
+        assert!(records.len() <= u32::MAX as usize / CONSTANTS, "no mesh is that large");
+        let mut offsets = [0; BLOCK];
+        for (lane, offset) in offsets[..Self::COUNT].iter_mut().enumerate() {
+            let place = places[lane.min(places.len() - 1)];
+            assert!((place as usize) < records.len(), "there is a record for each");
+            *offset = CONSTANTS as u32 * place;
+        }
+        let base = records.as_ptr().cast::<f64>();
+        // SAFETY: the offsets are of records that are there, each of twice four numbers.
+        let ([a, b, c, d], [e, f, g, h]) = unsafe {
+            (
+                Self::gather4(self.simd, base, offsets.as_ptr()),
+                Self::gather4(self.simd, base.add(4), offsets.as_ptr()),
+            )
+        };
+        [a, b, c, d, e, f, g, h]
     }
 }

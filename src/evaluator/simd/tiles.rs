@@ -324,7 +324,7 @@ impl<F: TriangleFormula> WithLanes for InLanes<'_, TriangleTile, F> {
                 area: tile.by_area.load(simd, index),
                 length_squared: load3(simd, &tile.by_length_squared, index),
             };
-            let place = Place { term, ids: &ids[index..] };
+            let place = Place::new(term, &ids[index..]);
             let sums = formula.apply(place, &triangle, &mut slopes);
             tile.energies.add(simd, index, sums.energy);
             sum.add(sums, ids.len() - index);
@@ -348,7 +348,7 @@ impl<F: VertexFormula> WithLanes for InLanes<'_, VertexTile, F> {
             let vertex = tile.known.load::<S, F>(simd, index);
             let before = tile.slopes.load::<S, F>(simd, index);
             let mut slopes = before;
-            let place = Place { term, ids: &ids[index..] };
+            let place = Place::new(term, &ids[index..]);
             let mut sums = formula.apply(place, &vertex, &mut slopes);
             let count = ids.len() - index;
             sum.add(sums, count);

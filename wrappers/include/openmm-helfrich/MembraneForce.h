@@ -155,6 +155,34 @@ public:
         return particles;
     }
     /**
+     * Get what the force has for each vertex, one vertex after the other in ascending order of particle index: the
+     * reference of a SkalakForce, for example. Most classes have nothing.
+     */
+    const std::vector<double>& getVertexNumbers() const {
+        return vertexNumbers;
+    }
+    /**
+     * Set what the force has for each vertex. updateParametersInContext() tells existing Contexts.
+     *
+     * @param numbers  one vertex after the other, in ascending order of particle index: three coordinates of each in
+     *                 the reference, nm, or the number of its domain
+     */
+    void setVertexNumbers(const std::vector<double>& numbers);
+    /**
+     * Get the vectors of the periodic box in which the reference is, nine numbers, nm; empty if there is none.
+     */
+    const std::vector<double>& getReferenceBox() const {
+        return referenceBox;
+    }
+    /**
+     * Say in which periodic box the reference of the force is. Its sides are then nearest images in this box, whatever
+     * the Context's box becomes, so that its positions may be wrapped or not, and must be shorter than half of its
+     * least width. A surface that spans the box needs it; without one the reference is taken as it is, in one piece.
+     *
+     * @param vectors  the box vectors a, b and c as OpenMM has them, nine numbers, nm; empty for none
+     */
+    void setReferenceBox(const std::vector<double>& vectors);
+    /**
      * Get which variant of the potential is computed, 0 if there are none.
      */
     int getForm() const {
@@ -217,6 +245,7 @@ private:
     std::vector<Parameter> parameters;
     std::vector<std::string> derivatives;
     std::vector<int> particles;
+    std::vector<double> vertexNumbers, referenceBox;
     int form;
     unsigned int switches;
     std::string backend;
@@ -313,6 +342,21 @@ inline const std::string& MembraneForce::getEnergyParameterDerivativeName(int in
     if (index < 0 || index >= getNumEnergyParameterDerivatives())
         fail("there is no derivative " + std::to_string(index));
     return derivatives[index];
+}
+
+inline void MembraneForce::setVertexNumbers(const std::vector<double>& numbers) {
+    check(Helfrich_Potential_checkNumbers(getTypeName().c_str(), numbers.data(), (int64_t) numbers.size(), nullptr));
+    vertexNumbers = numbers;
+}
+
+inline void MembraneForce::setReferenceBox(const std::vector<double>& vectors) {
+    const char* name;
+    if (Helfrich_Potential_numbers(getTypeName().c_str(), &name) != 3)
+        fail("has no reference that could be in a box");
+    if (!vectors.empty() && vectors.size() != 9)
+        fail("the box of the reference needs nine numbers, got " + std::to_string(vectors.size()));
+    check(Helfrich_Potential_checkNumbers(getTypeName().c_str(), nullptr, 0, vectors.empty() ? nullptr : vectors.data()));
+    referenceBox = vectors;
 }
 
 inline void MembraneForce::setForm(int number) {

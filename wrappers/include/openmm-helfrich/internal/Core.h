@@ -43,6 +43,13 @@ struct HelfrichTerm {
     /** Particles beside the vertices, null where there are none. */
     const int* particles;
     int64_t numParticles;
+    /** What the user has given for each vertex, null where there is nothing. */
+    const double* numbers;
+    int64_t numNumbers;
+    /** The vectors of the periodic box of these numbers, null if there is none. */
+    const double* numbersBox;
+    /** Which object has the numbers, and what changes with them. */
+    uint64_t numbersOwner, numbersVersion;
 };
 
 struct HelfrichNative;
@@ -122,6 +129,10 @@ int Helfrich_Potential_parameter(const char* potential, int index, HelfrichParam
 int Helfrich_Potential_form(const char* potential, int index, const char** what, const char** name);
 int Helfrich_Potential_switch(const char* potential, int index, const char** name);
 int Helfrich_Potential_check(const char* potential, int index, double value);
+/** How many numbers it wants for each vertex, or 0; what they are called, or null. */
+int Helfrich_Potential_numbers(const char* potential, const char** name);
+/** `box` has the vectors of the periodic box that positions among them are in, or is null. */
+int Helfrich_Potential_checkNumbers(const char* potential, const double* numbers, int64_t count, const double* box);
 int Helfrich_Membrane_create(const char* subject, const int* triangles, int64_t numTriangles, int64_t numParticles,
                              HelfrichMembrane** membrane);
 void Helfrich_Membrane_destroy(HelfrichMembrane* membrane);
@@ -143,7 +154,7 @@ int Helfrich_Native_look(const char* subject, HelfrichNative* native, HelfrichMe
                          const HelfrichTerm* terms, int64_t numTerms, int64_t numParticles, const double* positions,
                          const double* boxVectors);
 /** For each scalar of each term, `derivatives` has the number of the derivative that it adds to, or -1. */
-int Helfrich_Native_plan(const char* subject, HelfrichNative* native, const HelfrichMembrane* membrane,
+int Helfrich_Native_plan(const char* subject, HelfrichNative* native, HelfrichMembrane* membrane,
                          const double* boxVectors, const HelfrichTerm* terms, int64_t numTerms, int energies,
                          int forces, const int* derivatives, HelfrichNativePlan* plan);
 HelfrichNativeBuffer Helfrich_Native_buffer(const HelfrichNative* native, int64_t number);
@@ -154,7 +165,7 @@ int64_t Helfrich_Membrane_numEdges(const HelfrichMembrane* membrane);
 void Helfrich_Membrane_edges(const HelfrichMembrane* membrane, int* particles);
 /** Whether it spans the periodic box in which it was evaluated last: 1 or 0. */
 int Helfrich_Membrane_spans(const HelfrichMembrane* membrane);
-int Helfrich_Membrane_checkTerm(const char* subject, const HelfrichMembrane* membrane, const HelfrichTerm* term);
+int Helfrich_Membrane_checkTerm(const char* subject, HelfrichMembrane* membrane, const HelfrichTerm* term);
 int Helfrich_Membrane_checkParticles(const char* subject, const HelfrichMembrane* membrane, const HelfrichTerm* term);
 void Helfrich_Membrane_setThreads(HelfrichMembrane* membrane, int threads);
 /** `box` has the three box vectors, or is null where the surface is not in a periodic box. */
