@@ -7,13 +7,11 @@ Farnudi, Ejtehadi and Everaers, *Dynamics of fluid bilayer vesicles*, Phys. Rev.
 import math
 
 import numpy as np
-import openmm
-from openmm import app, unit
+from openmm import unit
 
-from . import platforms
-from ._placement import Placement, groups_for
+from ._in_systems import InSystems
 from ._quantities import checked_field, checked_number, encloses
-from ._vesicle_flips import bath_of, checked_flips, mover_of
+from ._vesicle_flips import checked_flips, mover_of
 from ._vesicle_times import TimeScales
 from .analysis import theory, triangle_areas
 from .forces import (
@@ -22,7 +20,6 @@ from .forces import (
     EdgeTensionForce,
     EnclosedVolumeForce,
     GaussianCurvatureForce,
-    MonteCarloBondFlip,
     PlaquetteAreaForce,
     SurfaceAreaForce,
     TriangleAreaForce,
@@ -37,7 +34,7 @@ KBT = theory.BOLTZMANN * 300
 _ENERGY = unit.kilojoule_per_mole
 
 
-class Vesicle(TimeScales):
+class Vesicle(InSystems, TimeScales):
     """A fluid vesicle: bending, global area, global volume, and soft triangle heights.
 
     E = ½ κ Σ_i [J_i²/a_i − 2 C0 J_i + C0² a_i] + ½ kA (A − A0)²/A0 + ½ kV (V − V0)²/V0 + U_h
@@ -194,7 +191,6 @@ class Vesicle(TimeScales):
         if self._encloses:
             self._volume = checked_number("volume", volume, nm**3, zero=False)
         self._flips = None if flips is None else checked_flips(flips)
-        self._placement = None
         # The forces refuse a scheme or form that does not exist: now, not when they are used.
         self._forces(0)
         if self._flips is not None:
@@ -241,120 +237,6 @@ class Vesicle(TimeScales):
         if self._volume is None:
             return None
         return self._volume / (4 / 3 * math.pi * self.radius**3)
-
-    def add_to(self, system, force_groups=None):
-        """Add the particles and the forces to a System.
-
-        The particles follow those which the System has, so several vesicles can share one. Each
-        force gets a force group of its own and a name: "area", "volume" where there is one,
-        "bending", "heights", and "dihedrals", "triangle_areas", "plaquettes", "triangle_repulsion",
-        "edge_tension", "gaussian_curvature" if they are switched on.
-
-        Parameters
-        ----------
-        system : openmm.System
-        force_groups : sequence of int, optional
-            One group for each force, in the order above. Default: the lowest groups that no force
-            of the System uses.
-
-        Returns
-        -------
-        Placement
-            Where the vesicle is in the System, and its forces.
-
-        Raises
-        ------
-        ValueError
-            Too few force groups are free, or `force_groups` is not one of 0 … 31 for each force.
-        """
-        offset = system.getNumParticles()
-        forces = self._forces(offset)
-        groups = groups_for(forces, system, force_groups)
-        for (name, force), group in zip(forces.items(), groups, strict=True):
-            force.setName(name)
-            force.setForceGroup(group)
-        if self._mesh.box is not None:
-            system.setDefaultPeriodicBoxVectors(*self._mesh.box)
-        for _ in range(self._mesh.num_vertices):
-            system.addParticle(self._mass)
-        for force in forces.values():
-            system.addForce(force)
-        mover = None
-        if self._flips is not None:
-            mover = mover_of(self._flips, self._mesh, offset)
-            system.addForce(mover)
-        placement = Placement(system, offset, self._mesh.num_vertices, forces, mover)
-        self._placement = placement
-        return placement
-
-    def system(self):
-        """A new System that holds this vesicle alone: vertex i is particle i.
-
-        Returns
-        -------
-        openmm.System
-        """
-        system = openmm.System()
-        self.add_to(system)
-        return system
-
-    def simulation(self, integrator, platform=None):
-        """A Simulation of this vesicle alone, with the positions of the mesh and no velocities.
-
-        Parameters
-        ----------
-        integrator : openmm.Integrator
-        platform : openmm.Platform or str, optional
-            Default: the fastest one for it, see `platforms.choose`: mostly ``Helfrich``.
-
-        Returns
-        -------
-        openmm.app.Simulation
-        """
-        system = self.system()
-        if platform is None:
-            platform = platforms.choose(system, integrator).name
-        if isinstance(platform, str):
-            platform = openmm.Platform.getPlatformByName(platform)
-        simulation = app.Simulation(self._mesh.topology(), system, integrator, platform)
-        simulation.context.setPositions(self._mesh.vertices)
-        if self._flips is not None and "temperature" not in self._flips:
-            temperature = bath_of(integrator)
-            simulation.context.setParameter(MonteCarloBondFlip.Temperature(), temperature)
-        return simulation
-
-    @property
-    def placement(self):
-        """The `Placement` in the System to which this vesicle was added last.
-
-        Raises RuntimeError if it was not added to one yet.
-        """
-        if self._placement is None:
-            raise RuntimeError(
-                "Vesicle: it is in no System yet; call simulation(), system() or add_to() first"
-            )
-        return self._placement
-
-    def energies(self, context):
-        """Energies per term of the System to which this vesicle was added last.
-
-        Parameters
-        ----------
-        context : openmm.Context
-            A Context of that System. For a vesicle that was added to several Systems, ask the
-            `Placement` that `add_to` returned.
-
-        Returns
-        -------
-        dict of str to float
-            Energy of each of the forces, kJ/mol.
-
-        Raises
-        ------
-        RuntimeError
-            The vesicle was not added to a System yet.
-        """
-        return self.placement.energies(context)
 
     def _forces(self, offset):
         """The forces by name, for particles that start at `offset`."""

@@ -1,0 +1,133 @@
+"""What a model of a closed surface does with Systems: joins them, runs alone, and tells its energies."""
+
+import openmm
+from openmm import app
+
+from . import platforms
+from ._placement import Placement, groups_for
+from ._vesicle_flips import bath_of, mover_of
+from .forces import MonteCarloBondFlip
+
+__all__ = ["InSystems"]
+
+
+class InSystems:
+    """A mesh of particles of one mass, with forces by their names, and bond flips if it has any.
+
+    Derived classes have ``_mesh``, ``_mass``, and ``_forces(offset)`` for particles from `offset` on.
+    """
+
+    _flips = None
+    _placement = None
+
+    def add_to(self, system, force_groups=None):
+        """Add the particles and the forces to a System.
+
+        The particles follow those which the System has, so several surfaces can share one. Each
+        force gets a force group of its own and its name.
+
+        Parameters
+        ----------
+        system : openmm.System
+        force_groups : sequence of int, optional
+            One group for each force, in the order above. Default: the lowest groups that no force
+            of the System uses.
+
+        Returns
+        -------
+        Placement
+            Where it is in the System, and its forces.
+
+        Raises
+        ------
+        ValueError
+            Too few force groups are free, or `force_groups` is not one of 0 … 31 for each force.
+        """
+        offset = system.getNumParticles()
+        forces = self._forces(offset)
+        groups = groups_for(forces, system, force_groups)
+        for (name, force), group in zip(forces.items(), groups, strict=True):
+            force.setName(name)
+            force.setForceGroup(group)
+        if self._mesh.box is not None:
+            system.setDefaultPeriodicBoxVectors(*self._mesh.box)
+        for _ in range(self._mesh.num_vertices):
+            system.addParticle(self._mass)
+        for force in forces.values():
+            system.addForce(force)
+        mover = None
+        if self._flips is not None:
+            mover = mover_of(self._flips, self._mesh, offset)
+            system.addForce(mover)
+        placement = Placement(system, offset, self._mesh.num_vertices, forces, mover)
+        self._placement = placement
+        return placement
+
+    def system(self):
+        """A new System that holds this surface alone: vertex i is particle i.
+
+        Returns
+        -------
+        openmm.System
+        """
+        system = openmm.System()
+        self.add_to(system)
+        return system
+
+    def simulation(self, integrator, platform=None):
+        """A Simulation of this surface alone, with the positions of the mesh and no velocities.
+
+        Parameters
+        ----------
+        integrator : openmm.Integrator
+        platform : openmm.Platform or str, optional
+            Default: the fastest one for it, see `platforms.choose`: mostly ``Helfrich``.
+
+        Returns
+        -------
+        openmm.app.Simulation
+        """
+        system = self.system()
+        if platform is None:
+            platform = platforms.choose(system, integrator).name
+        if isinstance(platform, str):
+            platform = openmm.Platform.getPlatformByName(platform)
+        simulation = app.Simulation(self._mesh.topology(), system, integrator, platform)
+        simulation.context.setPositions(self._mesh.vertices)
+        if self._flips is not None and "temperature" not in self._flips:
+            temperature = bath_of(integrator)
+            simulation.context.setParameter(MonteCarloBondFlip.Temperature(), temperature)
+        return simulation
+
+    @property
+    def placement(self):
+        """The `Placement` in the System to which this surface was added last.
+
+        Raises RuntimeError if it was not added to one yet.
+        """
+        if self._placement is None:
+            raise RuntimeError(
+                f"{type(self).__name__}: it is in no System yet; call simulation(), system() or add_to() first"
+            )
+        return self._placement
+
+    def energies(self, context):
+        """Energies per term of the System to which this surface was added last.
+
+        Parameters
+        ----------
+        context : openmm.Context
+            A Context of that System. For a surface that was added to several Systems, ask the
+            `Placement` that `add_to` returned.
+
+        Returns
+        -------
+        dict of str to float
+            Energy of each of the forces, kJ/mol.
+
+        Raises
+        ------
+        RuntimeError
+            It was not added to a System yet.
+        """
+        return self.placement.energies(context)
