@@ -42,14 +42,14 @@ fn sum_groups(groups: u32, lane: u32) {
     }
 }
 
-// How far the total area is above the target of a term.
-fn excess_of_area(term: u32) -> real {
-    return real(0.5) * sum_of_all.x - frame.terms[term].values[1];
+// How far the total area is above what a term measures it from.
+fn excess_of_area(term: u32, origin: real) -> real {
+    return real(0.5) * sum_of_all.x - origin;
 }
 
-// How far the total volume is above the target of a term.
-fn excess_of_volume(term: u32) -> real {
-    return sum_of_all.y / real(6.0) - frame.terms[term].values[1];
+// How far the total volume is above what a term measures it from.
+fn excess_of_volume(term: u32, origin: real) -> real {
+    return sum_of_all.y / real(6.0) - origin;
 }
 
 fn store_total_slopes(slopes: TotalSlopes, groups: u32) {

@@ -193,14 +193,14 @@ fn sum_groups(groups: u32, lane: u32) {
     }
 }
 
-// How far the total area is above the target of a term.
-fn excess_of_area(term: u32) -> real {
+// How far the total area is above what a term measures it from.
+fn excess_of_area(term: u32, origin: real) -> real {
     let difference = float128(add128(area_of_all, negative128(frame.terms[term].reference)));
     return difference * frame.quantum * frame.quantum * 0.5;
 }
 
-// How far the total volume is above the target of a term.
-fn excess_of_volume(term: u32) -> real {
+// How far the total volume is above what a term measures it from.
+fn excess_of_volume(term: u32, origin: real) -> real {
     let difference = float128(add128(volume_of_all, negative128(frame.terms[term].reference)));
     return difference * frame.quantum * frame.quantum * frame.quantum / 6.0;
 }

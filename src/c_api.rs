@@ -225,3 +225,6 @@ force_class!(SurfaceRepulsionForce(distance, epsilon));
 force_class!(ParticleSurfaceForce(distance, epsilon, adhesion, radius) attraction);
 force_class!(EdgeTensionForce(tension));
 force_class!(GaussianCurvatureForce(modulus));
+force_class!(PressureForce(pressure));
+force_class!(SurfaceTensionForce(tension));
+force_class!(OsmoticPressureForce(solutes, concentration, thermalEnergy));

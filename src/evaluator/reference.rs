@@ -157,7 +157,7 @@ impl ReferenceEvaluator {
         }
         let mut ignored = vec![Contribution::default(); terms.len()];
         let contributions = if contributions.is_empty() { &mut ignored[..] } else { contributions };
-        let total_partials = self.potentials(terms, needs, &totals, contributions);
+        let total_partials = self.potentials(terms, needs, &totals, contributions)?;
         check_energies(terms, contributions)?;
         Ok((needs, totals, total_partials))
     }

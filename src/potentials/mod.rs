@@ -11,11 +11,14 @@ mod edge_tension;
 mod elements;
 mod enclosed_volume;
 mod gaussian_curvature;
+mod osmotic_pressure;
 pub(crate) mod particle_surface;
 mod plaquette_area;
+mod pressure;
 mod runs;
 mod surface_area;
 pub(crate) mod surface_repulsion;
+mod surface_tension;
 mod triangle_area;
 mod triangle_area_repulsion;
 mod triangle_height;
@@ -31,7 +34,7 @@ use std::ffi::CStr;
 pub use surface_repulsion::ONLY_BETWEEN_PARTS;
 
 /// All potentials, by the names of their OpenMM classes.
-pub static REGISTRY: [&dyn Potential; 12] = [
+pub static REGISTRY: [&dyn Potential; 15] = [
     &surface_area::SurfaceArea,
     &enclosed_volume::EnclosedVolume,
     &bending::Bending,
@@ -44,6 +47,9 @@ pub static REGISTRY: [&dyn Potential; 12] = [
     &gaussian_curvature::GaussianCurvature,
     &surface_repulsion::SurfaceRepulsion,
     &particle_surface::ParticleSurface,
+    &pressure::Pressure,
+    &surface_tension::SurfaceTension,
+    &osmotic_pressure::OsmoticPressure,
 ];
 
 /// What a scalar may be given for one by one.
@@ -127,6 +133,15 @@ impl std::ops::AddAssign for Contribution {
 /// The values that a potential is evaluated with.
 pub type Values = [f64; MAX_PARAMETERS];
 
+/// A value of one of the totals of a surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Total {
+    /// nm².
+    Area(f64),
+    /// nm³.
+    Volume(f64),
+}
+
 /// One kind of energy. The methods for elements get a run of them to apply a formula to; a potential
 /// implements those that it [`Needs`].
 pub trait Potential: Sync {
@@ -164,6 +179,12 @@ pub trait Potential: Sync {
     /// refused without a look at what they would get. To say no is always right, but slower.
     fn is_never_negative(&self, _: &Term) -> bool {
         false
+    }
+
+    /// The total that the energy is a function of, at the value from which it is measured: single precision takes the
+    /// difference before it rounds.
+    fn reference(&self, _: &Term) -> Option<Total> {
+        None
     }
 
     /// Energy of the total area and volume.

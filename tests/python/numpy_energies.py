@@ -177,6 +177,11 @@ def global_volume(vertices, triangles, modulus: float, target: float) -> float:
     return quadratic(Geometry(vertices, triangles).volume, modulus, target)
 
 
+def osmotic_pressure(vertices, triangles, solutes, concentration, thermalEnergy) -> float:  # noqa: N803
+    x = concentration * Geometry(vertices, triangles).volume / solutes
+    return float(solutes * thermalEnergy * (x - 1 - np.log(x)))
+
+
 def triangle_area(vertices, triangles, modulus: float, target) -> float:
     areas = Geometry(vertices, triangles).areas
     return float(np.sum(0.5 * modulus * (areas - target) ** 2 / np.asarray(target)))

@@ -316,6 +316,34 @@ def global_volume(triangles, modulus: float, target: float, style: str) -> list[
     return [force]
 
 
+def pressure(triangles, pressure: float, style: str) -> list[mm.Force]:
+    """−p V."""
+    force = mm.CustomCVForce(f"{_number(-pressure)}*total")
+    force.addCollectiveVariable("total", _volume_sum(triangles, style))
+    return [force]
+
+
+def surface_tension(triangles, tension: float, style: str) -> list[mm.Force]:
+    """σ A."""
+    force = mm.CustomCVForce(f"{_number(tension)}*total")
+    force.addCollectiveVariable("total", _area_sum(triangles, style))
+    return [force]
+
+
+def osmotic_pressure(
+    triangles,
+    solutes: float,
+    concentration: float,
+    thermalEnergy: float,  # noqa: N803
+    style: str,
+) -> list[mm.Force]:
+    """n kT (x − 1 − ln x) with x = c V / n."""
+    x = f"x={_number(concentration / solutes)}*total"
+    force = mm.CustomCVForce(f"{_number(solutes * thermalEnergy)}*(x-1-log(x)); {x}")
+    force.addCollectiveVariable("total", _volume_sum(triangles, style))
+    return [force]
+
+
 # --- triangles ---------------------------------------------------------------------------------
 
 

@@ -10,10 +10,13 @@
 #include "openmm-helfrich/GaussianCurvatureForce.h"
 #include "openmm-helfrich/MonteCarloBondFlip.h"
 #include "openmm-helfrich/MonteCarloMembraneTension.h"
+#include "openmm-helfrich/OsmoticPressureForce.h"
 #include "openmm-helfrich/ParticleSurfaceForce.h"
 #include "openmm-helfrich/PlaquetteAreaForce.h"
+#include "openmm-helfrich/PressureForce.h"
 #include "openmm-helfrich/SurfaceAreaForce.h"
 #include "openmm-helfrich/SurfaceRepulsionForce.h"
+#include "openmm-helfrich/SurfaceTensionForce.h"
 #include "openmm-helfrich/TriangleAreaForce.h"
 #include "openmm-helfrich/TriangleAreaRepulsionForce.h"
 #include "openmm-helfrich/TriangleHeightForce.h"
@@ -32,7 +35,10 @@
     apply(SurfaceRepulsionForce) \
     apply(ParticleSurfaceForce) \
     apply(EdgeTensionForce) \
-    apply(GaussianCurvatureForce)
+    apply(GaussianCurvatureForce) \
+    apply(PressureForce) \
+    apply(SurfaceTensionForce) \
+    apply(OsmoticPressureForce)
 // clang-format on
 
 #endif /*OPENMM_HELFRICH_H_*/

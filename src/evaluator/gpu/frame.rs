@@ -7,7 +7,7 @@ use super::interface::{
 use super::lattice::Scale;
 use super::{Bytes, Precision, Reals, shaders};
 use crate::mesh::Topology;
-use crate::potentials::{Contribution, MAX_PARAMETERS, Needs, Potential, Term};
+use crate::potentials::{Contribution, MAX_PARAMETERS, Needs, Potential, Term, Total};
 use std::ops::Range;
 
 /// Workgroups for some elements.
@@ -242,13 +242,12 @@ fn units(scale: Scale, term: &Term) -> [f64; MAX_PARAMETERS] {
     })
 }
 
-/// The target of a total area or volume, in whole numbers of the lattice: twice an area, six times a volume.
+/// The value from which a term measures a total, in whole numbers of the lattice: twice an area, six times a volume.
 fn reference(scale: Scale, term: &Term) -> Option<u128> {
     let step = scale.quantum * scale.unit;
-    let steps = match term.potential.parameters().get(1).map(|parameter| parameter.length) {
-        Some(2) => 2.0 * term.values[1] / (step * step),
-        Some(3) => 6.0 * term.values[1] / (step * step * step),
-        _ => return None,
+    let steps = match term.potential.reference(term)? {
+        Total::Area(area) => 2.0 * area / (step * step),
+        Total::Volume(volume) => 6.0 * volume / (step * step * step),
     };
     (steps < 2f64.powi(126)).then_some(steps.round() as u128)
 }

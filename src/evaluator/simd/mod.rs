@@ -33,7 +33,7 @@ pub use records::BLOCK;
 pub use tiles::{EdgeBlock, TriangleTile, VertexTile};
 
 use super::Survey;
-use super::checks::{check_energies, culprit};
+use super::checks::{check_energies, check_totals, culprit};
 use crate::error::{Error, Result};
 use crate::mesh::geometry::{TotalPartials, Totals};
 use crate::mesh::{Cell, Triangulation};
@@ -199,6 +199,7 @@ impl SimdEvaluator {
             *contribution = Contribution::default();
             if term.potential.needs(term).contains(Needs::TOTALS) {
                 *contribution = term.potential.totals(term, &totals, &mut total_partials);
+                check_totals(term, contribution, &total_partials)?;
             }
         }
         if !contributions.is_empty() && !terms.is_empty() {
