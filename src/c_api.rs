@@ -228,3 +228,4 @@ force_class!(GaussianCurvatureForce(modulus));
 force_class!(PressureForce(pressure));
 force_class!(SurfaceTensionForce(tension));
 force_class!(OsmoticPressureForce(solutes, concentration, thermalEnergy));
+force_class!(AreaDifferenceForce(modulus, target));

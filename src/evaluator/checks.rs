@@ -20,7 +20,7 @@ pub fn check_energies<'a>(
 
 /// Refuse an energy of totals whose derivatives are not finite, so that no force would be; names the force.
 pub fn check_totals(term: &Term, contribution: &Contribution, slopes: &TotalPartials) -> Result<()> {
-    if slopes.area.is_finite() && slopes.volume.is_finite() {
+    if slopes.are_finite() {
         return Ok(());
     }
     let (force, energy) = (term.potential.name(), contribution.energy);

@@ -4,6 +4,7 @@
 //! coordinate; the chain rule from there to forces is in [`crate::mesh`]. Each potential is one file
 //! here, and one line in [`REGISTRY`].
 
+mod area_difference;
 mod bending;
 pub mod codes;
 mod dihedral;
@@ -34,7 +35,7 @@ use std::ffi::CStr;
 pub use surface_repulsion::ONLY_BETWEEN_PARTS;
 
 /// All potentials, by the names of their OpenMM classes.
-pub static REGISTRY: [&dyn Potential; 15] = [
+pub static REGISTRY: [&dyn Potential; 16] = [
     &surface_area::SurfaceArea,
     &enclosed_volume::EnclosedVolume,
     &bending::Bending,
@@ -50,6 +51,7 @@ pub static REGISTRY: [&dyn Potential; 15] = [
     &pressure::Pressure,
     &surface_tension::SurfaceTension,
     &osmotic_pressure::OsmoticPressure,
+    &area_difference::AreaDifference,
 ];
 
 /// What a scalar may be given for one by one.
@@ -140,6 +142,8 @@ pub enum Total {
     Area(f64),
     /// nm³.
     Volume(f64),
+    /// nm.
+    MeanCurvature(f64),
 }
 
 /// One kind of energy. The methods for elements get a run of them to apply a formula to; a potential
@@ -187,7 +191,7 @@ pub trait Potential: Sync {
         None
     }
 
-    /// Energy of the total area and volume.
+    /// Energy of the total area, volume and mean curvature.
     fn totals(&self, _: &Term, _: &Totals, _: &mut TotalPartials) -> Contribution {
         Contribution::default()
     }

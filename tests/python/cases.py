@@ -277,6 +277,34 @@ def _surface_tensions() -> list[Case]:
     ]
 
 
+def _area_differences() -> list[Case]:
+    return [
+        Case(
+            name=f"area difference, {word}",
+            force="AreaDifferenceForce",
+            arguments=lambda m, ratio=ratio: {
+                "modulus": 0.5,
+                "target": ratio * _geometry(m).mean_curvature,
+            },
+            energy=lambda m, a: 0.5 * a["modulus"] * (_geometry(m).mean_curvature - a["target"]) ** 2,
+            strings=lambda m, a, style: oracle.evaluate(
+                string_forces.area_difference(m.triangles, a["modulus"], a["target"], style),
+                m.positions,
+            ),
+            invalid=invalid,
+        )
+        for word, ratio, invalid in (
+            (
+                "too large",
+                0.9,
+                _never_below("modulus", zero=True) + _never_infinite("target"),
+            ),
+            ("too small", 1.2, ()),
+            ("of the other sign", -0.1, ()),
+        )
+    ]
+
+
 def _triangle_heights() -> list[Case]:
     return [
         Case(
@@ -649,5 +677,6 @@ CASES = [
     *_particle_surface(),
     *_pressures(),
     *_surface_tensions(),
+    *_area_differences(),
 ]
 PRESENT = [case for case in CASES if case.exists]

@@ -128,6 +128,11 @@ class Geometry:
         return self._sum(self.half_edges[0], self.lengths * self.angles / 2)
 
     @cached_property
+    def mean_curvature(self) -> float:
+        """Σ l φ / 2 over the edges, each of which is two half-edges."""
+        return float(np.sum(self.lengths * self.angles) / 4)
+
+    @cached_property
     def curvature_vectors(self) -> np.ndarray:
         """S of (B7)."""
         tail, head, _, _ = self.half_edges

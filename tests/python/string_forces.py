@@ -344,6 +344,16 @@ def osmotic_pressure(
     return [force]
 
 
+def area_difference(triangles, modulus: float, target: float, style: str) -> list[mm.Force]:
+    """½ m (M − M0)² with M = Σ l φ / 2."""
+    stencil = _stencil(style)
+    share = f"0.5*{stencil.length(2, 3)}*{stencil.turning(1, 2, 3, 4)}"
+    force = mm.CustomCVForce(f"{_number(0.5 * modulus)}*(total-{_number(target)})^2")
+    total = _compound(stencil.expression(share), edges_with_wings(triangles))
+    force.addCollectiveVariable("total", total)
+    return [force]
+
+
 # --- triangles ---------------------------------------------------------------------------------
 
 

@@ -3,6 +3,7 @@
 
 /** All forces of the plugin. */
 
+#include "openmm-helfrich/AreaDifferenceForce.h"
 #include "openmm-helfrich/BendingForce.h"
 #include "openmm-helfrich/DihedralForce.h"
 #include "openmm-helfrich/EdgeTensionForce.h"
@@ -38,7 +39,8 @@
     apply(GaussianCurvatureForce) \
     apply(PressureForce) \
     apply(SurfaceTensionForce) \
-    apply(OsmoticPressureForce)
+    apply(OsmoticPressureForce) \
+    apply(AreaDifferenceForce)
 // clang-format on
 
 #endif /*OPENMM_HELFRICH_H_*/

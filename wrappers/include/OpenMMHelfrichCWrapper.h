@@ -191,6 +191,13 @@ extern int Helfrich_OsmoticPressureForce_setConcentration(OpenMM_Force* force, d
 extern double Helfrich_OsmoticPressureForce_getThermalEnergy(OpenMM_Force* force);
 extern int Helfrich_OsmoticPressureForce_setThermalEnergy(OpenMM_Force* force, double thermalEnergy);
 
+extern OpenMM_Force* Helfrich_AreaDifferenceForce_create(const int* triangles, int numTriangles, double modulus,
+                                                         double target);
+extern double Helfrich_AreaDifferenceForce_getModulus(OpenMM_Force* force);
+extern int Helfrich_AreaDifferenceForce_setModulus(OpenMM_Force* force, double modulus);
+extern double Helfrich_AreaDifferenceForce_getTarget(OpenMM_Force* force);
+extern int Helfrich_AreaDifferenceForce_setTarget(OpenMM_Force* force, double target);
+
 /** Who pays for the flips of a MonteCarloBondFlip. */
 typedef enum {
     Helfrich_MonteCarloBondFlip_Canonical = 0,

@@ -242,12 +242,14 @@ fn units(scale: Scale, term: &Term) -> [f64; MAX_PARAMETERS] {
     })
 }
 
-/// The value from which a term measures a total, in whole numbers of the lattice: twice an area, six times a volume.
+/// The value from which a term measures a total, in the whole numbers that the shaders sum: twice an area and six times a
+/// volume on the lattice, and 2³² times a mean curvature.
 fn reference(scale: Scale, term: &Term) -> Option<u128> {
     let step = scale.quantum * scale.unit;
     let steps = match term.potential.reference(term)? {
         Total::Area(area) => 2.0 * area / (step * step),
         Total::Volume(volume) => 6.0 * volume / (step * step * step),
+        Total::MeanCurvature(length) => length / scale.unit * 2f64.powi(32),
     };
-    (steps < 2f64.powi(126)).then_some(steps.round() as u128)
+    (steps.abs() < 2f64.powi(126)).then_some(steps.round() as i128 as u128)
 }

@@ -292,7 +292,8 @@ fn target(term: &Term) -> [i32; 4] {
     let (value, power): (f64, _) = match term.potential.reference(term) {
         Some(Total::Area(area)) => (2.0 * area, 2),
         Some(Total::Volume(volume)) => (6.0 * volume, 3),
-        None => return [0; 4],
+        // Of a mean curvature the frame has it, since the lattice does not matter there.
+        Some(Total::MeanCurvature(_)) | None => return [0; 4],
     };
     let bits = value.to_bits();
     let exponent = (bits >> 52 & 0x7ff) as i32;
