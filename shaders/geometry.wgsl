@@ -30,6 +30,7 @@ struct VertexGeometry {
 struct TotalSlopes {
     area: real,
     volume: real,
+    mean_curvature: real,
 }
 
 struct TriangleSlopes {

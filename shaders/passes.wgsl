@@ -10,6 +10,10 @@ fn groups_for(elements: u32) -> u32 {
     return (elements + GROUP_SIZE - 1u) / GROUP_SIZE;
 }
 
+fn triangle_groups() -> u32 {
+    return groups_for(frame.num_triangles);
+}
+
 fn is_needed(bits: u32) -> bool {
     return (frame.needs & bits) != 0u;
 }
@@ -34,18 +38,36 @@ fn triangles_forward_summed(@builtin(workgroup_id) id: vec3<u32>, @builtin(local
         geometry = new_triangle(triangle);
         triangle_geometry[triangle] = geometry;
     }
-    sum_triangle(triangle, exists, geometry, lane, group, groups_for(frame.num_triangles));
+    sum_triangle(triangle, exists, geometry, lane, group, triangle_groups());
 }
 
-// The total area and volume, their energies, and the derivatives with respect to them; one group.
+// The mean curvature of each group of edges.
+@compute @workgroup_size(GROUP_SIZE)
+fn mean_curvature_of_edges(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+    let group = group_index(id);
+    let index = group * GROUP_SIZE + lane;
+    var share = real(0.0);
+    if index < frame.num_edges {
+        let edge = edge_geometry[index];
+        share = real(0.5) * edge.x * edge.y;
+    }
+    sum_edge(share, lane, group, groups_for(frame.num_edges));
+}
+
+// The sum of these; one group.
+@compute @workgroup_size(GROUP_SIZE)
+fn mean_curvature_forward(@builtin(local_invocation_index) lane: u32) {
+    sum_groups_of_edges(groups_for(frame.num_edges), lane);
+}
+
+// The energies of totals, and the derivatives with respect to them; one group.
 @compute @workgroup_size(GROUP_SIZE)
 fn totals_forward(@builtin(local_invocation_index) lane: u32) {
-    let groups = groups_for(frame.num_triangles);
-    sum_groups(groups, lane);
+    sum_groups(triangle_groups(), lane);
     if lane != 0u {
         return;
     }
-    var slopes = TotalSlopes(real(0.0), real(0.0));
+    var slopes = TotalSlopes(real(0.0), real(0.0), real(0.0));
     for (var term = 0u; term < frame.num_terms; term++) {
         if (frame.terms[term].needs & TOTALS) == 0u {
             continue;
@@ -59,7 +81,7 @@ fn totals_forward(@builtin(local_invocation_index) lane: u32) {
             }
         }
     }
-    store_total_slopes(slopes, groups);
+    store_total_slopes(slopes);
 }
 
 // Lengths, dihedral angles and moments.
@@ -247,8 +269,7 @@ fn triangles_backward_summed(@builtin(workgroup_id) id: vec3<u32>, @builtin(loca
         if exists {
             contribution = energy_of_triangle(term, index, triangle, &slopes);
         }
-        let groups = groups_for(frame.num_triangles);
-        store_sums(term, frame.terms[term].sums[SUMS_OF_TRIANGLES], contribution, lane, group, groups);
+        store_sums(term, frame.terms[term].sums[SUMS_OF_TRIANGLES], contribution, lane, group, triangle_groups());
     }
     if exists && is_needed(FORCES) {
         store_corner_forces(index, triangle, slopes);
@@ -257,11 +278,10 @@ fn triangles_backward_summed(@builtin(workgroup_id) id: vec3<u32>, @builtin(loca
 
 fn store_corner_forces(index: u32, triangle: TriangleGeometry, of_terms: TriangleSlopes) {
     var slopes = of_terms;
-    var volume_slope = real(0.0);
+    var totals = TotalSlopes(real(0.0), real(0.0), real(0.0));
     if is_needed(TOTALS) {
-        let totals = total_slopes(groups_for(frame.num_triangles));
+        totals = total_slopes();
         slopes.area += totals.area;
-        volume_slope = totals.volume;
     }
     var curvature_slopes = vec3r();
     if is_needed(VERTICES) {
@@ -282,10 +302,17 @@ fn store_corner_forces(index: u32, triangle: TriangleGeometry, of_terms: Triangl
             let mean = real(0.5) * (curvature_slopes[k] + curvature_slopes[(k + 1u) % 3u]);
             half_tensions[k] = real(0.5) * mean * edge.y;
             moments[k] = mean + edge.z;
+            if is_needed(MEAN_CURVATURE) {
+                // Half of a vertex' curvature is in the total. Moments that are the same at all sides have no force, so
+                // instead of them sides at borders, which have no angle, get what they have less.
+                let part = real(0.5) * totals.mean_curvature;
+                half_tensions[k] += real(0.5) * part * edge.y;
+                moments[k] -= select(real(0.0), part, is_border_side(index, k));
+            }
         }
     }
     var forces = forces_on_corners(
-        triangle, slopes.area, slopes.length_squared, half_tensions, moments, volume_slope);
+        triangle, slopes.area, slopes.length_squared, half_tensions, moments, totals.volume);
     if is_needed(VECTORS) {
         let more = forces_of_vectors(index, triangle, is_needed(NORMALS));
         for (var k = 0u; k < 3u; k++) {

@@ -1,7 +1,9 @@
-// The sums of area and volume over all triangles in double precision, as trees of fixed shape.
+// The sums of area and volume over all triangles, and of mean curvature over all edges, in double precision, as trees
+// of fixed shape.
 
-// `totals` holds twice the area and six times the volume, for each group, and then the derivatives of the energy
-// with respect to area and volume.
+// `totals` holds twice the area and six times the volume for each group of triangles, then the derivatives of the energy
+// with respect to area and volume, that with respect to mean curvature, the mean curvature, and its sums over groups of
+// edges.
 alias total = vec2<f64>;
 
 var<workgroup> total_shares: array<vec2<f64>, GROUP_SIZE>;
@@ -42,23 +44,48 @@ fn sum_groups(groups: u32, lane: u32) {
     }
 }
 
-// How far the total area is above the target of a term.
-fn excess_of_area(term: u32) -> real {
-    return real(0.5) * sum_of_all.x - frame.terms[term].values[1];
+// How far the total area is above what a term measures it from.
+fn excess_of_area(term: u32, origin: real) -> real {
+    return real(0.5) * sum_of_all.x - origin;
 }
 
-// How far the total volume is above the target of a term.
-fn excess_of_volume(term: u32) -> real {
-    return sum_of_all.y / real(6.0) - frame.terms[term].values[1];
+// How far the total volume is above what a term measures it from.
+fn excess_of_volume(term: u32, origin: real) -> real {
+    return sum_of_all.y / real(6.0) - origin;
 }
 
-fn store_total_slopes(slopes: TotalSlopes, groups: u32) {
-    totals[groups] = vec2<f64>(slopes.area, slopes.volume);
+fn sum_edge(share: real, lane: u32, group: u32, groups: u32) {
+    let sum = total_of_group(vec2<f64>(share, real(0.0)), lane);
+    if lane == 0u && group < groups {
+        totals[triangle_groups() + 3u + group] = sum;
+    }
 }
 
-fn total_slopes(groups: u32) -> TotalSlopes {
-    let stored = totals[groups];
-    return TotalSlopes(stored.x, stored.y);
+fn sum_groups_of_edges(groups: u32, lane: u32) {
+    let first = triangle_groups() + 3u;
+    var share = vec2<f64>();
+    for (var group = lane; group < groups; group += GROUP_SIZE) {
+        share += totals[first + group];
+    }
+    let sum = total_of_group(share, lane);
+    if lane == 0u {
+        totals[first - 1u] = sum;
+    }
+}
+
+// How far the total mean curvature is above what a term measures it from.
+fn excess_of_mean_curvature(term: u32, origin: real) -> real {
+    return totals[triangle_groups() + 2u].x - origin;
+}
+
+fn store_total_slopes(slopes: TotalSlopes) {
+    totals[triangle_groups()] = vec2<f64>(slopes.area, slopes.volume);
+    totals[triangle_groups() + 1u] = vec2<f64>(slopes.mean_curvature, real(0.0));
+}
+
+fn total_slopes() -> TotalSlopes {
+    let stored = totals[triangle_groups()];
+    return TotalSlopes(stored.x, stored.y, totals[triangle_groups() + 1u].x);
 }
 
 fn constant_of(term: u32, triangle: u32, k: u32) -> real {

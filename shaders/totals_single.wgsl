@@ -1,12 +1,15 @@
-// The sums of area and volume over all triangles, in whole numbers of the lattice's units, 128 bits wide.
+// The sums of area and volume over all triangles, in whole numbers of the lattice's units, and of mean curvature over
+// all edges, in those of 2⁻³² of the unit of length, 128 bits wide.
 //
 // A membrane's area and volume fluctuate by 1e-4, and its forces come from these small differences; single
 // precision would leave three digits of them. On the lattice of positions six times the volume is a whole
-// number, and so it is summed without any error; twice the area of a triangle is rounded to a share of 1e-9.
+// number, and so it is summed without any error; twice the area of a triangle is rounded to a share of 1e-9. What an edge
+// gives to the mean curvature has the error of a float, and its sum no other.
 // Whole numbers have no order of summation either, and compilers do not rearrange them.
 
-// Limbs from the lowest on, two's complement. `totals` holds for each group twice the area and six times the volume,
-// then as bits of floats the derivatives of the energy with respect to area and volume.
+// Limbs from the lowest on, two's complement. `totals` holds for each group of triangles twice the area and six times the
+// volume, then as bits of floats the derivatives of the energy with respect to area, volume and mean curvature, the mean
+// curvature, and its sums over groups of edges.
 alias total = vec4<u32>;
 
 // a b, low and high half.
@@ -193,25 +196,60 @@ fn sum_groups(groups: u32, lane: u32) {
     }
 }
 
-// How far the total area is above the target of a term.
-fn excess_of_area(term: u32) -> real {
+// How far the total area is above what a term measures it from.
+fn excess_of_area(term: u32, origin: real) -> real {
     let difference = float128(add128(area_of_all, negative128(frame.terms[term].reference)));
     return difference * frame.quantum * frame.quantum * 0.5;
 }
 
-// How far the total volume is above the target of a term.
-fn excess_of_volume(term: u32) -> real {
+// How far the total volume is above what a term measures it from.
+fn excess_of_volume(term: u32, origin: real) -> real {
     let difference = float128(add128(volume_of_all, negative128(frame.terms[term].reference)));
     return difference * frame.quantum * frame.quantum * frame.quantum / 6.0;
 }
 
-fn store_total_slopes(slopes: TotalSlopes, groups: u32) {
-    totals[2u * groups] = vec4<u32>(bitcast<u32>(slopes.area), bitcast<u32>(slopes.volume), 0u, 0u);
+// A length in the units of its sum, below 2³¹ of the unit of length as all lengths are.
+fn whole_number(length: f32) -> vec4<u32> {
+    let size = abs(length);
+    let above = u32(size);
+    let bits = vec2<u32>(u32((size - f32(above)) * 4294967296.0), above);
+    return widened(select(bits, negative64(bits), length < 0.0), 0u);
 }
 
-fn total_slopes(groups: u32) -> TotalSlopes {
-    let stored = totals[2u * groups];
-    return TotalSlopes(bitcast<f32>(stored.x), bitcast<f32>(stored.y));
+fn sum_edge(share: real, lane: u32, group: u32, groups: u32) {
+    let sum = total_of_group(whole_number(share), lane);
+    if lane == 0u && group < groups {
+        totals[2u * triangle_groups() + 2u + group] = sum;
+    }
+}
+
+fn sum_groups_of_edges(groups: u32, lane: u32) {
+    let first = 2u * triangle_groups() + 2u;
+    var share = vec4<u32>();
+    for (var group = lane; group < groups; group += GROUP_SIZE) {
+        share = add128(share, totals[first + group]);
+    }
+    let sum = total_of_group(share, lane);
+    if lane == 0u {
+        totals[first - 1u] = sum;
+    }
+}
+
+// How far the total mean curvature is above what a term measures it from.
+fn excess_of_mean_curvature(term: u32, origin: real) -> real {
+    let sum = totals[2u * triangle_groups() + 1u];
+    return float128(add128(sum, negative128(frame.terms[term].reference))) / 4294967296.0;
+}
+
+fn store_total_slopes(slopes: TotalSlopes) {
+    let mean_curvature = bitcast<u32>(slopes.mean_curvature);
+    totals[2u * triangle_groups()] =
+        vec4<u32>(bitcast<u32>(slopes.area), bitcast<u32>(slopes.volume), mean_curvature, 0u);
+}
+
+fn total_slopes() -> TotalSlopes {
+    let stored = totals[2u * triangle_groups()];
+    return TotalSlopes(bitcast<f32>(stored.x), bitcast<f32>(stored.y), bitcast<f32>(stored.z));
 }
 
 fn constant_of(term: u32, triangle: u32, k: u32) -> real {

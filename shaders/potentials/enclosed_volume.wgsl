@@ -3,7 +3,7 @@
 fn enclosed_volume_totals(term: u32, slopes: ptr<function, TotalSlopes>) -> Contribution {
     let modulus = value(term, 0u, 0u);
     let reference = value(term, 1u, 0u);
-    let excess = excess_of_volume(term);
+    let excess = excess_of_volume(term, reference);
     (*slopes).volume += modulus * excess / reference;
     return relative_spring(modulus, reference, excess);
 }

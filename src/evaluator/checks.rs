@@ -1,7 +1,7 @@
 //! What every evaluator refuses.
 
 use crate::error::{Error, Result};
-use crate::mesh::geometry::{TriangleGeometry, Vec3};
+use crate::mesh::geometry::{TotalPartials, TriangleGeometry, Vec3};
 use crate::potentials::{Contribution, Term};
 
 /// Refuse an energy that is not finite; names the force.
@@ -16,6 +16,19 @@ pub fn check_energies<'a>(
         }
     }
     Ok(())
+}
+
+/// Refuse an energy of totals whose derivatives are not finite, so that no force would be; names the force.
+pub fn check_totals(
+    term: &Term,
+    contribution: &Contribution,
+    slopes: &TotalPartials,
+) -> Result<()> {
+    if slopes.are_finite() {
+        return Ok(());
+    }
+    let (force, energy) = (term.potential.name(), contribution.energy);
+    Err(Error::NonFiniteEnergy { force, energy })
 }
 
 /// Why a mesh has no usable geometry: a position that is not finite, or a triangle without area. The mesh is given

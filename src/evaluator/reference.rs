@@ -138,7 +138,7 @@ impl ReferenceEvaluator {
         Ok(virial)
     }
 
-    /// Geometry and potentials: what the terms need, area and volume, and the energy's derivatives with respect to these.
+    /// Geometry and potentials: what the terms need, the totals, and the energy's derivatives with respect to these.
     fn forward(
         &mut self,
         terms: &[&Term],
@@ -147,9 +147,9 @@ impl ReferenceEvaluator {
     ) -> Result<(Needs, Totals, TotalPartials)> {
         let needs = terms.iter().fold(Needs::empty(), |all, term| all | term.potential.needs(term));
         self.places.gather(positions, self.parallel);
-        let totals = self.forward_triangles().ok_or_else(|| self.places.culprit(positions))?;
+        let mut totals = self.forward_triangles().ok_or_else(|| self.places.culprit(positions))?;
         if needs.intersects(Needs::EDGES | Needs::CURVATURES) {
-            self.forward_edges();
+            totals.mean_curvature = self.forward_edges();
         }
         if needs.contains(Needs::VERTICES) {
             self.forward_vertices(needs);
@@ -159,14 +159,14 @@ impl ReferenceEvaluator {
         }
         let mut ignored = vec![Contribution::default(); terms.len()];
         let contributions = if contributions.is_empty() { &mut ignored[..] } else { contributions };
-        let total_partials = self.potentials(terms, needs, &totals, contributions);
+        let total_partials = self.potentials(terms, needs, &totals, contributions)?;
         check_energies(terms, contributions)?;
         Ok((needs, totals, total_partials))
     }
 
     fn backward(&mut self, needs: Needs, totals: &TotalPartials) {
         if needs.intersects(Needs::EDGES | Needs::CURVATURES) {
-            self.backward_edges(needs);
+            self.backward_edges(needs, totals);
         }
         self.backward_triangles(needs, totals);
     }
@@ -186,14 +186,20 @@ impl ReferenceEvaluator {
             }
             sums
         });
-        (sums.smallest > 0.0 && sums.area.is_finite())
-            .then(|| Totals { area: sums.area, volume: sums.six_volumes / 6.0 })
+        let (area, volume) = (sums.area, sums.six_volumes / 6.0);
+        (sums.smallest > 0.0 && sums.area.is_finite()).then(|| Totals {
+            area,
+            volume,
+            ..Totals::default()
+        })
     }
 
-    fn forward_edges(&mut self) {
+    /// Returns the total mean curvature.
+    fn forward_edges(&mut self) -> f64 {
         let (places, triangles) = (&self.places, &self.triangles);
         let topology = &self.places.topology;
         fill(self.parallel, &mut self.edges, |first, chunk| {
+            let mut mean_curvature = 0.0;
             for (slot, edge) in chunk.iter_mut().zip(&topology.edges[first..]) {
                 if edge.triangles[1] == NONE {
                     // A border has no dihedral angle.
@@ -205,9 +211,10 @@ impl ReferenceEvaluator {
                 let [left, right] = edge.triangles.map(|t| &triangles[t as usize]);
                 let [tip, end, start] = places.from(edge.triangles[1], edge.opposite[1]);
                 *slot = EdgeGeometry::new(&start, &end, &tip, left, right);
+                mean_curvature += 0.5 * slot.length_squared * slot.bend;
             }
-            Nothing
-        });
+            mean_curvature
+        })
     }
 
     fn forward_vertices(&mut self, needs: Needs) {
@@ -263,16 +270,19 @@ impl ReferenceEvaluator {
         );
     }
 
-    fn backward_edges(&mut self, needs: Needs) {
+    fn backward_edges(&mut self, needs: Needs, totals: &TotalPartials) {
         let (edges, topology) = (&self.edges, &self.places.topology);
         let (vertex_partials, edge_partials) = (&self.vertex_partials, &self.edge_partials);
         fill(self.parallel, &mut self.tensions, |first, chunk| {
             for (offset, slot) in chunk.iter_mut().enumerate() {
                 let (geometry, edge) = (&edges[first + offset], &topology.edges[first + offset]);
                 *slot = EdgeTension::default();
-                if needs.contains(Needs::CURVATURES) {
+                if needs.contains(Needs::CURVATURES | Needs::VERTICES) {
                     let [start, end] = edge.vertices.map(|v| &vertex_partials[v as usize]);
                     *slot = EdgeTension::from_curvature(geometry, start, end);
+                }
+                if needs.contains(Needs::MEAN_CURVATURE) && edge.triangles[1] != NONE {
+                    slot.add_mean_curvature(geometry, totals.mean_curvature);
                 }
                 if needs.contains(Needs::EDGES) {
                     slot.add_angle(geometry, &edge_partials[first + offset]);

@@ -158,6 +158,9 @@ pub struct Totals {
     pub area: f64,
     /// Enclosed volume, nm³ (B3, B4).
     pub volume: f64,
+    /// Integral of the mean curvature, half the sum of the principal ones: M = Σ l φ / 2 over the edges, and so half the
+    /// sum of J over the vertices, nm. Known only where a term wants it.
+    pub mean_curvature: f64,
 }
 
 /// Derivatives of the energy with respect to the [`Totals`].
@@ -167,6 +170,15 @@ pub struct TotalPartials {
     pub area: f64,
     /// ∂E/∂V, kJ/mol/nm³.
     pub volume: f64,
+    /// ∂E/∂M, kJ/mol/nm.
+    pub mean_curvature: f64,
+}
+
+impl TotalPartials {
+    /// Whether all are numbers.
+    pub fn are_finite(&self) -> bool {
+        self.area.is_finite() && self.volume.is_finite() && self.mean_curvature.is_finite()
+    }
 }
 
 /// Derivatives of the energy with respect to a [`VertexGeometry`].
@@ -216,6 +228,14 @@ impl EdgeTension {
     ) -> Self {
         let moment = 0.5 * (start.curvature + end.curvature);
         Self { half_tension: 0.5 * moment * edge.bend, moment }
+    }
+
+    /// Add what an energy of the total M does: m d(l φ) with m = ½ ∂E/∂M, at every edge that has two triangles.
+    #[inline]
+    pub fn add_mean_curvature(&mut self, edge: &EdgeGeometry, partial: f64) {
+        let moment = 0.5 * partial;
+        self.half_tension += 0.5 * moment * edge.bend;
+        self.moment += moment;
     }
 
     /// Add the moment of a potential of the angle itself.
@@ -309,6 +329,39 @@ mod tests {
             }
         }
         assert_eq!(hinge(0.0).0.bend, 0.0);
+    }
+
+    /// A lone hinge has M = ½ l φ; its other four sides have no angle.
+    #[test]
+    fn forces_of_mean_curvature_are_minus_the_gradient() {
+        let mut random = noise(5);
+        let points: [Vec3; 4] = [[0.0, 0.0], [1.0, 0.2], [0.3, 1.1], [0.5, -0.9]]
+            .map(|[x, y]| Vec3::new(x, y, 0.4 * random()));
+        let (partial, step) = (1.7, 1e-5);
+        let hinge = |p: &[Vec3; 4]| {
+            let left = TriangleGeometry::new(&p[0], &p[1], &p[2]);
+            let right = TriangleGeometry::new(&p[1], &p[0], &p[3]);
+            (EdgeGeometry::new(&p[0], &p[1], &p[3], &left, &right), left, right)
+        };
+        let (edge, left, right) = hinge(&points);
+        let mut sides = [EdgeTension::default(); 3];
+        sides[0].add_mean_curvature(&edge, partial);
+        let [a, b, c, d] = points.each_ref();
+        let on_left = corner_forces([a, b, c], &left, 0.0, &[0.0; 3], sides, 0.0);
+        let on_right = corner_forces([b, a, d], &right, 0.0, &[0.0; 3], sides, 0.0);
+        let forces = [on_left[0] + on_right[1], on_left[1] + on_right[0], on_left[2], on_right[2]];
+        for vertex in 0..4 {
+            for axis in 0..3 {
+                let energy = |shift: f64| {
+                    let mut moved = points;
+                    moved[vertex][axis] += shift;
+                    let edge = hinge(&moved).0;
+                    partial * 0.5 * edge.length_squared * edge.bend
+                };
+                let expected = -(energy(step) - energy(-step)) / (2.0 * step);
+                assert!((forces[vertex][axis] - expected).abs() < 1e-8, "{vertex} {axis}");
+            }
+        }
     }
 
     /// The corner forces of a lone hinge against finite differences of E = c φ + k a + Σ s l².

@@ -90,7 +90,7 @@ pub fn is_inside_out(mesh: &Triangulation, positions: &[f64]) -> Option<(bool, T
         twice_area += normal.norm();
         six_volumes += a.dot(&normal);
     }
-    let totals = Totals { area: 0.5 * twice_area, volume: six_volumes / 6.0 };
+    let totals = Totals { area: 0.5 * twice_area, volume: six_volumes / 6.0, ..Totals::default() };
     // π d³ / 6 of a sphere of area π d².
     let sphere = totals.area.powf(1.5) / (36.0 * std::f64::consts::PI).sqrt();
     sphere.is_finite().then_some((totals.volume < -NOTHING * sphere, totals))

@@ -122,7 +122,7 @@ impl LocalEnergy {
         }
     }
 
-    /// Jülicher's curvatures of the four vertices; the change of energies of angles.
+    /// Jülicher's curvatures of the four vertices and in total; the change of energies of angles.
     pub(super) fn edges_of(
         &self,
         mesh: &Triangulation,
@@ -165,6 +165,7 @@ impl LocalEnergy {
             flipped.vertices[1].curvature += jk + lj - gone;
             flipped.vertices[2].curvature += ki + jk + come;
             flipped.vertices[3].curvature += il + lj + come;
+            flipped.totals.mean_curvature += ki + il + jk + lj + come - gone;
         }
         if !self.survey.needs.contains(Needs::EDGES) {
             return 0.0;

@@ -1,7 +1,7 @@
 //! The energy of any terms, known element by element, so that a local change costs what it touches.
 //!
 //! It begins with what an evaluation finds ([`Survey`]); then [`LocalEnergy::flipped`] says what the flip of an edge
-//! would make of the two triangles, five edges and four vertices that it touches and of the total area and volume,
+//! would make of the two triangles, five edges and four vertices that it touches and of the totals,
 //! and [`LocalEnergy::apply`] notes that it was made. Positions stay as they were at the beginning.
 //! Energies come from the potentials' own formulas, through the form `Energies` of their runs.
 
@@ -31,7 +31,7 @@ pub struct LocalEnergy {
     pub(super) acting: Acting,
     /// Whether no vertex can have an energy below zero.
     vertices_never_negative: bool,
-    /// Of the total area and volume, kJ/mol.
+    /// Of the totals, kJ/mol.
     totals_energy: f64,
     /// If a term acts on them.
     borders: BorderTotals,
@@ -49,7 +49,7 @@ pub struct Flipped {
     pub(super) vertices: [VertexGeometry; 4],
     pub(super) vectors: [VertexVectors; 4],
     pub(super) vertex_energies: [f64; 4],
-    totals: Totals,
+    pub(super) totals: Totals,
     totals_energy: f64,
     borders: BorderTotals,
 }
@@ -175,6 +175,7 @@ impl LocalEnergy {
             area: survey.totals.area + triangles[0].area() + triangles[1].area() - old_area,
             // It loses the tetrahedron ijkl where ij is convex, and gains it where ij is concave.
             volume: survey.totals.volume - old[0].normal.dot(&(i - l)) / 6.0,
+            mean_curvature: survey.totals.mean_curvature,
         };
         let smallest = triangles[0].twice_area.min(triangles[1].twice_area);
         if smallest <= SMALLEST_AREA || !flipped.totals.area.is_finite() {
@@ -182,7 +183,9 @@ impl LocalEnergy {
         }
         let mut difference = 0.0;
         flipped.totals_energy = self.totals_energy;
-        if survey.needs.contains(Needs::TOTALS) {
+        // The mean curvature comes of the edges.
+        let totals_after_edges = survey.needs.contains(Needs::MEAN_CURVATURE);
+        if survey.needs.contains(Needs::TOTALS) && !totals_after_edges {
             flipped.totals_energy = self.energy_of_totals(terms, &flipped.totals);
             difference += flipped.totals_energy - self.totals_energy;
         }
@@ -199,13 +202,17 @@ impl LocalEnergy {
         let known = quad.vertices.map(|vertex| survey.vertices[vertex as usize].energy);
         let at_hand = known.iter().sum();
         let most = if self.vertices_never_negative { at_hand } else { f64::INFINITY };
-        let edges_act = survey.needs.contains(Needs::EDGES);
+        let edges_act = survey.needs.intersects(Needs::EDGES | Needs::MEAN_CURVATURE);
         if !edges_act && difference - most > limit {
             return difference - most;
         }
         flipped.vertices = quad.vertices.map(|vertex| survey.vertices[vertex as usize].scalars);
         if survey.needs.intersects(Needs::EDGES | Needs::CURVATURES) {
             difference += self.edges_of(mesh, terms, quad, &points, flipped);
+        }
+        if totals_after_edges {
+            flipped.totals_energy = self.energy_of_totals(terms, &flipped.totals);
+            difference += flipped.totals_energy - self.totals_energy;
         }
         if difference - most > limit {
             return difference - most;

@@ -17,7 +17,7 @@ bitflags! {
     /// beyond areas, lengths and volume.
     #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
     pub struct Needs: u32 {
-        /// Adds energy of the total area and volume.
+        /// Adds energy of the total area, volume or mean curvature.
         const TOTALS = 1;
         /// Adds energy of each triangle's area and sides.
         const TRIANGLES = 2;
@@ -37,6 +37,8 @@ bitflags! {
         const BORDERS = 256;
         /// Adds energy of pairs that are near each other in space; `src/contact/` looks after them.
         const CONTACTS = 512;
+        /// Wants the total of the curvatures of the vertices, too.
+        const MEAN_CURVATURE = 1024;
     }
 }
 

@@ -1,6 +1,6 @@
 //! Global volume: E = ½ k_V (V − V₀)² / V₀, equation (2) of doi:10.1103/PhysRevE.108.015301.
 
-use super::{Contribution, Domain, Needs, Parameter, Potential, Term, relative_spring};
+use super::{Contribution, Domain, Needs, Parameter, Potential, Term, Total, relative_spring};
 use crate::mesh::geometry::{TotalPartials, Totals};
 
 /// The membrane resists changes of the volume that it encloses.
@@ -26,6 +26,10 @@ impl Potential for EnclosedVolume {
 
     fn needs_outside(&self) -> bool {
         true
+    }
+
+    fn reference(&self, term: &Term) -> Option<Total> {
+        Some(Total::Volume(term.values[1]))
     }
 
     fn totals(

@@ -4,6 +4,7 @@
 //! coordinate; the chain rule from there to forces is in [`crate::mesh`]. Each potential is one file
 //! here, and one line in [`REGISTRY`].
 
+mod area_difference;
 mod bending;
 pub mod codes;
 mod constants;
@@ -12,13 +13,16 @@ mod edge_tension;
 mod elements;
 mod enclosed_volume;
 mod gaussian_curvature;
+mod osmotic_pressure;
 pub(crate) mod particle_surface;
 mod plaquette_area;
+mod pressure;
 mod runs;
 mod skalak;
 mod strain;
 mod surface_area;
 pub(crate) mod surface_repulsion;
+mod surface_tension;
 mod triangle_area;
 mod triangle_area_repulsion;
 mod triangle_height;
@@ -36,7 +40,7 @@ use std::ffi::CStr;
 pub use surface_repulsion::ONLY_BETWEEN_PARTS;
 
 /// All potentials, by the names of their OpenMM classes.
-pub static REGISTRY: [&dyn Potential; 13] = [
+pub static REGISTRY: [&dyn Potential; 17] = [
     &surface_area::SurfaceArea,
     &enclosed_volume::EnclosedVolume,
     &bending::Bending,
@@ -50,6 +54,10 @@ pub static REGISTRY: [&dyn Potential; 13] = [
     &surface_repulsion::SurfaceRepulsion,
     &particle_surface::ParticleSurface,
     &skalak::Skalak,
+    &pressure::Pressure,
+    &surface_tension::SurfaceTension,
+    &osmotic_pressure::OsmoticPressure,
+    &area_difference::AreaDifference,
 ];
 
 /// What a scalar may be given for one by one.
@@ -145,6 +153,17 @@ impl std::ops::AddAssign for Contribution {
 /// The values that a potential is evaluated with.
 pub type Values = [f64; MAX_PARAMETERS];
 
+/// A value of one of the totals of a surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Total {
+    /// nm².
+    Area(f64),
+    /// nm³.
+    Volume(f64),
+    /// nm.
+    MeanCurvature(f64),
+}
+
 /// One kind of energy. The methods for elements get a run of them to apply a formula to; a potential
 /// implements those that it [`Needs`].
 pub trait Potential: Sync {
@@ -194,7 +213,13 @@ pub trait Potential: Sync {
         false
     }
 
-    /// Energy of the total area and volume.
+    /// The total that the energy is a function of, at the value from which it is measured: single precision takes the
+    /// difference before it rounds.
+    fn reference(&self, _: &Term) -> Option<Total> {
+        None
+    }
+
+    /// Energy of the total area, volume and mean curvature.
     fn totals(&self, _: &Term, _: &Totals, _: &mut TotalPartials) -> Contribution {
         Contribution::default()
     }

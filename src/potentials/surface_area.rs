@@ -1,6 +1,6 @@
 //! Global area: E = ½ k_A (A − A₀)² / A₀, equation (1) of doi:10.1103/PhysRevE.108.015301.
 
-use super::{Contribution, Domain, Needs, Parameter, Potential, Term, relative_spring};
+use super::{Contribution, Domain, Needs, Parameter, Potential, Term, Total, relative_spring};
 use crate::mesh::geometry::{TotalPartials, Totals};
 
 /// The whole membrane resists changes of its area; patches of it do not.
@@ -22,6 +22,10 @@ impl Potential for SurfaceArea {
 
     fn needs(&self, _: &Term) -> Needs {
         Needs::TOTALS
+    }
+
+    fn reference(&self, term: &Term) -> Option<Total> {
+        Some(Total::Area(term.values[1]))
     }
 
     fn totals(

@@ -210,6 +210,102 @@ def _enclosed_volume() -> list[Case]:
     ]
 
 
+def _pressures() -> list[Case]:
+    return [
+        *(
+            Case(
+                name=f"pressure, {word}",
+                force="PressureForce",
+                arguments=lambda m, pressure=pressure: {"pressure": pressure},
+                energy=lambda m, a: -a["pressure"] * _geometry(m).volume,
+                strings=lambda m, a, style: oracle.evaluate(
+                    string_forces.pressure(m.triangles, a["pressure"], style), m.positions
+                ),
+                surface="closed",
+                invalid=invalid,
+            )
+            for word, pressure, invalid in (
+                ("outward", 0.04, _never_infinite("pressure")),
+                ("inward", -0.02, ()),
+            )
+        ),
+        *(
+            Case(
+                name=f"osmotic pressure, {word}",
+                force="OsmoticPressureForce",
+                arguments=lambda m, ratio=ratio: {
+                    "solutes": ratio * 0.01 * _geometry(m).volume,
+                    "concentration": 0.01,
+                    "thermalEnergy": 2.494,
+                },
+                energy=lambda m, a: numpy_energies.osmotic_pressure(m.positions, m.triangles, **a),
+                strings=lambda m, a, style: oracle.evaluate(
+                    string_forces.osmotic_pressure(m.triangles, **a, style=style), m.positions
+                ),
+                surface="closed",
+                invalid=invalid,
+            )
+            for word, ratio, invalid in (
+                (
+                    "swollen",
+                    0.9,
+                    _never_below("solutes", zero=False)
+                    + _never_below("concentration", zero=False)
+                    + _never_below("thermalEnergy", zero=False),
+                ),
+                ("shrunken", 2.5, ()),
+            )
+        ),
+    ]
+
+
+def _surface_tensions() -> list[Case]:
+    return [
+        Case(
+            name=f"surface tension, {word}",
+            force="SurfaceTensionForce",
+            arguments=lambda m, tension=tension: {"tension": tension},
+            energy=lambda m, a: a["tension"] * _geometry(m).area,
+            strings=lambda m, a, style: oracle.evaluate(
+                string_forces.surface_tension(m.triangles, a["tension"], style), m.positions
+            ),
+            invalid=invalid,
+        )
+        for word, tension, invalid in (
+            ("above zero", 1.2, _never_infinite("tension")),
+            ("below zero", -0.7, ()),
+        )
+    ]
+
+
+def _area_differences() -> list[Case]:
+    return [
+        Case(
+            name=f"area difference, {word}",
+            force="AreaDifferenceForce",
+            arguments=lambda m, ratio=ratio: {
+                "modulus": 0.5,
+                "target": ratio * _geometry(m).mean_curvature,
+            },
+            energy=lambda m, a: 0.5 * a["modulus"] * (_geometry(m).mean_curvature - a["target"]) ** 2,
+            strings=lambda m, a, style: oracle.evaluate(
+                string_forces.area_difference(m.triangles, a["modulus"], a["target"], style),
+                m.positions,
+            ),
+            invalid=invalid,
+        )
+        for word, ratio, invalid in (
+            (
+                "too large",
+                0.9,
+                _never_below("modulus", zero=True) + _never_infinite("target"),
+            ),
+            ("too small", 1.2, ()),
+            ("of the other sign", -0.1, ()),
+        )
+    ]
+
+
 def _triangle_heights() -> list[Case]:
     return [
         Case(
@@ -603,5 +699,8 @@ CASES = [
     *_borders(),
     *_surface_repulsion(),
     *_particle_surface(),
+    *_pressures(),
+    *_surface_tensions(),
+    *_area_differences(),
 ]
 PRESENT = [case for case in CASES if case.exists]

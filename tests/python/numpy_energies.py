@@ -128,6 +128,11 @@ class Geometry:
         return self._sum(self.half_edges[0], self.lengths * self.angles / 2)
 
     @cached_property
+    def mean_curvature(self) -> float:
+        """Σ l φ / 2 over the edges, each of which is two half-edges."""
+        return float(np.sum(self.lengths * self.angles) / 4)
+
+    @cached_property
     def curvature_vectors(self) -> np.ndarray:
         """S of (B7)."""
         tail, head, _, _ = self.half_edges
@@ -175,6 +180,11 @@ def global_area(vertices, triangles, modulus: float, target: float) -> float:
 
 def global_volume(vertices, triangles, modulus: float, target: float) -> float:
     return quadratic(Geometry(vertices, triangles).volume, modulus, target)
+
+
+def osmotic_pressure(vertices, triangles, solutes, concentration, thermalEnergy) -> float:  # noqa: N803
+    x = concentration * Geometry(vertices, triangles).volume / solutes
+    return float(solutes * thermalEnergy * (x - 1 - np.log(x)))
 
 
 def triangle_area(vertices, triangles, modulus: float, target) -> float:

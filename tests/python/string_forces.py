@@ -316,6 +316,44 @@ def global_volume(triangles, modulus: float, target: float, style: str) -> list[
     return [force]
 
 
+def pressure(triangles, pressure: float, style: str) -> list[mm.Force]:
+    """−p V."""
+    force = mm.CustomCVForce(f"{_number(-pressure)}*total")
+    force.addCollectiveVariable("total", _volume_sum(triangles, style))
+    return [force]
+
+
+def surface_tension(triangles, tension: float, style: str) -> list[mm.Force]:
+    """σ A."""
+    force = mm.CustomCVForce(f"{_number(tension)}*total")
+    force.addCollectiveVariable("total", _area_sum(triangles, style))
+    return [force]
+
+
+def osmotic_pressure(
+    triangles,
+    solutes: float,
+    concentration: float,
+    thermalEnergy: float,  # noqa: N803
+    style: str,
+) -> list[mm.Force]:
+    """n kT (x − 1 − ln x) with x = c V / n."""
+    x = f"x={_number(concentration / solutes)}*total"
+    force = mm.CustomCVForce(f"{_number(solutes * thermalEnergy)}*(x-1-log(x)); {x}")
+    force.addCollectiveVariable("total", _volume_sum(triangles, style))
+    return [force]
+
+
+def area_difference(triangles, modulus: float, target: float, style: str) -> list[mm.Force]:
+    """½ m (M − M0)² with M = Σ l φ / 2."""
+    stencil = _stencil(style)
+    share = f"0.5*{stencil.length(2, 3)}*{stencil.turning(1, 2, 3, 4)}"
+    force = mm.CustomCVForce(f"{_number(0.5 * modulus)}*(total-{_number(target)})^2")
+    total = _compound(stencil.expression(share), edges_with_wings(triangles))
+    force.addCollectiveVariable("total", total)
+    return [force]
+
+
 # --- triangles ---------------------------------------------------------------------------------
 
 

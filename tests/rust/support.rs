@@ -136,6 +136,10 @@ pub fn all_terms(wants_derivatives: bool) -> Vec<Term<'static>> {
     add("TriangleAreaForce", 0, &[1.0, 8.0]);
     add("PlaquetteAreaForce", 0, &[4.0, 1000.0]);
     add("TriangleAreaRepulsionForce", 0, &[9.0, 2.0]);
+    add("PressureForce", 0, &[0.6]);
+    add("SurfaceTensionForce", 0, &[-1.4]);
+    add("OsmoticPressureForce", 0, &[500.0, 0.2, 2.5]);
+    add("AreaDifferenceForce", 0, &[0.3, 90.0]);
     for index in 0..terms.len() {
         if terms[index].potential.name() == "BendingForce" && terms[index].values[1] != 0.0 {
             let mut unsigned = terms[index];

@@ -3,6 +3,7 @@
 
 /** All forces of the plugin. */
 
+#include "openmm-helfrich/AreaDifferenceForce.h"
 #include "openmm-helfrich/BendingForce.h"
 #include "openmm-helfrich/DihedralForce.h"
 #include "openmm-helfrich/EdgeTensionForce.h"
@@ -10,11 +11,14 @@
 #include "openmm-helfrich/GaussianCurvatureForce.h"
 #include "openmm-helfrich/MonteCarloBondFlip.h"
 #include "openmm-helfrich/MonteCarloMembraneTension.h"
+#include "openmm-helfrich/OsmoticPressureForce.h"
 #include "openmm-helfrich/ParticleSurfaceForce.h"
 #include "openmm-helfrich/PlaquetteAreaForce.h"
+#include "openmm-helfrich/PressureForce.h"
 #include "openmm-helfrich/SkalakForce.h"
 #include "openmm-helfrich/SurfaceAreaForce.h"
 #include "openmm-helfrich/SurfaceRepulsionForce.h"
+#include "openmm-helfrich/SurfaceTensionForce.h"
 #include "openmm-helfrich/TriangleAreaForce.h"
 #include "openmm-helfrich/TriangleAreaRepulsionForce.h"
 #include "openmm-helfrich/TriangleHeightForce.h"
@@ -34,7 +38,11 @@
     apply(ParticleSurfaceForce) \
     apply(EdgeTensionForce) \
     apply(GaussianCurvatureForce) \
-    apply(SkalakForce)
+    apply(SkalakForce) \
+    apply(PressureForce) \
+    apply(SurfaceTensionForce) \
+    apply(OsmoticPressureForce) \
+    apply(AreaDifferenceForce)
 // clang-format on
 
 #endif /*OPENMM_HELFRICH_H_*/

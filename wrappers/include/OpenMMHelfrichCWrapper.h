@@ -189,6 +189,29 @@ extern double Helfrich_SkalakForce_getShearModulus(OpenMM_Force* force);
 extern int Helfrich_SkalakForce_setShearModulus(OpenMM_Force* force, double shearModulus);
 extern double Helfrich_SkalakForce_getAreaModulus(OpenMM_Force* force);
 extern int Helfrich_SkalakForce_setAreaModulus(OpenMM_Force* force, double areaModulus);
+extern OpenMM_Force* Helfrich_PressureForce_create(const int* triangles, int numTriangles, double pressure);
+extern double Helfrich_PressureForce_getPressure(OpenMM_Force* force);
+extern int Helfrich_PressureForce_setPressure(OpenMM_Force* force, double pressure);
+
+extern OpenMM_Force* Helfrich_SurfaceTensionForce_create(const int* triangles, int numTriangles, double tension);
+extern double Helfrich_SurfaceTensionForce_getTension(OpenMM_Force* force);
+extern int Helfrich_SurfaceTensionForce_setTension(OpenMM_Force* force, double tension);
+
+extern OpenMM_Force* Helfrich_OsmoticPressureForce_create(const int* triangles, int numTriangles, double solutes,
+                                                          double concentration, double thermalEnergy);
+extern double Helfrich_OsmoticPressureForce_getSolutes(OpenMM_Force* force);
+extern int Helfrich_OsmoticPressureForce_setSolutes(OpenMM_Force* force, double solutes);
+extern double Helfrich_OsmoticPressureForce_getConcentration(OpenMM_Force* force);
+extern int Helfrich_OsmoticPressureForce_setConcentration(OpenMM_Force* force, double concentration);
+extern double Helfrich_OsmoticPressureForce_getThermalEnergy(OpenMM_Force* force);
+extern int Helfrich_OsmoticPressureForce_setThermalEnergy(OpenMM_Force* force, double thermalEnergy);
+
+extern OpenMM_Force* Helfrich_AreaDifferenceForce_create(const int* triangles, int numTriangles, double modulus,
+                                                         double target);
+extern double Helfrich_AreaDifferenceForce_getModulus(OpenMM_Force* force);
+extern int Helfrich_AreaDifferenceForce_setModulus(OpenMM_Force* force, double modulus);
+extern double Helfrich_AreaDifferenceForce_getTarget(OpenMM_Force* force);
+extern int Helfrich_AreaDifferenceForce_setTarget(OpenMM_Force* force, double target);
 
 /** Who pays for the flips of a MonteCarloBondFlip. */
 typedef enum {

@@ -18,6 +18,8 @@ MembraneForce* makeForce() {
         return new ForceClass(none, 1.0, 1.0);
     else if constexpr (std::is_constructible_v<ForceClass, std::vector<int>, std::vector<int>, double, double>)
         return new ForceClass(none, none, 1.0, 1.0);
+    else if constexpr (std::is_constructible_v<ForceClass, std::vector<int>, double, double, double>)
+        return new ForceClass(none, 1.0, 1.0, 1.0);
     else
         return new ForceClass(none, 1.0);
 }

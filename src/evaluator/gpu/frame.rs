@@ -7,7 +7,9 @@ use super::interface::{
 use super::lattice::Scale;
 use super::{Bytes, Precision, Reals, shaders};
 use crate::mesh::Topology;
-use crate::potentials::{CONSTANTS, Contribution, Element, MAX_PARAMETERS, Needs, Potential, Term};
+use crate::potentials::{
+    CONSTANTS, Contribution, Element, MAX_PARAMETERS, Needs, Potential, Term, Total,
+};
 use std::ops::Range;
 
 /// Workgroups for some elements.
@@ -341,13 +343,14 @@ fn units(scale: Scale, term: &Term) -> [f64; MAX_PARAMETERS] {
     })
 }
 
-/// The target of a total area or volume, in whole numbers of the lattice: twice an area, six times a volume.
+/// The value from which a term measures a total, in the whole numbers that the shaders sum: twice an area and six times a
+/// volume on the lattice, and 2³² times a mean curvature.
 fn reference(scale: Scale, term: &Term) -> Option<u128> {
     let step = scale.quantum * scale.unit;
-    let steps = match term.potential.parameters().get(1).map(|parameter| parameter.length) {
-        Some(2) => 2.0 * term.values[1] / (step * step),
-        Some(3) => 6.0 * term.values[1] / (step * step * step),
-        _ => return None,
+    let steps = match term.potential.reference(term)? {
+        Total::Area(area) => 2.0 * area / (step * step),
+        Total::Volume(volume) => 6.0 * volume / (step * step * step),
+        Total::MeanCurvature(length) => length / scale.unit * 2f64.powi(32),
     };
-    (steps < 2f64.powi(126)).then_some(steps.round() as u128)
+    (steps.abs() < 2f64.powi(126)).then_some(steps.round() as i128 as u128)
 }

@@ -184,7 +184,7 @@ record! {
         sums: [u32; 4],
         /// Where in the fields the values of single elements begin, [`NO_FIELD`] where there are none.
         field_starts: [u32; MAX_PARAMETERS],
-        /// The target of the total area or volume as a whole number of the lattice's units, two's complement.
+        /// From where a total is measured, as a whole number of the units of its sum, two's complement.
         reference: [u32; 4],
         /// Where in the constants of triangles its own begin.
         constants_start: u32,

@@ -46,10 +46,10 @@ pub fn items(
         Binding::Rings => (v + 1 + 3 * t, always),
         Binding::TriangleGeometry => (t, always),
         Binding::CornerForces => (FORCES_PER_TRIANGLE as usize * t, always),
-        // Two sums of area and volume for each group, and the derivatives with respect to them.
+        // Sums for each group of triangles and of edges, and what comes of them.
         Binding::Totals => match precision {
-            Precision::Single => (2 * groups(t) + 1, always),
-            Precision::Double => (groups(t) + 1, always),
+            Precision::Single => (2 * groups(t) + 2 + groups(e), always),
+            Precision::Double => (groups(t) + 3 + groups(e), always),
         },
         Binding::EdgeGeometry => (e, Needs::EDGES.union(Needs::CURVATURES)),
         Binding::VertexSlopes => (v, Needs::VERTICES),
@@ -84,9 +84,11 @@ macro_rules! passes {
 passes! {
     TrianglesForward c"triangles_forward",
     TrianglesForwardSummed c"triangles_forward_summed",
-    TotalsForward c"totals_forward",
     EdgesForward c"edges_forward",
     EdgesForwardSummed c"edges_forward_summed",
+    MeanCurvatureOfEdges c"mean_curvature_of_edges",
+    MeanCurvatureForward c"mean_curvature_forward",
+    TotalsForward c"totals_forward",
     VerticesForward c"vertices_forward",
     VerticesForwardSummed c"vertices_forward_summed",
     TrianglesBackward c"triangles_backward",
@@ -100,7 +102,7 @@ pub fn passes(
     energies: bool,
     forces: bool,
     topology: &Topology,
-) -> SmallVec<[(Pass, usize); 6]> {
+) -> SmallVec<[(Pass, usize); 8]> {
     let (vertices, triangles) = (topology.num_vertices(), topology.triangles.len());
     let mut passes = SmallVec::new();
     let mut add = |wanted, silent, summed, elements| {
@@ -111,9 +113,14 @@ pub fn passes(
     let totals = needs.contains(Needs::TOTALS);
     let first = if totals { Pass::TrianglesForwardSummed } else { Pass::TrianglesForward };
     add(true, first, first, triangles);
-    add(totals, Pass::TotalsForward, Pass::TotalsForward, 1);
     let edges = needs.intersects(Needs::EDGES | Needs::CURVATURES);
     add(edges, Pass::EdgesForward, Pass::EdgesForwardSummed, topology.edges.len());
+    if needs.contains(Needs::MEAN_CURVATURE) {
+        let [first, second] = [Pass::MeanCurvatureOfEdges, Pass::MeanCurvatureForward];
+        add(true, first, first, topology.edges.len());
+        add(true, second, second, 1);
+    }
+    add(totals, Pass::TotalsForward, Pass::TotalsForward, 1);
     let of_vertices = needs.contains(Needs::VERTICES);
     add(of_vertices, Pass::VerticesForward, Pass::VerticesForwardSummed, vertices);
     let backward = forces || energies && needs.contains(Needs::TRIANGLES);

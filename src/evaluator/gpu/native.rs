@@ -13,7 +13,7 @@ use crate::error::{Error, Result};
 use crate::membrane::Configuration;
 use crate::mesh::geometry::Vec3;
 use crate::mesh::{Cell, Topology, Triangulation};
-use crate::potentials::{MAX_PARAMETERS, Needs, Potential, Term};
+use crate::potentials::{MAX_PARAMETERS, Needs, Potential, Term, Total};
 use std::ffi::CStr;
 
 /// What one evaluation asks of the device.
@@ -23,7 +23,7 @@ pub struct Plan {
     pub buffers: Vec<Buffer>,
     /// The passes, and how many groups each has.
     pub passes: Vec<(&'static CStr, usize)>,
-    /// A target of each term: its lower and its higher half, its power of two, and the power of lengths that it is;
+    /// A target of each term that is not 0: its lower and its higher half, its power of two, and the power of lengths that it is;
     /// all 0 if there is none.
     pub targets: Vec<[i32; 4]>,
     /// The lattice reaches 2 to this power to both sides, nm; [`BY_POSITIONS`] where the device has to find out.
@@ -283,22 +283,18 @@ fn box_vectors(cell: &Cell, precision: Precision, unit: i32) -> Vec<u8> {
     }
 }
 
-/// The target of a total as m 2ᵖ nmᵏ: twice an area, six times a volume.
+/// The value from which a term measures a total as m 2ᵖ nmᵏ: twice an area, six times a volume; all 0 if there is none.
 fn target(term: &Term) -> [i32; 4] {
-    if !term.potential.needs(term).contains(Needs::TOTALS) {
-        return [0; 4];
-    }
-    let (factor, power) = match term.potential.parameters().get(1).map(|parameter| parameter.length)
-    {
-        Some(2) => (2.0, 2),
-        Some(3) => (6.0, 3),
-        _ => return [0; 4],
+    let (value, power): (f64, _) = match term.potential.reference(term) {
+        Some(Total::Area(area)) => (2.0 * area, 2),
+        Some(Total::Volume(volume)) => (6.0 * volume, 3),
+        // Of a mean curvature the frame has it, since the lattice does not matter there.
+        Some(Total::MeanCurvature(_)) | None => return [0; 4],
     };
-    let value: f64 = factor * term.values[1];
     let bits = value.to_bits();
     let exponent = (bits >> 52 & 0x7ff) as i32;
     if exponent == 0 {
-        return [0, 0, 0, power];
+        return [0; 4];
     }
     let mantissa = bits & ((1 << 52) - 1) | 1 << 52;
     [mantissa as i32, (mantissa >> 32) as i32, exponent - 1075, power]

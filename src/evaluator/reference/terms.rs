@@ -1,6 +1,8 @@
 //! What the terms make of the geometry: energies and partial derivatives.
 
 use super::ReferenceEvaluator;
+use crate::error::Result;
+use crate::evaluator::checks::check_totals;
 use crate::evaluator::passes::{fill, fill_pair};
 use crate::mesh::geometry::{
     EdgePartials, TotalPartials, Totals, TrianglePartials, VertexPartials,
@@ -10,13 +12,16 @@ use crate::potentials::{Contribution, Edges, Needs, Term, Triangles, Vertices};
 
 impl ReferenceEvaluator {
     /// Let every term add its energy and its partial derivatives.
+    ///
+    /// # Errors
+    /// Derivatives with respect to totals that are not finite.
     pub(super) fn potentials(
         &mut self,
         terms: &[&Term],
         needs: Needs,
         totals: &Totals,
         contributions: &mut [Contribution],
-    ) -> TotalPartials {
+    ) -> Result<TotalPartials> {
         let mut total_partials = TotalPartials::default();
         if needs.contains(Needs::TRIANGLES) {
             self.triangle_partials.fill(TrianglePartials::default());
@@ -35,6 +40,7 @@ impl ReferenceEvaluator {
             *contribution = Contribution::default();
             if needs.contains(Needs::TOTALS) {
                 *contribution += potential.totals(term, totals, &mut total_partials);
+                check_totals(term, contribution, &total_partials)?;
             }
             if needs.contains(Needs::TRIANGLES) {
                 let triangles = &self.triangles;
@@ -57,7 +63,7 @@ impl ReferenceEvaluator {
                 *contribution += self.potential_of_vertices(term, needs);
             }
         }
-        total_partials
+        Ok(total_partials)
     }
 
     fn potential_of_vertices(&mut self, term: &Term, needs: Needs) -> Contribution {

@@ -54,6 +54,8 @@ pub struct Layout {
     pub neighbours_before: Vec<[u32; BLOCK]>,
     /// How many vertices of a tile are on no border.
     pub inner: Vec<u32>,
+    /// The sides of triangles that are borders: the number of the triangle, and which of its sides.
+    pub border_sides: Vec<[u32; 2]>,
     /// How many triangles must be known before a tile of vertices can be handled.
     pub frontier: Vec<u32>,
     /// Images of vertices, whose places are behind those of the last block of vertices.
@@ -83,6 +85,7 @@ impl Layout {
             before: Vec::new(),
             neighbours_before: Vec::new(),
             inner: Vec::new(),
+            border_sides: Vec::new(),
             frontier: Vec::new(),
             ghosts: Ghosts::default(),
             opposite: OnceLock::new(),
@@ -101,6 +104,7 @@ impl Layout {
         self.number_vertices(mesh, order);
         self.lay_rings(mesh);
         self.lay_corners(mesh);
+        self.lay_borders(mesh);
         self.lay_ghosts(mesh);
         self.opposite = OnceLock::new();
         self.edge_names = OnceLock::new();
@@ -272,6 +276,24 @@ impl Layout {
             }
             corners
         }));
+    }
+
+    fn lay_borders(&mut self, mesh: &Triangulation) {
+        self.border_sides.clear();
+        if mesh.is_closed() {
+            return;
+        }
+        for (half, &twin) in mesh.twins().as_flattened().iter().enumerate() {
+            if twin == NONE {
+                self.border_sides.push([self.triangle_number[half / 3], half as u32 % 3]);
+            }
+        }
+    }
+
+    /// The particle of a vertex or ghost.
+    pub fn particle_at(&self, place: usize) -> u32 {
+        let ghost = place.checked_sub(self.vertex_ids.len());
+        self.particles[ghost.map_or(place, |ghost| self.ghosts.vertex_and_shift(ghost).0)]
     }
 
     /// The particles at the corners of each triangle, in the user's order, and how far the corners are from them.

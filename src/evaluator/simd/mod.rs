@@ -18,6 +18,7 @@ mod ghosts;
 mod instructions;
 mod lanes;
 mod layout;
+mod mean_curvature;
 mod records;
 mod survey;
 mod sweep;
@@ -33,7 +34,7 @@ pub use records::BLOCK;
 pub use tiles::{EdgeBlock, TriangleTile, VertexTile};
 
 use super::Survey;
-use super::checks::{check_energies, culprit};
+use super::checks::{check_energies, check_totals, culprit};
 use crate::error::{Error, Result};
 use crate::mesh::geometry::{TotalPartials, Totals};
 use crate::mesh::{Cell, Triangulation};
@@ -41,6 +42,7 @@ use crate::potentials::{Contribution, Needs, Term};
 use crate::team::{Parts, Team};
 use arrays::Arrays;
 use backward::Forces;
+use mean_curvature::{add_mean_curvature, release_borders};
 use survey::Findings;
 use sweep::{Scratch, Sweep, backward};
 use triangles::TriangleSums;
@@ -59,6 +61,8 @@ pub struct SimdEvaluator {
     choice: Choice,
     scratch: Vec<Scratch>,
     triangle_sums: Vec<TriangleSums>,
+    /// For each tile of vertices the sum of their curvatures, where a term wants the total.
+    curvature_sums: Vec<f64>,
     /// For each tile of triangles, then of vertices, a contribution for each term.
     contributions: Vec<Contribution>,
     /// Whether there are slopes of vertices from an earlier evaluation.
@@ -76,6 +80,7 @@ impl SimdEvaluator {
             level,
             arrays: Arrays::new(&layout),
             triangle_sums: vec![TriangleSums::default(); layout.triangle_tiles()],
+            curvature_sums: vec![0.0; layout.vertex_tiles()],
             contributions: Vec::new(),
             particles: mesh.particles().last().map_or(0, |last| *last as usize + 1),
             layout,
@@ -175,20 +180,24 @@ impl SimdEvaluator {
             findings: survey.as_deref_mut().map(Findings::new),
         };
         let sums = Parts::new(&mut self.triangle_sums);
+        let curvatures = Parts::new(&mut self.curvature_sums);
         let parts = Parts::new(&mut self.contributions);
         let scratch = Parts::new(&mut self.scratch);
         team.run(|member| {
             // SAFETY: each member has its own place.
             let scratch = unsafe { scratch.part(member.index()..member.index() + 1) };
-            sweep.forward(&member, &mut scratch[0], &sums, &parts);
+            sweep.forward(&member, &mut scratch[0], &sums, &curvatures, &parts);
         });
-        let Some((totals, silent)) = totals(&self.triangle_sums) else {
+        let Some((mut totals, silent)) = totals(&self.triangle_sums) else {
             // What this evaluation has left of tensions is not to be relied on.
             self.triangle_sums.iter_mut().for_each(|sum| sum.silent = false);
             let mut particles = self.layout.particles[..self.layout.num_vertices].to_vec();
             particles.sort_unstable();
             return Err(culprit(&particles, self.layout.triangles().into_iter(), positions));
         };
+        if needs.contains(Needs::MEAN_CURVATURE) {
+            totals.mean_curvature = 0.5 * self.curvature_sums.iter().sum::<f64>();
+        }
         if let Some(survey) = survey {
             survey.totals = totals;
         }
@@ -199,6 +208,7 @@ impl SimdEvaluator {
             *contribution = Contribution::default();
             if term.potential.needs(term).contains(Needs::TOTALS) {
                 *contribution = term.potential.totals(term, &totals, &mut total_partials);
+                check_totals(term, contribution, &total_partials)?;
             }
         }
         if !contributions.is_empty() && !terms.is_empty() {
@@ -213,12 +223,26 @@ impl SimdEvaluator {
             let (layout, arrays, level) = (&self.layout, &self.arrays, self.level);
             layout.ghosts.copy_slopes(arrays, needs, layout.vertex_ids.len());
             let needs = if silent { needs - Needs::TRIANGLES } else { needs };
-            let (totals, forces) = (&total_partials, Forces(forces.as_mut_ptr()));
+            let (totals, into) = (&total_partials, Forces(forces.as_mut_ptr()));
             team.run(|member| {
+                if needs.contains(Needs::MEAN_CURVATURE) {
+                    // SAFETY: each member has its own places, and nobody reads them before all are done.
+                    unsafe {
+                        add_mean_curvature(
+                            arrays,
+                            member.share(layout.places_of_vertices()),
+                            totals,
+                        )
+                    };
+                    member.barrier();
+                }
                 for index in member.share(layout.vertex_tiles()) {
-                    backward(level, needs, layout, arrays, totals, index, forces);
+                    backward(level, needs, layout, arrays, totals, index, into);
                 }
             });
+            if needs.contains(Needs::MEAN_CURVATURE) {
+                release_borders(layout, arrays, totals, forces);
+            }
         }
         Ok(())
     }
@@ -258,7 +282,7 @@ impl SimdEvaluator {
                 unsafe { *arrays.slopes.at(index) = 0.0 };
             }
         }
-        self.has_slopes = needs.contains(Needs::VERTICES);
+        self.has_slopes = needs.intersects(Needs::VERTICES | Needs::MEAN_CURVATURE);
         let tiles = layout.triangle_tiles() + layout.vertex_tiles();
         self.contributions.resize(tiles * terms, Contribution::default());
     }
@@ -271,6 +295,6 @@ fn totals(sums: &[TriangleSums]) -> Option<(Totals, bool)> {
         sum += *part;
     }
     let TriangleSums { twice_area, six_volumes, smallest, silent } = sum;
-    let totals = Totals { area: 0.5 * twice_area, volume: six_volumes / 6.0 };
+    let totals = Totals { area: 0.5 * twice_area, volume: six_volumes / 6.0, ..Totals::default() };
     (smallest > SMALLEST_AREA && twice_area.is_finite()).then_some((totals, silent))
 }

@@ -40,6 +40,7 @@ impl Sweep<'_, '_> {
         member: &Member,
         scratch: &mut Scratch,
         sums: &Parts<TriangleSums>,
+        curvatures: &Parts<f64>,
         contributions: &Parts<Contribution>,
     ) {
         let layout = self.layout;
@@ -62,6 +63,11 @@ impl Sweep<'_, '_> {
             let here = of_triangles + tile;
             debug_assert!(here < of_vertices);
             self.vertex_tile(tile, &mut scratch.vertices, parts(here..here + 1));
+            if self.needs.contains(Needs::MEAN_CURVATURE) {
+                let known = &scratch.vertices.known.curvature.0[..layout.vertex_tile(tile).len()];
+                // SAFETY: as above.
+                unsafe { curvatures.part(tile..tile + 1)[0] = known.iter().sum() };
+            }
         };
         if member.size() > 1 {
             member.barrier();
