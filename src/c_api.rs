@@ -238,6 +238,7 @@ force_class!(ParticleSurfaceForce(distance, epsilon, adhesion, radius) attractio
 force_class!(EdgeTensionForce(tension));
 force_class!(GaussianCurvatureForce(modulus));
 force_class!(SkalakForce(shearModulus, areaModulus));
+force_class!(LimForce(shearModulus, areaModulus) coefficients);
 force_class!(PressureForce(pressure));
 force_class!(SurfaceTensionForce(tension));
 force_class!(OsmoticPressureForce(solutes, concentration, thermalEnergy));

@@ -2,7 +2,7 @@
 //! `src/moves/records.rs`, so that the
 //! build stops where they differ.
 
-use crate::codes::{Attraction, Contribution, Form, MAX_PARAMETERS, Scheme};
+use crate::codes::{Attraction, Coefficients, Contribution, Form, MAX_PARAMETERS, Scheme};
 use crate::flip_records::{FlipRules, FlipState};
 use crate::interface::{Binding, NUMBERS};
 use crate::records::{
@@ -32,6 +32,7 @@ pub fn comparison() -> String {
         ("BendingForce", "Scheme", Scheme::NAMES),
         ("DihedralForce", "Form", Form::NAMES),
         ("ParticleSurfaceForce", "Attraction", Attraction::NAMES),
+        ("LimForce", "Coefficients", Coefficients::NAMES),
     ] {
         let in_cpp = format!("HelfrichPlugin::{class}::");
         text += &enumeration(&format!("{in_cpp}{kind}"), &in_cpp, names);

@@ -98,6 +98,11 @@ variants! {
     Attraction { WCA, LennardJones, NineThree }
 }
 
+variants! {
+    /// The coefficients of `LimForce`; `lim.rs` has them.
+    Coefficients { Lim2002, Amoudruz2023 }
+}
+
 /// The switches of `BendingForce`; the k-th is bit k.
 pub const BENDING_SWITCHES: &[&CStr] = &[c"unsignedSpontaneousCurvature"];
 

@@ -13,6 +13,7 @@ mod edge_tension;
 mod elements;
 mod enclosed_volume;
 mod gaussian_curvature;
+mod lim;
 mod osmotic_pressure;
 pub(crate) mod particle_surface;
 mod plaquette_area;
@@ -40,7 +41,7 @@ use std::ffi::CStr;
 pub use surface_repulsion::ONLY_BETWEEN_PARTS;
 
 /// All potentials, by the names of their OpenMM classes.
-pub static REGISTRY: [&dyn Potential; 17] = [
+pub static REGISTRY: [&dyn Potential; 18] = [
     &surface_area::SurfaceArea,
     &enclosed_volume::EnclosedVolume,
     &bending::Bending,
@@ -54,6 +55,7 @@ pub static REGISTRY: [&dyn Potential; 17] = [
     &surface_repulsion::SurfaceRepulsion,
     &particle_surface::ParticleSurface,
     &skalak::Skalak,
+    &lim::Lim,
     &pressure::Pressure,
     &surface_tension::SurfaceTension,
     &osmotic_pressure::OsmoticPressure,

@@ -9,6 +9,7 @@
 #include "openmm-helfrich/EdgeTensionForce.h"
 #include "openmm-helfrich/EnclosedVolumeForce.h"
 #include "openmm-helfrich/GaussianCurvatureForce.h"
+#include "openmm-helfrich/LimForce.h"
 #include "openmm-helfrich/MonteCarloBondFlip.h"
 #include "openmm-helfrich/MonteCarloMembraneTension.h"
 #include "openmm-helfrich/OsmoticPressureForce.h"
@@ -39,6 +40,7 @@
     apply(EdgeTensionForce) \
     apply(GaussianCurvatureForce) \
     apply(SkalakForce) \
+    apply(LimForce) \
     apply(PressureForce) \
     apply(SurfaceTensionForce) \
     apply(OsmoticPressureForce) \

@@ -43,8 +43,8 @@ extern int Helfrich_MembraneForce_setParameterValue(OpenMM_Force* force, const c
 extern int Helfrich_MembraneForce_setElementValues(OpenMM_Force* force, const char* parameter, const double* values,
                                                    int count);
 /**
- * Set where the vertices are at rest: three numbers for each, nm, in ascending order of particle index. `boxVectors` are
- * the nine numbers of the periodic box in which that is, nm, or null. SkalakForce needs it after its creation.
+ * Set where the vertices are at rest: three numbers for each, nm, in ascending order of particle index. `boxVectors`
+ * are the nine numbers of the periodic box in which that is, nm, or null. SkalakForce needs it after its creation.
  */
 extern int Helfrich_MembraneForce_setReference(OpenMM_Force* force, const double* positions, int numVertices,
                                                const double* boxVectors);
@@ -88,6 +88,9 @@ typedef enum {
     Helfrich_DihedralForce_SmoothExp = 3,
     Helfrich_DihedralForce_SmoothExp46 = 4
 } Helfrich_DihedralForce_Form;
+
+/** The coefficients of LimForce. */
+typedef enum { Helfrich_LimForce_Lim2002 = 0, Helfrich_LimForce_Amoudruz2023 = 1 } Helfrich_LimForce_Coefficients;
 
 /** The attractions of ParticleSurfaceForce. */
 typedef enum {
@@ -189,6 +192,13 @@ extern double Helfrich_SkalakForce_getShearModulus(OpenMM_Force* force);
 extern int Helfrich_SkalakForce_setShearModulus(OpenMM_Force* force, double shearModulus);
 extern double Helfrich_SkalakForce_getAreaModulus(OpenMM_Force* force);
 extern int Helfrich_SkalakForce_setAreaModulus(OpenMM_Force* force, double areaModulus);
+
+extern OpenMM_Force* Helfrich_LimForce_create(const int* triangles, int numTriangles, double shearModulus,
+                                              double areaModulus, int coefficients);
+extern double Helfrich_LimForce_getShearModulus(OpenMM_Force* force);
+extern int Helfrich_LimForce_setShearModulus(OpenMM_Force* force, double shearModulus);
+extern double Helfrich_LimForce_getAreaModulus(OpenMM_Force* force);
+extern int Helfrich_LimForce_setAreaModulus(OpenMM_Force* force, double areaModulus);
 extern OpenMM_Force* Helfrich_PressureForce_create(const int* triangles, int numTriangles, double pressure);
 extern double Helfrich_PressureForce_getPressure(OpenMM_Force* force);
 extern int Helfrich_PressureForce_setPressure(OpenMM_Force* force, double pressure);
