@@ -2,7 +2,7 @@
 //! `src/moves/records.rs`, so that the
 //! build stops where they differ.
 
-use crate::codes::{Attraction, Contribution, Form, MAX_PARAMETERS, Scheme};
+use crate::codes::{Attraction, Contribution, Form, MAX_PARAMETERS, Scheme, SpringForm};
 use crate::flip_records::{FlipRules, FlipState};
 use crate::interface::{Binding, NUMBERS};
 use crate::records::{
@@ -31,6 +31,7 @@ pub fn comparison() -> String {
     for (class, kind, names) in [
         ("BendingForce", "Scheme", Scheme::NAMES),
         ("DihedralForce", "Form", Form::NAMES),
+        ("SpringForce", "Form", SpringForm::NAMES),
         ("ParticleSurfaceForce", "Attraction", Attraction::NAMES),
     ] {
         let in_cpp = format!("HelfrichPlugin::{class}::");

@@ -9,9 +9,7 @@ use crate::mesh::geometry::{
 };
 use crate::mesh::triangulation::{Quad, Triangulation, next, previous};
 use crate::mesh::vertex_vectors::{VertexVectors, add_corner};
-use crate::potentials::{
-    Constants, Edges, Flaw, MadeOf, Needs, Term, Triangles, Vertices,
-};
+use crate::potentials::{Constants, Edges, Flaw, MadeOf, Needs, Term, Triangles, Vertices};
 use smallvec::SmallVec;
 
 /// The terms that act on each kind of element, by their places among all.

@@ -12,10 +12,14 @@ mod edge_tension;
 mod elements;
 mod enclosed_volume;
 mod gaussian_curvature;
+mod line_tension;
+mod linear_elastic;
+mod neo_hookean;
 pub(crate) mod particle_surface;
 mod plaquette_area;
 mod runs;
 mod skalak;
+mod spring;
 mod strain;
 mod surface_area;
 pub(crate) mod surface_repulsion;
@@ -35,7 +39,7 @@ use std::ffi::CStr;
 pub use surface_repulsion::ONLY_BETWEEN_PARTS;
 
 /// All potentials, by the names of their OpenMM classes.
-pub static REGISTRY: [&dyn Potential; 13] = [
+pub static REGISTRY: [&dyn Potential; 17] = [
     &surface_area::SurfaceArea,
     &enclosed_volume::EnclosedVolume,
     &bending::Bending,
@@ -49,6 +53,10 @@ pub static REGISTRY: [&dyn Potential; 13] = [
     &surface_repulsion::SurfaceRepulsion,
     &particle_surface::ParticleSurface,
     &skalak::Skalak,
+    &neo_hookean::NeoHookean,
+    &linear_elastic::LinearElastic,
+    &spring::Spring,
+    &line_tension::LineTension,
 ];
 
 /// What a scalar may be given for one by one.
@@ -69,6 +77,8 @@ pub enum Domain {
     Positive,
     /// Finite and not below zero.
     NonNegative,
+    /// Above zero and below one.
+    Share,
     /// Finite.
     Real,
 }
@@ -111,6 +121,7 @@ impl Parameter {
         let (allowed, domain) = match self.domain {
             Domain::Positive => (value > 0.0, "a finite number above zero"),
             Domain::NonNegative => (value >= 0.0, "a finite number, zero or above"),
+            Domain::Share => (value > 0.0 && value < 1.0, "a number above zero and below one"),
             Domain::Real => (true, "a finite number"),
         };
         if allowed && value.is_finite() {
@@ -179,6 +190,17 @@ pub trait Potential: Sync {
     /// refused without a look at what they would get. To say no is always right, but slower.
     fn is_never_negative(&self, _: &Term) -> bool {
         false
+    }
+
+    /// Whether a side of a triangle can become too long for it: then every evaluation, also of forces alone, refuses an
+    /// energy that is not finite.
+    fn limits_sides(&self, _: &Term) -> bool {
+        false
+    }
+
+    /// The lengths, nm, that the sides of a triangle must stay below, if there are any such.
+    fn longest_sides(&self, _: &Term, _: &Constants) -> [f64; 3] {
+        [f64::INFINITY; 3]
     }
 
     /// Energy of the total area and volume.
@@ -344,6 +366,10 @@ mod tests {
     #[test]
     fn domains_are_kept() {
         let parameter = |domain| Parameter::new(c"x", 0, 1, domain);
+        assert!(parameter(Domain::Share).check(0.999).is_ok());
+        for value in [f64::NAN, -0.1, 0.0, 1.0, f64::INFINITY] {
+            assert!(parameter(Domain::Share).check(value).is_err());
+        }
         for domain in [Domain::Positive, Domain::NonNegative, Domain::Real] {
             assert!(parameter(domain).check(f64::NAN).is_err());
             assert!(parameter(domain).check(f64::INFINITY).is_err());

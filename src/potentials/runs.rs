@@ -1,8 +1,8 @@
 //! Runs of elements that formulas are applied to, each in three forms: the reference's, the lanes', and energies alone.
 
 use super::{
-    Constants, Contribution, EdgeFormula, Place, Sums, Term, Triangle, TriangleFormula, TriangleSlopes,
-    Vertex, VertexFormula,
+    Constants, Contribution, EdgeFormula, Place, Sums, Term, Triangle, TriangleFormula,
+    TriangleSlopes, Vertex, VertexFormula,
 };
 use crate::evaluator::simd::{BLOCK, EdgeBlock, Level, TriangleTile, VertexTile};
 use crate::mesh::geometry::{
@@ -144,8 +144,7 @@ impl Triangles<'_> {
     pub fn apply(self, term: &Term, formula: &impl TriangleFormula) -> Contribution {
         let sum = match self {
             Self::Energies { ids, geometry, constants, energies } => {
-                for (n, ((id, known), energy)) in
-                    ids.iter().zip(geometry).zip(energies).enumerate()
+                for (n, ((id, known), energy)) in ids.iter().zip(geometry).zip(energies).enumerate()
                 {
                     let triangle = Triangle { twice_area: known.twice_area, dots: known.dots };
                     if !formula.vanishes(&triangle) {

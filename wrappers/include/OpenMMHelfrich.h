@@ -8,11 +8,15 @@
 #include "openmm-helfrich/EdgeTensionForce.h"
 #include "openmm-helfrich/EnclosedVolumeForce.h"
 #include "openmm-helfrich/GaussianCurvatureForce.h"
+#include "openmm-helfrich/LineTensionForce.h"
+#include "openmm-helfrich/LinearElasticForce.h"
 #include "openmm-helfrich/MonteCarloBondFlip.h"
 #include "openmm-helfrich/MonteCarloMembraneTension.h"
+#include "openmm-helfrich/NeoHookeanForce.h"
 #include "openmm-helfrich/ParticleSurfaceForce.h"
 #include "openmm-helfrich/PlaquetteAreaForce.h"
 #include "openmm-helfrich/SkalakForce.h"
+#include "openmm-helfrich/SpringForce.h"
 #include "openmm-helfrich/SurfaceAreaForce.h"
 #include "openmm-helfrich/SurfaceRepulsionForce.h"
 #include "openmm-helfrich/TriangleAreaForce.h"
@@ -34,7 +38,11 @@
     apply(ParticleSurfaceForce) \
     apply(EdgeTensionForce) \
     apply(GaussianCurvatureForce) \
-    apply(SkalakForce)
+    apply(SkalakForce) \
+    apply(NeoHookeanForce) \
+    apply(LinearElasticForce) \
+    apply(SpringForce) \
+    apply(LineTensionForce)
 // clang-format on
 
 #endif /*OPENMM_HELFRICH_H_*/

@@ -1,8 +1,8 @@
 //! The terms of an evaluation as the shaders read them, and where in the results each of them leaves its sums.
 
 use super::interface::{
-    FrameRecord, GROUP_SIZE, Item, KINDS, NO_FIELD, SUMS_OF_EDGES, SUMS_OF_TOTALS, SUMS_OF_TRIANGLES,
-    SUMS_OF_VERTICES, TermRecord, Wishes,
+    FrameRecord, GROUP_SIZE, Item, KINDS, NO_FIELD, SUMS_OF_EDGES, SUMS_OF_TOTALS,
+    SUMS_OF_TRIANGLES, SUMS_OF_VERTICES, TermRecord, Wishes,
 };
 use super::lattice::Scale;
 use super::{Bytes, Precision, Reals, shaders};
@@ -286,7 +286,8 @@ impl FrameConstants {
         self.unit = unit;
         self.bytes.clear();
         for term in with() {
-            let scales = term.potential.constant_lengths().map(|length| unit.powi((-length).into()));
+            let scales =
+                term.potential.constant_lengths().map(|length| unit.powi((-length).into()));
             for values in term.constants.values {
                 for (value, scale) in values.iter().zip(scales) {
                     self.put(precision, value * scale);
