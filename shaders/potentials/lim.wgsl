@@ -17,7 +17,7 @@ fn lim_triangle(
     let b2 = select(real(1.84), real(0.75), frame.terms[term].form == COEFFICIENTS_LIM2002);
     let one = real(1.0);
     let growth = real(2.0) * trace + real(4.0) * strain.determinant;
-    let ratio = root(one + growth);
+    let ratio = real(0.5) * triangle.twice_area / strain.area;
     let inverse = one / ratio;
     let alpha = growth / (ratio + one);
     let beta = (trace * trace - real(4.0) * strain.determinant) * inverse / (one + trace + ratio);

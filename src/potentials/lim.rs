@@ -6,14 +6,12 @@
 //! 16766 (2002), doi:10.1073/pnas.202617299, with a₃ = −2, a₄ = 8, b₁ = 0.7 and b₂ = 0.75: `Lim2002`. L. Amoudruz et al.,
 //! Biophys. J. 122, 1517 (2023), doi:10.1016/j.bpj.2023.03.019, found b₂ = 1.84 from experiments: `Amoudruz2023`.
 //!
-//! In the invariants of `strain.rs`, λ₁λ₂ = J = √(1 + 2 tr ε + 4 det ε), α = (2 tr ε + 4 det ε) / (J + 1) and
+//! In the invariants of `strain.rs`, α = (2 tr ε + 4 det ε) / (J + 1) and
 //! β = ((tr ε)² − 4 det ε) / J (1 + tr ε + J), in which nothing cancels at small strains.
 
 use super::codes::Coefficients;
-use super::strain::{Density, Elastic, LENGTHS, Law, OF_STRAIN, Strain};
-use super::{
-    CONSTANTS, Contribution, Domain, MadeOf, Needs, Parameter, Potential, Term, Triangles,
-};
+use super::strain::{Density, Elastic, LENGTHS, Law, MODULI, OF_STRAIN, Strain};
+use super::{CONSTANTS, Contribution, MadeOf, Needs, Parameter, Potential, Term, Triangles};
 use crate::real::Real;
 use std::ffi::CStr;
 
@@ -45,12 +43,7 @@ impl Potential for Lim {
     }
 
     fn parameters(&self) -> &'static [Parameter] {
-        const {
-            &[
-                Parameter::new(c"shearModulus", 1, -2, Domain::NonNegative),
-                Parameter::new(c"areaModulus", 1, -2, Domain::NonNegative),
-            ]
-        }
+        MODULI
     }
 
     fn forms(&self) -> Option<(&'static CStr, &'static [&'static CStr])> {
@@ -79,11 +72,10 @@ impl Potential for Lim {
 impl Law for Hardening {
     #[inline(always)]
     fn density<R: Real>(&self, [shear, area]: [f64; 2], strain: &Strain<R>) -> Density<R> {
-        let &Strain { trace, determinant } = strain;
+        let &Strain { trace, determinant, stretch: ratio } = strain;
         let &Self { b2 } = self;
         let one = trace.of(1.0);
         let growth = (trace + determinant * 2.0) * 2.0;
-        let ratio = (growth + one).sqrt();
         let inverse = one / ratio;
         let alpha = growth / (ratio + one);
         let beta = (trace * trace - determinant * 4.0) * inverse / (trace + one + ratio);
@@ -109,7 +101,7 @@ mod tests {
     /// Of the principal stretches.
     fn strain(first: f64, second: f64) -> Strain<f64> {
         let [e, f] = [first, second].map(|stretch| 0.5 * (stretch * stretch - 1.0));
-        Strain { trace: e + f, determinant: e * f }
+        Strain { trace: e + f, determinant: e * f, stretch: first * second }
     }
 
     #[test]
@@ -136,9 +128,14 @@ mod tests {
     fn derivatives_match_finite_differences() {
         let law = Hardening::of(Coefficients::Lim2002);
         let moduli = [1.3, 0.7];
-        let Strain { trace, determinant } = strain(1.4, 0.8);
+        let Strain { trace, determinant, .. } = strain(1.4, 0.8);
+        let of = |trace: f64, determinant: f64| Strain {
+            trace,
+            determinant,
+            stretch: (1.0 + 2.0 * trace + 4.0 * determinant).sqrt(),
+        };
         let energy = |trace, determinant| {
-            let density = law.density(moduli, &Strain { trace, determinant });
+            let density = law.density(moduli, &of(trace, determinant));
             moduli[0] * density.by_modulus[0] + moduli[1] * density.by_modulus[1]
         };
         let h = 1e-6;
@@ -146,7 +143,7 @@ mod tests {
             (energy(trace + h, determinant) - energy(trace - h, determinant)) / (2.0 * h);
         let by_determinant =
             (energy(trace, determinant + h) - energy(trace, determinant - h)) / (2.0 * h);
-        let found = law.density(moduli, &Strain { trace, determinant });
+        let found = law.density(moduli, &of(trace, determinant));
         assert!((found.by_trace - by_trace).abs() < 1e-8);
         assert!((found.by_determinant - by_determinant).abs() < 1e-8);
     }
