@@ -27,6 +27,7 @@ from .forces import *  # noqa: E402, F403
 from .forces import __all__ as _force_names  # noqa: E402
 from .mesh import Mesh  # noqa: E402
 from .ramps import harden  # noqa: E402
+from .red_cell import RedCell, RedCellModel  # noqa: E402
 from .reporters import (  # noqa: E402
     MembraneReporter,
     ModeReporter,
@@ -44,6 +45,8 @@ __all__ = [
     "Mesh",
     "MeshError",
     "ModeReporter",
+    "RedCell",
+    "RedCellModel",
     "VTKHDFReporter",
     "VirialReporter",
     "Vesicle",

@@ -13,6 +13,7 @@ from ._in_systems import InSystems
 from ._mesh.discs import EVANS_FUNG_DIAMETER, evans_fung, spheroid
 from ._quantities import checked_number
 from .analysis import triangle_areas
+from .area_difference import area_difference_parameters
 from .forces import (
     AreaDifferenceForce,
     BendingForce,
@@ -206,7 +207,7 @@ class RedCell(InSystems):
                 known = ", ".join(sorted(fields))
                 raise TypeError(f"RedCell: a model has no {name!r}; it has: {known}")
         self._model = _checked(dataclasses.replace(model, **changes))
-        self._mass = checked_number("mass", mass, unit.dalton, zero=False, where="RedCell")
+        self._mass = checked_number("mass", mass, unit.dalton, zero=False, caller="RedCell")
         profile = evans_fung(self._model.diameter)
         ball = Mesh.random_sphere(num_vertices, 1.0, seed=seed)
         self._mesh = Mesh(profile.of_sphere(ball.vertices), ball.triangles)
@@ -249,7 +250,7 @@ class RedCell(InSystems):
                 mesh, model.local_area_modulus, targets, **at
             )
         if model.area_difference is not None:
-            modulus, target = AreaDifferenceForce.parameters(
+            modulus, target = area_difference_parameters(
                 model.rigidity, model.area_difference_ratio, mesh.area, model.area_difference
             )
             forces["area_difference"] = AreaDifferenceForce(mesh, modulus, target, **at)
@@ -306,14 +307,14 @@ def _checked(model: RedCellModel) -> RedCellModel:
                 f"RedCell: there is no {name} {value!r}; known are: {', '.join(known)}"
             )
     plain = {
-        name: checked_number(name, getattr(model, name), dimension, where="RedCell")
+        name: checked_number(name, getattr(model, name), dimension, caller="RedCell")
         for name, dimension in _UNITS.items()
     }
     for name, negative in (("reference", False), ("area_difference", True)):
         value = getattr(model, name)
         if value is not None:
             dimension = unit.dimensionless
-            plain[name] = checked_number(name, value, dimension, negative=negative, where="RedCell")
+            plain[name] = checked_number(name, value, dimension, negative=negative, caller="RedCell")
     if model.shear_law == "Skalak" and plain["local_area_modulus"] < plain["shear_modulus"]:
         raise ValueError(
             "RedCell: Skalak's law has a local_area_modulus of at least shear_modulus, got "

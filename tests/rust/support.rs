@@ -158,6 +158,8 @@ pub fn terms_of_vertices(mesh: &Mesh, cell: Option<Cell>) -> Vec<Term<'static>> 
     vec![
         with(reference, "SkalakForce", 0, &[2.0, 3.0]),
         with(reference, "NeoHookeanForce", 0, &[2.0, 3.0]),
+        with(reference, "LimForce", 0, &[2.0, 3.0]),
+        with(reference, "LimForce", 1, &[2.0, 3.0]),
         with(reference, "LinearElasticForce", 0, &[2.0, 3.0]),
         with(reference, "SpringForce", 0, &[1.5, 0.5]),
         with(reference, "SpringForce", 1, &[1.5, 0.4]),

@@ -58,7 +58,8 @@ def evans_fung(diameter: float) -> Profile:
 
 def spheroid(area: float, reduced_volume: float) -> Profile:
     """The oblate spheroid of an area, nm², and of a reduced volume 6 √π V / A^{3/2}; 1 is a sphere."""
-    low, high = 1e-3, 1.0
+    # Near a sphere the reduced volume hardly depends on the aspect ratio, so that is no equation to solve.
+    low, high = (1.0, 1.0) if reduced_volume == 1 else (1e-3, 1.0)
     for _ in range(60):
         aspect = 0.5 * (low + high)
         shape = Profile(np.sin, lambda t, aspect=aspect: aspect * np.cos(t))
