@@ -51,7 +51,9 @@ def accept_units(force: type) -> None:
     if numbers is not None:
         # After all that must be given.
         first = next((n for n, p in enumerate(parameters) if p.default is not p.empty), None)
-        parameters.insert(len(parameters) if first is None else first, inspect.Parameter(numbers, keyword))
+        parameters.insert(
+            len(parameters) if first is None else first, inspect.Parameter(numbers, keyword)
+        )
     if form is not None:
         parameters.append(inspect.Parameter(form, keyword, default=0))
     parameters.append(inspect.Parameter("offset", inspect.Parameter.KEYWORD_ONLY, default=0))
