@@ -54,5 +54,7 @@ def area_difference_parameters(rigidity, alpha, area, delta_a0) -> tuple[float, 
     rigidity = checked_number("rigidity", rigidity, _ENERGY, caller=caller)
     alpha = checked_number("alpha", alpha, unit.dimensionless, caller=caller)
     area = checked_number("area", area, unit.nanometer**2, zero=False, caller=caller)
-    delta_a0 = checked_number("delta_a0", delta_a0, unit.dimensionless, negative=True, caller=caller)
+    delta_a0 = checked_number(
+        "delta_a0", delta_a0, unit.dimensionless, negative=True, caller=caller
+    )
     return 4 * math.pi * alpha * rigidity / area, math.sqrt(4 * math.pi * area) * delta_a0

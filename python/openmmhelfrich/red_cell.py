@@ -239,9 +239,7 @@ class RedCell(InSystems):
         if model.bending == "dihedral":
             stiffness = 2 / math.sqrt(3) * model.rigidity
             rest = _angle_of_sphere(mesh.num_vertices)
-            forces["dihedrals"] = DihedralForce(
-                mesh, stiffness, DihedralForce.Cosine, rest, **at
-            )
+            forces["dihedrals"] = DihedralForce(mesh, stiffness, DihedralForce.Cosine, rest, **at)
         else:
             forces["bending"] = BendingForce(mesh, model.rigidity, scheme=model.bending, **at)
         if model.shear_law in _NETWORKS and model.local_area_modulus > 0:
@@ -314,7 +312,9 @@ def _checked(model: RedCellModel) -> RedCellModel:
         value = getattr(model, name)
         if value is not None:
             dimension = unit.dimensionless
-            plain[name] = checked_number(name, value, dimension, negative=negative, caller="RedCell")
+            plain[name] = checked_number(
+                name, value, dimension, negative=negative, caller="RedCell"
+            )
     if model.shear_law == "Skalak" and plain["local_area_modulus"] < plain["shear_modulus"]:
         raise ValueError(
             "RedCell: Skalak's law has a local_area_modulus of at least shear_modulus, got "

@@ -287,7 +287,9 @@ def _area_differences() -> list[Case]:
                 "modulus": 0.5,
                 "target": ratio * _geometry(m).mean_curvature,
             },
-            energy=lambda m, a: 0.5 * a["modulus"] * (_geometry(m).mean_curvature - a["target"]) ** 2,
+            energy=lambda m, a: (
+                0.5 * a["modulus"] * (_geometry(m).mean_curvature - a["target"]) ** 2
+            ),
             strings=lambda m, a, style: oracle.evaluate(
                 string_forces.area_difference(m.triangles, a["modulus"], a["target"], style),
                 m.positions,
@@ -520,10 +522,12 @@ def _strains() -> list[Case]:
     def placed(m: Membrane, a: Arguments) -> np.ndarray:
         return numpy_energies.placed(m.positions, m.triangles, a["reference"])
 
+    invalid = _never_below("shearModulus", zero=True) + _never_below("areaModulus", zero=True)
     return [
         Case(
             name=f"strains, {word}",
             force=force,
+            variant=variant,
             arguments=lambda m: {
                 "shearModulus": 2.0,
                 "areaModulus": 3.0,
@@ -539,13 +543,14 @@ def _strains() -> list[Case]:
                 m.positions,
             ),
             settings=_in_its_box,
-            invalid=_never_below("shearModulus", zero=True)
-            + _never_below("areaModulus", zero=True),
+            invalid=invalid if word != "amoudruz" else (),
         )
-        for word, force in (
-            ("skalak", "SkalakForce"),
-            ("neo_hookean", "NeoHookeanForce"),
-            ("linear_elastic", "LinearElasticForce"),
+        for word, force, variant in (
+            ("skalak", "SkalakForce", None),
+            ("neo_hookean", "NeoHookeanForce", None),
+            ("linear_elastic", "LinearElasticForce", None),
+            ("lim", "LimForce", ("coefficients", "Lim2002")),
+            ("amoudruz", "LimForce", ("coefficients", "Amoudruz2023")),
         )
     ]
 

@@ -286,6 +286,20 @@ def neo_hookean(vertices, triangles, shear_modulus: float, area_modulus: float, 
     return float(np.sum(area * (shear + area_modulus / 2 * (one * other - 1) ** 2)))
 
 
+def lim(
+    vertices, triangles, shear_modulus: float, area_modulus: float, reference, b2: float = 0.75
+) -> float:
+    one, other, area = _stretches(vertices, triangles, reference)
+    alpha, beta = one * other - 1, (one - other) ** 2 / (2 * one * other)
+    shear = shear_modulus * (beta + 0.7 * alpha * beta + b2 * beta**2)
+    growth = area_modulus / 2 * (alpha**2 - 2 * alpha**3 + 8 * alpha**4)
+    return float(np.sum(area * (shear + growth)))
+
+
+def amoudruz(*arguments) -> float:
+    return lim(*arguments, b2=1.84)
+
+
 def linear_elastic(
     vertices, triangles, shear_modulus: float, area_modulus: float, reference
 ) -> float:

@@ -739,6 +739,20 @@ def neo_hookean(triangles, shear: float, area: float, at_rest, style: str) -> li
     return _strained(triangles, at_rest, style, f"{mu}*((I1+2)/J-2)+{k}*(J-1)^2")
 
 
+def lim(
+    triangles, shear: float, area: float, at_rest, style: str, b2: float = 0.75
+) -> list[mm.Force]:
+    """A0 [½ K (a² − 2 a³ + 8 a⁴) + μ (b + 0.7 a b + b2 b²)] (doi:10.1073/pnas.202617299)."""
+    mu, k = _number(shear), _number(area / 2)
+    a, b = "(J-1)", "((I1+2)/(2*J)-1)"
+    energy = f"{k}*({a}^2-2*{a}^3+8*{a}^4)+{mu}*({b}+0.7*{a}*{b}+{_number(b2)}*{b}^2)"
+    return _strained(triangles, at_rest, style, energy)
+
+
+def amoudruz(triangles, shear: float, area: float, at_rest, style: str) -> list[mm.Force]:
+    return lim(triangles, shear, area, at_rest, style, b2=1.84)
+
+
 def linear_elastic(triangles, shear: float, area: float, at_rest, style: str) -> list[mm.Force]:
     """A0 [½ K (tr e)² + ½ μ ((tr e)² − 4 det e)], with Green's strain e."""
     mu, k = _number(shear / 2), _number(area / 8)
