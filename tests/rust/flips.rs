@@ -168,7 +168,10 @@ fn values_of_vertices_and_triangles_take_part() {
 /// A million flips with a full validation now and then, and with evaluations that must follow.
 #[test]
 fn many_flips_leave_a_valid_surface_and_current_evaluators() {
-    flip_often(&spheroid(6, 9, &mut random(21)), &all_terms(true), 1_000_000);
+    // A crumpled surface may have a volume below zero, of which no osmotic pressure can be said.
+    let mut terms = all_terms(true);
+    terms.retain(|term| term.potential.name() != "OsmoticPressureForce");
+    flip_often(&spheroid(6, 9, &mut random(21)), &terms, 1_000_000);
 }
 
 #[test]
