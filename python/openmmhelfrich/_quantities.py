@@ -55,19 +55,19 @@ def _plain(value, dimension):
     return value.value_in_unit(dimension) if unit.is_quantity(value) else float(value)
 
 
-def checked_number(name, value, dimension, zero=True, negative=False):
+def checked_number(name, value, dimension, zero=True, negative=False, caller="Vesicle"):
     """A checked number in OpenMM's units, for the parameter `name`."""
     if unit.is_quantity(value) and not value.unit.is_compatible(dimension):
-        raise TypeError(f"Vesicle: {name} needs the unit {dimension}, got {value}")
+        raise TypeError(f"{caller}: {name} needs the unit {dimension}, got {value}")
     if isinstance(value, (bool, np.bool_, str)):
-        raise TypeError(f"Vesicle: {name} needs a number, got {value!r}")
+        raise TypeError(f"{caller}: {name} needs a number, got {value!r}")
     try:
         number = _plain(value, dimension)
     except (TypeError, ValueError):
-        raise TypeError(f"Vesicle: {name} needs a number, got {value!r}") from None
+        raise TypeError(f"{caller}: {name} needs a number, got {value!r}") from None
     if not math.isfinite(number):
-        raise ValueError(f"Vesicle: {name} needs a finite number, got {number}")
+        raise ValueError(f"{caller}: {name} needs a finite number, got {number}")
     if not negative and (number < 0 or (number == 0 and not zero)):
         need = "0 or more" if zero else "more than 0"
-        raise ValueError(f"Vesicle: {name} needs {need}, got {number}")
+        raise ValueError(f"{caller}: {name} needs {need}, got {number}")
     return number

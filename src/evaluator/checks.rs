@@ -19,7 +19,11 @@ pub fn check_energies<'a>(
 }
 
 /// Refuse an energy of totals whose derivatives are not finite, so that no force would be; names the force.
-pub fn check_totals(term: &Term, contribution: &Contribution, slopes: &TotalPartials) -> Result<()> {
+pub fn check_totals(
+    term: &Term,
+    contribution: &Contribution,
+    slopes: &TotalPartials,
+) -> Result<()> {
     if slopes.are_finite() {
         return Ok(());
     }

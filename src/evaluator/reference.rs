@@ -185,8 +185,11 @@ impl ReferenceEvaluator {
             sums
         });
         let (area, volume) = (sums.area, sums.six_volumes / 6.0);
-        (sums.smallest > 0.0 && sums.area.is_finite())
-            .then(|| Totals { area, volume, ..Totals::default() })
+        (sums.smallest > 0.0 && sums.area.is_finite()).then(|| Totals {
+            area,
+            volume,
+            ..Totals::default()
+        })
     }
 
     /// Returns the total mean curvature.

@@ -31,7 +31,10 @@ impl Potential for OsmoticPressure {
         true
     }
 
-    fn reference(&self, &Term { values: [solutes, concentration, ..], .. }: &Term) -> Option<Total> {
+    fn reference(
+        &self,
+        &Term { values: [solutes, concentration, ..], .. }: &Term,
+    ) -> Option<Total> {
         Some(Total::Volume(solutes / concentration))
     }
 

@@ -286,7 +286,9 @@ def _area_differences() -> list[Case]:
                 "modulus": 0.5,
                 "target": ratio * _geometry(m).mean_curvature,
             },
-            energy=lambda m, a: 0.5 * a["modulus"] * (_geometry(m).mean_curvature - a["target"]) ** 2,
+            energy=lambda m, a: (
+                0.5 * a["modulus"] * (_geometry(m).mean_curvature - a["target"]) ** 2
+            ),
             strings=lambda m, a, style: oracle.evaluate(
                 string_forces.area_difference(m.triangles, a["modulus"], a["target"], style),
                 m.positions,

@@ -7,9 +7,9 @@
 
 use super::ghosts::Ghosts;
 use super::records::BLOCK;
-use crate::mesh::{NONE, Triangulation};
 use crate::mesh::geometry::Vec3;
 use crate::mesh::triangulation::{next, previous};
+use crate::mesh::{NONE, Triangulation};
 use std::ops::Range;
 use std::sync::OnceLock;
 

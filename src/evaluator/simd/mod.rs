@@ -227,7 +227,13 @@ impl SimdEvaluator {
             team.run(|member| {
                 if needs.contains(Needs::MEAN_CURVATURE) {
                     // SAFETY: each member has its own places, and nobody reads them before all are done.
-                    unsafe { add_mean_curvature(arrays, member.share(layout.places_of_vertices()), totals) };
+                    unsafe {
+                        add_mean_curvature(
+                            arrays,
+                            member.share(layout.places_of_vertices()),
+                            totals,
+                        )
+                    };
                     member.barrier();
                 }
                 for index in member.share(layout.vertex_tiles()) {
@@ -289,7 +295,6 @@ fn totals(sums: &[TriangleSums]) -> Option<(Totals, bool)> {
         sum += *part;
     }
     let TriangleSums { twice_area, six_volumes, smallest, silent } = sum;
-    let totals =
-        Totals { area: 0.5 * twice_area, volume: six_volumes / 6.0, ..Totals::default() };
+    let totals = Totals { area: 0.5 * twice_area, volume: six_volumes / 6.0, ..Totals::default() };
     (smallest > SMALLEST_AREA && twice_area.is_finite()).then_some((totals, silent))
 }
