@@ -21,6 +21,7 @@ _plugin.load()
 
 from . import analysis, backend, config, platforms, vcm  # noqa: E402
 from ._paths import cmake_path, include_path, library_path  # noqa: E402
+from .area_difference import area_difference_parameters  # noqa: E402
 from .backend import adapters, get_backend, set_backend  # noqa: E402
 from .errors import MeshError  # noqa: E402
 from .forces import *  # noqa: E402, F403
@@ -52,6 +53,7 @@ __all__ = [
     "Vesicle",
     "adapters",
     "analysis",
+    "area_difference_parameters",
     "backend",
     "cmake_path",
     "config",

@@ -13,15 +13,20 @@ from ._in_systems import InSystems
 from ._quantities import checked_field, checked_number, encloses
 from ._vesicle_flips import checked_flips, mover_of
 from ._vesicle_times import TimeScales
+from ._vesicle_totals import checked_area_difference, checked_osmotic
 from .analysis import theory, triangle_areas
 from .forces import (
+    AreaDifferenceForce,
     BendingForce,
     DihedralForce,
     EdgeTensionForce,
     EnclosedVolumeForce,
     GaussianCurvatureForce,
+    OsmoticPressureForce,
     PlaquetteAreaForce,
+    PressureForce,
     SurfaceAreaForce,
+    SurfaceTensionForce,
     TriangleAreaForce,
     TriangleAreaRepulsionForce,
     TriangleHeightForce,
@@ -91,6 +96,16 @@ class Vesicle(InSystems, TimeScales):
         Energy γ per length of borders of an `EdgeTensionForce`, kJ/mol/nm. Default 0: without.
     gaussian_modulus : float or Quantity
         Modulus κ_G of a `GaussianCurvatureForce`, kJ/mol; it acts at borders. Default 0: without.
+    pressure : float or Quantity
+        Pressure p inside less outside of a `PressureForce`, kJ/mol/nm³. Default 0: without.
+    surface_tension : float or Quantity
+        Tension σ of a `SurfaceTensionForce`, kJ/mol/nm². Default 0: without.
+    osmotic : mapping, optional
+        Arguments of an `OsmoticPressureForce` by their names: ``solutes`` inside,
+        ``concentration`` outside, 1/nm³, and ``thermalEnergy``, kJ/mol, default kT at 300 K.
+    area_difference : mapping, optional
+        ``alpha`` and ``delta_a0`` of `area_difference_parameters`, for κ and A0, or ``modulus``,
+        kJ/mol/nm², and ``target``, nm, of an `AreaDifferenceForce`.
     flips : float or mapping, optional
         Make the membrane fluid: attempts to flip a bond for each edge and time step (0.01 is a good
         start), or the arguments of a `MonteCarloBondFlip` after the triangles by their names, with
@@ -142,6 +157,10 @@ class Vesicle(InSystems, TimeScales):
         min_triangle_area=0.0,
         edge_tension=0.0,
         gaussian_modulus=0.0,
+        pressure=0.0,
+        surface_tension=0.0,
+        osmotic=None,
+        area_difference=None,
         flips=None,
     ):
         nm = unit.nanometer
@@ -177,6 +196,13 @@ class Vesicle(InSystems, TimeScales):
         self._gaussian_modulus = checked_number(
             "gaussian_modulus", gaussian_modulus, _ENERGY, negative=True
         )
+        self._pressure = checked_number("pressure", pressure, _ENERGY / nm**3, negative=True)
+        self._surface_tension = checked_number(
+            "surface_tension", surface_tension, _ENERGY / nm**2, negative=True
+        )
+        self._osmotic = None if osmotic is None else checked_osmotic(osmotic)
+        if not self._encloses and (self._pressure != 0 or self._osmotic is not None):
+            raise ValueError("Vesicle: the mesh encloses no volume on which a pressure could act")
         self._min_height = mesh.min_height(self._softness)
         self._area = checked_number("area", mesh.area if area is None else area, nm**2, zero=False)
         if not self._encloses:
@@ -190,6 +216,11 @@ class Vesicle(InSystems, TimeScales):
             raise ValueError("Vesicle: give either volume or reduced_volume, not both")
         if self._encloses:
             self._volume = checked_number("volume", volume, nm**3, zero=False)
+        self._area_difference = None
+        if area_difference is not None:
+            self._area_difference = checked_area_difference(
+                area_difference, self._rigidity, self._area
+            )
         self._flips = None if flips is None else checked_flips(flips)
         # The forces refuse a scheme or form that does not exist: now, not when they are used.
         self._forces(0)
@@ -272,4 +303,12 @@ class Vesicle(InSystems, TimeScales):
             forces["gaussian_curvature"] = GaussianCurvatureForce(
                 mesh, self._gaussian_modulus, **at
             )
+        if self._pressure != 0:
+            forces["pressure"] = PressureForce(mesh, self._pressure, **at)
+        if self._surface_tension != 0:
+            forces["surface_tension"] = SurfaceTensionForce(mesh, self._surface_tension, **at)
+        if self._osmotic is not None:
+            forces["osmotic"] = OsmoticPressureForce(mesh, **self._osmotic, **at)
+        if self._area_difference is not None:
+            forces["area_difference"] = AreaDifferenceForce(mesh, **self._area_difference, **at)
         return forces

@@ -44,3 +44,24 @@ impl Potential for AreaDifference {
         Contribution { energy: modulus * by_modulus, by_parameter: [by_modulus, -slope, 0.0, 0.0] }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn derivatives_are_exact() {
+        let at = |modulus: f64, target: f64, mean_curvature: f64| {
+            let term = Term::new("AreaDifferenceForce", 0, &[modulus, target]).unwrap();
+            let (totals, mut partials) =
+                (Totals { mean_curvature, ..Totals::default() }, TotalPartials::default());
+            (AreaDifference.totals(&term, &totals, &mut partials), partials.mean_curvature)
+        };
+        let (m, m0, value) = (0.7, -30.0, 110.0);
+        let (found, slope) = at(m, m0, value);
+        let central = |f: &dyn Fn(f64) -> f64| (f(1e-3) - f(-1e-3)) / 2e-3;
+        assert!((slope - central(&|h| at(m, m0, value + h).0.energy)).abs() < 1e-6);
+        assert!((found.by_parameter[0] - central(&|h| at(m + h, m0, value).0.energy)).abs() < 1e-6);
+        assert!((found.by_parameter[1] - central(&|h| at(m, m0 + h, value).0.energy)).abs() < 1e-6);
+    }
+}

@@ -182,7 +182,7 @@ def global_volume(vertices, triangles, modulus: float, target: float) -> float:
     return quadratic(Geometry(vertices, triangles).volume, modulus, target)
 
 
-def osmotic_pressure(vertices, triangles, solutes, concentration, thermalEnergy) -> float:  # noqa: N803
+def osmotic_pressure(vertices, triangles, solutes, concentration, thermalEnergy) -> float:
     x = concentration * Geometry(vertices, triangles).volume / solutes
     return float(solutes * thermalEnergy * (x - 1 - np.log(x)))
 

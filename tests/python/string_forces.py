@@ -334,7 +334,7 @@ def osmotic_pressure(
     triangles,
     solutes: float,
     concentration: float,
-    thermalEnergy: float,  # noqa: N803
+    thermalEnergy: float,
     style: str,
 ) -> list[mm.Force]:
     """n kT (x − 1 − ln x) with x = c V / n."""

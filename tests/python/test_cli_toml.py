@@ -15,6 +15,7 @@ from openmmhelfrich import (
     Mesh,
     MonteCarloMembraneTension,
     Vesicle,
+    analysis,
     config,
 )
 from openmmhelfrich.analysis import theory
@@ -555,6 +556,65 @@ mesh = { sheet = [8, 10], spacing = 50, periodic = true, translate = [0, 0, 99] 
 """
         with pytest.raises(ConfigError, match=r"vesicle\[1\]\.mesh: its box is not that of the"):
             config.read(write(SHEET + other))
+
+
+PRESSED = """simulation.duration = 4
+integrator.temperature = 310
+
+[[vesicle]]
+pressure = -0.001
+surface_tension = 0.02
+osmotic = { solutes = 4000, concentration = 0.04 }
+area_difference = { alpha = 1.4, delta_a0 = 1.1 }
+mesh = { icosphere = 2, radius = 30 }
+"""
+
+
+class TestTotals:
+    def test_as_by_hand(self, write):
+        cfg = config.read(write(PRESSED))
+        mesh = Mesh.icosphere(2, 30)
+        given = {
+            "pressure": -0.001,
+            "surface_tension": 0.02,
+            "osmotic": {"solutes": 4000, "concentration": 0.04, "thermalEnergy": cfg.kT},
+            "area_difference": {"alpha": 1.4, "delta_a0": 1.1},
+        }
+        system = openmm.System()
+        Vesicle(mesh, **given).add_to(system)
+        shaken = mesh.vertices + np.random.default_rng(1).normal(size=mesh.vertices.shape)
+        found, expected = state(cfg.system(), shaken), state(system, shaken)
+        assert found[0] == expected[0] != 0
+        assert np.array_equal(found[1], expected[1])
+        assert list(cfg.terms)[4:] == list(given)
+        assert cfg.kT == pytest.approx(theory.BOLTZMANN * 310)
+
+    def test_as_numbers(self, write):
+        plain = PRESSED.replace("alpha = 1.4, delta_a0 = 1.1", "modulus = 0.1, target = -30")
+        own = plain.replace("concentration = 0.04", 'concentration = 0.04, thermal_energy = "2 kT"')
+        cfg = config.read(write(own))
+        mesh = cfg.meshes[0]
+        energies = cfg.energies(cfg.simulation("Reference").context)
+        total = analysis.total_mean_curvature(mesh, mesh)
+        assert energies["area_difference"] == pytest.approx(0.05 * (total + 30) ** 2)
+        x = 0.04 * mesh.volume / 4000
+        assert energies["osmotic"] == pytest.approx(4000 * 2 * cfg.kT * (x - 1 - np.log(x)))
+
+    @pytest.mark.parametrize(
+        ("old", "new", "message"),
+        [
+            ("= -0.001", '= "1 kT"', r"5: key vesicle\[0\].pressure: expected a number"),
+            ("solutes = 4000", "solutes = 0", r"osmotic: solutes: must be above 0, got 0"),
+            ("solutes = 4000", "solute = 4000", r"no 'solute' in osmotic; did you mean solutes"),
+            ("solutes = 4000, ", "", r"osmotic needs solutes and concentration"),
+            ("alpha", "beta", r"area_difference: there is no 'beta' in area_difference"),
+            ("alpha = 1.4, ", "", r"area_difference needs alpha and delta_a0, or modulus and"),
+            ("icosphere = 2", "disk = 3", r"mesh.*; volume_modulus=0 leaves the volume out"),
+        ],
+    )
+    def test_mistakes(self, write, old, new, message):
+        with pytest.raises(ConfigError, match=message):
+            config.read(write(PRESSED.replace(old, new, 1)))
 
 
 class TestDocuments:

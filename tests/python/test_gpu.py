@@ -120,12 +120,13 @@ def test_small_strains_of_area_and_volume(where: str, strain: float, target: Tar
     """Single precision alone would leave three digits of a strain of 1e-4, and of its force."""
     m = membrane(where)
     mesh = helfrich.Mesh(m.positions[m.members], np.searchsorted(m.members, m.triangles))
-    for cls, size in (
-        (helfrich.SurfaceAreaForce, mesh.area),
-        (helfrich.EnclosedVolumeForce, mesh.volume),
+    for cls, arguments in (
+        (helfrich.SurfaceAreaForce, (1e3, mesh.area / (1 + strain))),
+        (helfrich.EnclosedVolumeForce, (1e3, mesh.volume / (1 + strain))),
+        (helfrich.OsmoticPressureForce, (400 * mesh.volume / (1 + strain), 400.0, 2.5)),
     ):
-        found = Running([cls(m.triangles, 1e3, size / (1 + strain))], m.num_particles, target)
-        expected = Running([cls(m.triangles, 1e3, size / (1 + strain))], m.num_particles, REFERENCE)
+        found = Running([cls(m.triangles, *arguments)], m.num_particles, target)
+        expected = Running([cls(m.triangles, *arguments)], m.num_particles, REFERENCE)
         # What cancels to 1e-4 of itself has lost four digits in double precision, too, and the
         # square of it twice as many of what was left.
         tolerance = 1e-9 if target.name.endswith("double") else 1e-4

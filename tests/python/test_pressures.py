@@ -6,9 +6,11 @@ import meshes
 import numpy as np
 import openmm as mm
 import openmmhelfrich as helfrich
+import oracle
 import pytest
 from meshes import membrane
 from openmm import unit
+from openmmhelfrich.vcm import strings
 from platforms import ON_OPENCL, ON_PROCESSOR, REFERENCE, Target
 from running import Running
 
@@ -110,6 +112,25 @@ def test_quantities():
     assert osmotic.getConcentration() == 0.2
     with pytest.raises(TypeError, match="concentration must be in units of"):
         helfrich.OsmoticPressureForce(mesh, 1e5, 0.2 * unit.molar, 2.5)
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda mesh: helfrich.PressureForce(mesh, 0.05),
+        lambda mesh: helfrich.SurfaceTensionForce(mesh, 1.3),
+        lambda mesh: helfrich.OsmoticPressureForce(mesh, 0.01 * mesh.volume, 0.02, 2.5),
+        lambda mesh: helfrich.AreaDifferenceForce(mesh, 0.3, 500.0),
+    ],
+    ids=["pressure", "tension", "osmotic pressure", "area difference"],
+)
+def test_as_custom_forces(make):
+    """`vcm.strings` writes them with OpenMM's own functions, about the origin."""
+    mesh = _mesh("concave")
+    energy, forces = Running([make(mesh)], mesh.num_vertices, REFERENCE).evaluate(mesh.vertices)
+    found = oracle.evaluate(strings.custom_forces(make(mesh)), mesh.vertices)
+    assert found.energy == pytest.approx(energy, rel=1e-9)
+    assert np.abs(found.forces - forces).max() <= 1e-8 * np.abs(forces).max()
 
 
 @pytest.mark.parametrize(

@@ -179,7 +179,10 @@ fn values_of_vertices_and_triangles_take_part() {
 #[test]
 fn many_flips_leave_a_valid_surface_and_current_evaluators() {
     let mesh = spheroid(6, 9, &mut random(21));
-    flip_often(&mesh, &terms_on(&mesh, true), 1_000_000);
+    // A crumpled surface may have a volume below zero, of which no osmotic pressure can be said.
+    let mut terms = terms_on(&mesh, true);
+    terms.retain(|term| term.potential.name() != "OsmoticPressureForce");
+    flip_often(&mesh, &terms, 1_000_000);
 }
 
 #[test]

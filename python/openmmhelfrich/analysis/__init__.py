@@ -14,7 +14,13 @@ chunks.
 from . import theory
 from .correlation import autocorrelation, autocorrelation_time, mode_autocorrelation
 from .crossings import crossings
-from .curvature import VertexQuantities, mean_curvature, vertex_quantities
+from .curvature import (
+    VertexQuantities,
+    area_difference,
+    mean_curvature,
+    total_mean_curvature,
+    vertex_quantities,
+)
 from .density import density_modes, structure_factor
 from .elements import edge_lengths, triangle_areas, triangle_heights
 from .fits import DampingFit, ElasticFit, fit_damping, fit_young
@@ -51,6 +57,7 @@ __all__ = [
     "Spectrum",
     "Trajectory",
     "VertexQuantities",
+    "area_difference",
     "area_excess",
     "autocorrelation",
     "autocorrelation_time",
@@ -79,6 +86,7 @@ __all__ = [
     "structure_factor",
     "theory",
     "time_to_failure",
+    "total_mean_curvature",
     "triangle_areas",
     "triangle_heights",
     "vertex_quantities",

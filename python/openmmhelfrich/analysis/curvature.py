@@ -133,20 +133,96 @@ def vertex_quantities(vertices, triangles, *, box=None) -> VertexQuantities:
     )
 
 
-def _quantities(frames, faces, num_vertices, box):
+def total_mean_curvature(vertices, triangles, *, box=None):
+    """Integral M = ∫ (C1 + C2)/2 dA over the surface, which is Σ l φ / 2 over its edges.
+
+    It is 4πr on a sphere, and what an `AreaDifferenceForce` keeps near its target: the monolayers
+    of a membrane, D apart, differ in area by ΔA = 2 D M. Border edges have no angle φ.
+
+    Parameters
+    ----------
+    vertices, triangles, box
+        As for `mean_curvature`.
+
+    Returns
+    -------
+    float or ndarray
+        M of each frame, nm.
+
+    Raises
+    ------
+    TypeError, ValueError
+        As for `mean_curvature`.
+    """
+    return _totals(vertices, triangles, box)[0]
+
+
+def area_difference(vertices, triangles, *, box=None):
+    """Reduced difference of the areas of two monolayers, Δa = ΔA / 8πD R_A = M / 4πR_A.
+
+    R_A is the radius of the sphere of the same area, 4πR_A² = A, so that Δa is 1 on a sphere; D is
+    the distance of the monolayers, and drops out. `total_mean_curvature` is M.
+
+    Parameters
+    ----------
+    vertices, triangles, box
+        As for `mean_curvature`.
+
+    Returns
+    -------
+    float or ndarray
+        Δa of each frame, without unit.
+
+    Raises
+    ------
+    TypeError, ValueError
+        As for `mean_curvature`.
+    """
+    total, area = _totals(vertices, triangles, box)
+    return total / np.sqrt(4 * np.pi * area)
+
+
+def _totals(vertices, triangles, box):
+    """M and A of each frame."""
+    box = box_of(box, vertices, triangles)
+
+    def work(frames, faces, box):
+        _, doubled, edges = _edges(frames, faces, box)
+        return np.sum(edges.lengths * edges.angles, axis=1) / 2, np.sum(doubled, axis=1) / 2
+
+    return over_frames(in_boxes(work, box), vertices, triangles, lambda n, t: 60 * t)
+
+
+class _Edges(NamedTuple):
+    start: np.ndarray
+    end: np.ndarray
+    right: np.ndarray
+    vectors: np.ndarray
+    lengths: np.ndarray
+    angles: np.ndarray
+
+
+def _edges(frames, faces, box):
+    """Normals of the triangles, twice their areas, and the edges; φ is 0 at borders."""
     start, end, left, right = edges_of(faces)
     corners = corner_positions(frames, faces, box)
     normals = np.cross(corners[:, :, 1] - corners[:, :, 0], corners[:, :, 2] - corners[:, :, 0])
     doubled = np.linalg.norm(normals, axis=-1)
-    area = _vertex_sum(np.repeat(doubled / 6, 3, axis=1), faces.ravel(), num_vertices)
-
-    edges = nearest(frames[:, end] - frames[:, start], box)
-    lengths = np.linalg.norm(edges, axis=-1)
+    vectors = nearest(frames[:, end] - frames[:, start], box)
+    lengths = np.linalg.norm(vectors, axis=-1)
     # l · sin φ and l · cos φ of unnormalised normals: atan2 needs neither a division nor a clamp.
     angles = np.arctan2(
-        dot(edges, np.cross(normals[:, left], normals[:, right])),
+        dot(vectors, np.cross(normals[:, left], normals[:, right])),
         lengths * dot(normals[:, left], normals[:, right]),
     )
+    angles[:, right < 0] = 0
+    return normals, doubled, _Edges(start, end, right, vectors, lengths, angles)
+
+
+def _quantities(frames, faces, num_vertices, box):
+    corners = corner_positions(frames, faces, box)
+    normals, doubled, (start, end, right, edges, lengths, angles) = _edges(frames, faces, box)
+    area = _vertex_sum(np.repeat(doubled / 6, 3, axis=1), faces.ravel(), num_vertices)
     both = np.concatenate([start, end])
     julicher = _vertex_sum(np.tile(lengths * angles / 2, 2), both, num_vertices)
     umbrella = _vertex_sum(np.concatenate([-edges, edges], axis=1), both, num_vertices)

@@ -9,6 +9,7 @@ from ..forces import BendingForce, DihedralForce, MonteCarloMembraneTension
 from ..vcm.frames import FRAMES
 from .values import (
     Reader,
+    area_difference,
     boolean,
     box,
     choice,
@@ -19,6 +20,7 @@ from .values import (
     integer,
     mode,
     number,
+    osmotic,
     scale,
     signed_energy,
     text,
@@ -140,6 +142,18 @@ KEYS: tuple[Key, ...] = (
         "γ, energy per length of borders, kJ/mol/nm. Default: 0, none."),
     Key("vesicle", "gaussian_modulus", signed_energy, None,
         "κ_G, kJ/mol, which acts at borders. Default: 0, none."),
+    Key("vesicle", "pressure", number(), None,
+        "p, inside less outside, kJ/mol/nm³. Default: 0, none."),
+    Key("vesicle", "surface_tension", number(), None,
+        "σ, energy per area, kJ/mol/nm². Default: 0, none."),
+    Key("vesicle", "osmotic", osmotic, None,
+        "Solutes that cannot pass: `{ solutes = 1e6, concentration = 0.06 }`, their number inside "
+        "and 1/nm³ outside; `thermal_energy`, kJ/mol, is that of the integrator's temperature. "
+        "Default: none."),
+    Key("vesicle", "area_difference", area_difference, None,
+        "Area-difference elasticity: `{ alpha = 1.4, delta_a0 = 1.1 }`, for `rigidity` and `area`, "
+        "or `{ modulus = …, target = … }`, kJ/mol/nm² and nm; see [energies.md](energies.md). "
+        "Default: none."),
     Key("vesicle", "flips", flips, None,
         "Flip bonds, so that the membrane is fluid: attempts per edge and step, such as 0.01, or a "
         "table `{ attempts_per_edge = 0.1, frequency = 10, min_degree = 3, max_degree = 10, "

@@ -19,6 +19,7 @@ from ..vcm.grammar import nearest
 
 __all__ = [
     "Reader",
+    "area_difference",
     "boolean",
     "box",
     "choice",
@@ -29,6 +30,7 @@ __all__ = [
     "integer",
     "mode",
     "number",
+    "osmotic",
     "scale",
     "signed_energy",
     "table",
@@ -210,11 +212,42 @@ def flips(value, kT):
     """Attempts per edge and step, or a table of what `MonteCarloBondFlip` takes."""
     if not isinstance(value, dict):
         return number(least=0)(value, kT)
+    return _arguments("flips", _FLIPS, value, kT)
+
+
+#: The same for ``osmotic`` and `OsmoticPressureForce`.
+_OSMOTIC = {
+    "solutes": ("solutes", number(above=0)),
+    "concentration": ("concentration", number(above=0)),
+    "thermal_energy": ("thermalEnergy", energy),
+}
+#: The same for ``area_difference`` and `area_difference_parameters` or `AreaDifferenceForce`.
+_AREA_DIFFERENCE = {
+    "alpha": ("alpha", number(least=0)),
+    "delta_a0": ("delta_a0", number()),
+    "modulus": ("modulus", number(least=0)),
+    "target": ("target", number()),
+}
+
+
+def osmotic(value, kT):
+    """A table of what `OsmoticPressureForce` takes; kT is that of the integrator."""
+    given = _arguments("osmotic", _OSMOTIC, table(value, kT), kT)
+    return {"thermalEnergy": kT, **given}
+
+
+def area_difference(value, kT):
+    """A table of what `area_difference_parameters` or `AreaDifferenceForce` takes."""
+    return _arguments("area_difference", _AREA_DIFFERENCE, table(value, kT), kT)
+
+
+def _arguments(where, known, value, kT):
+    """The values of a table by the names of a class."""
     arguments = {}
     for name, given in value.items():
-        if name not in _FLIPS:
-            raise ValueError(f"there is no {name!r} in flips; {nearest(name, _FLIPS)}")
-        argument, read = _FLIPS[name]
+        if name not in known:
+            raise ValueError(f"there is no {name!r} in {where}; {nearest(name, known)}")
+        argument, read = known[name]
         try:
             arguments[argument] = read(given, kT)
         except ValueError as reason:

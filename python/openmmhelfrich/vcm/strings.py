@@ -148,6 +148,38 @@ def _enclosed_volume(ours, triangles: np.ndarray, style: str) -> list[mm.Force]:
     return _constraint(_volume, ours, triangles, style)
 
 
+def _turning(c: int, a: int, b: int, d: int) -> str:
+    """φ of edge ab of triangles abc and bad; OpenMM's dihedral is positive at concave edges."""
+    torsion = f"dihedral(p{c},p{a},p{b},p{d})"
+    return f"((1-2*step({torsion}))*({pi!r}-abs({torsion})))"
+
+
+def _of_total(expression: str, total: mm.Force, **constants: float) -> list[mm.Force]:
+    result = mm.CustomCVForce(expression + _constants(**constants))
+    result.addCollectiveVariable("total", total)
+    return [result]
+
+
+def _pressure(ours, triangles: np.ndarray, style: str) -> list[mm.Force]:
+    return _of_total("-p*total", _compound(_volume(1, 2, 3), triangles), p=ours.getPressure())
+
+
+def _surface_tension(ours, triangles: np.ndarray, style: str) -> list[mm.Force]:
+    return [_compound(f"s*{_area(1, 2, 3)}" + _constants(s=ours.getTension()), triangles)]
+
+
+def _osmotic_pressure(ours, triangles: np.ndarray, style: str) -> list[mm.Force]:
+    values = {"n": ours.getSolutes(), "c": ours.getConcentration(), "kT": ours.getThermalEnergy()}
+    volume = _compound(_volume(1, 2, 3), triangles)
+    return _of_total("n*kT*(x-1-log(x)); x=c*total/n", volume, **values)
+
+
+def _area_difference(ours, triangles: np.ndarray, style: str) -> list[mm.Force]:
+    share = f"0.5*distance(p2,p3)*{_turning(1, 2, 3, 4)}"
+    values = {"m": ours.getModulus(), "target": ours.getTarget()}
+    return _of_total("0.5*m*(total-target)^2", _compound(share, _wings(triangles)), **values)
+
+
 # --- triangles and edges -----------------------------------------------------------------------
 
 
@@ -177,11 +209,16 @@ def _triangle_area(ours, triangles: np.ndarray, style: str) -> list[mm.Force]:
     return [_compound(expression + constants, triangles, ["target"], targets[:, None])]
 
 
-def _dihedral(ours, triangles: np.ndarray, style: str) -> list[mm.Force]:
+def _wings(triangles: np.ndarray) -> list[tuple[int, int, int, int]]:
+    """(c, a, b, d) for each edge ab of triangles abc and bad."""
     opposite = {}
     for a, b, c in triangles.tolist():
         opposite[a, b], opposite[b, c], opposite[c, a] = c, a, b
-    edges = [(c, a, b, opposite[b, a]) for (a, b), c in sorted(opposite.items()) if a < b]
+    return [(c, a, b, opposite[b, a]) for (a, b), c in sorted(opposite.items()) if a < b]
+
+
+def _dihedral(ours, triangles: np.ndarray, style: str) -> list[mm.Force]:
+    edges = _wings(triangles)
     # The half angle, because 1 − cos φ itself cancels where the surface is nearly flat.
     expression = _DIHEDRALS[ours.getForm()] + "; u=2*sin(0.5*phi)^2"
     values = {}
@@ -328,4 +365,8 @@ _MAKERS = {
     "TriangleAreaForce": _triangle_area,
     "DihedralForce": _dihedral,
     "BendingForce": _bending,
+    "PressureForce": _pressure,
+    "SurfaceTensionForce": _surface_tension,
+    "OsmoticPressureForce": _osmotic_pressure,
+    "AreaDifferenceForce": _area_difference,
 }

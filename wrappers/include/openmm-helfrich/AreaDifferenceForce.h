@@ -12,21 +12,21 @@ namespace HelfrichPlugin {
  *     E = 1/2 m (M - M0)^2,   M = sum over edges of 1/2 l phi
  *
  * M is the integral of the mean curvature (C1 + C2) / 2 over the surface, nm, with l the length of an edge and phi the
- * dihedral angle there, positive where the surface is convex: 4 pi r on a sphere, pi L on a tube of length L, 2 pi^2 R on a
- * torus whose tube has its middle at R. It is half the sum of the curvatures J of BendingForce's scheme Julicher.
+ * dihedral angle there, positive where the surface is convex: 4 pi r on a sphere, pi L on a tube of length L, 2 pi^2 R
+ * on a torus whose tube has its middle at R. It is half the sum of the curvatures J of BendingForce's scheme Julicher.
  *
  * With D the distance of the monolayers' neutral surfaces, their areas differ by dA = 2 D M, and
  *
  *     E = alpha kappa pi / (2 A D^2) (dA - dA0)^2
  *
- * in Miao, Seifert, Wortis and Dobereiner, Phys. Rev. E 49, 5389 (1994), doi:10.1103/PhysRevE.49.5389, and in Seifert, Adv. Phys.
- * 46, 13 (1997), doi:10.1080/00018739700101488. So m = 4 pi alpha kappa / A and M0 = dA0 / 2 D = 4 pi RA da0, where da0 is the
- * reduced difference dA0 / (8 pi D RA) and A = 4 pi RA^2 the area of the relaxed membrane, a number here. D itself drops
- * out. Python's area_difference_parameters() makes m and M0 of kappa, alpha, A and da0. To the bending energy, which a
- * BendingForce without spontaneous curvature gives, this adds the rest of the ADE model.
+ * in Miao, Seifert, Wortis and Dobereiner, Phys. Rev. E 49, 5389 (1994), doi:10.1103/PhysRevE.49.5389, and in Seifert,
+ * Adv. Phys. 46, 13 (1997), doi:10.1080/00018739700101488. So m = 4 pi alpha kappa / A and M0 = dA0 / 2 D = 4 pi RA
+ * da0, where da0 is the reduced difference dA0 / (8 pi D RA) and A = 4 pi RA^2 the area of the relaxed membrane, a
+ * number here. D itself drops out. Python's area_difference_parameters() makes m and M0 of kappa, alpha, A and da0. To
+ * the bending energy, which a BendingForce without spontaneous curvature gives, this adds the rest of the ADE model.
  *
- * Edges at borders have no dihedral angle and do not count; there lipids can go round, and the energy means little. A fold
- * that goes on through 180 degrees lets M jump, as in BendingForce.
+ * Edges at borders have no dihedral angle and do not count; there lipids can go round, and the energy means little. A
+ * fold that goes on through 180 degrees lets M jump, as in BendingForce.
  */
 class AreaDifferenceForce : public MembraneForce {
 public:

@@ -16,15 +16,15 @@ namespace HelfrichPlugin {
  *
  *     -dE/dV = kT (n / V - c)
  *
- * It is zero, and least, at V = n / c, where its stiffness is that of an EnclosedVolumeForce of modulus kT c; for the few
- * bars of real solutions that is a fixed volume. E is infinite at V = 0. A shape without a volume, as one that has turned
- * inside out, is refused by an exception.
+ * It is zero, and least, at V = n / c, where its stiffness is that of an EnclosedVolumeForce of modulus kT c; for the
+ * few bars of real solutions that is a fixed volume. E is infinite at V = 0. A shape without a volume, as one that has
+ * turned inside out, is refused by an exception.
  *
  * Numbers are counted in molecules: a concentration of 1 mol/l is 0.602214 / nm^3. In Python, thermalEnergy may be
  * unit.MOLAR_GAS_CONSTANT_R * 300 * unit.kelvin.
  *
- * Triangles must run counter-clockwise seen from outside, and a surface with a border is refused, as EnclosedVolumeForce
- * says.
+ * Triangles must run counter-clockwise seen from outside, and a surface with a border is refused, as
+ * EnclosedVolumeForce says.
  */
 class OsmoticPressureForce : public MembraneForce {
 public:

@@ -10,17 +10,18 @@ namespace HelfrichPlugin {
  *
  *     E = -p V
  *
- * with p the pressure inside less that outside: above zero it blows the membrane up, below zero it sucks it in. The force
- * on a vertex is p/3 times the sum of the area vectors of its triangles. Bending, a tension and a pressure together are
- * the functional of Deuling and Helfrich, J. Phys. (Paris) 37, 1335 (1976), doi:10.1051/jphys:0197600370110133500, whose
- * pressure difference has the other sign; see also Seifert, Adv. Phys. 46, 13 (1997), doi:10.1080/00018739700101488.
+ * with p the pressure inside less that outside: above zero it blows the membrane up, below zero it sucks it in. The
+ * force on a vertex is p/3 times the sum of the area vectors of its triangles. Bending, a tension and a pressure
+ * together are the functional of Deuling and Helfrich, J. Phys. (Paris) 37, 1335 (1976),
+ * doi:10.1051/jphys:0197600370110133500, whose pressure difference has the other sign; see also Seifert, Adv. Phys. 46,
+ * 13 (1997), doi:10.1080/00018739700101488.
  *
- * E has no lower bound for p above zero: something else must keep the area finite, such as a SurfaceAreaForce. p can be a
- * parameter of the Context, see setContextParameter(). Where the volume changes with osmotic pressure, take an
+ * E has no lower bound for p above zero: something else must keep the area finite, such as a SurfaceAreaForce. p can be
+ * a parameter of the Context, see setContextParameter(). Where the volume changes with osmotic pressure, take an
  * OsmoticPressureForce.
  *
- * Triangles must run counter-clockwise seen from outside, and a surface with a border is refused, as EnclosedVolumeForce
- * says.
+ * Triangles must run counter-clockwise seen from outside, and a surface with a border is refused, as
+ * EnclosedVolumeForce says.
  */
 class PressureForce : public MembraneForce {
 public:

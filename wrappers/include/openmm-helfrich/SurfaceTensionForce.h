@@ -10,13 +10,13 @@ namespace HelfrichPlugin {
  *
  *     E = sigma A
  *
- * sigma is the energy per area of a membrane that exchanges area with a reservoir, the Lagrange multiplier of the area in
- * Deuling and Helfrich, J. Phys. (Paris) 37, 1335 (1976), doi:10.1051/jphys:0197600370110133500, and in Seifert, Adv. Phys.
- * 46, 13 (1997), doi:10.1080/00018739700101488. A is the sum over all triangles, of all components of the surface, closed or
- * with borders.
+ * sigma is the energy per area of a membrane that exchanges area with a reservoir, the Lagrange multiplier of the area
+ * in Deuling and Helfrich, J. Phys. (Paris) 37, 1335 (1976), doi:10.1051/jphys:0197600370110133500, and in Seifert,
+ * Adv. Phys. 46, 13 (1997), doi:10.1080/00018739700101488. A is the sum over all triangles, of all components of the
+ * surface, closed or with borders.
  *
- * Vertices are not exchanged with the reservoir: triangles grow or shrink, and a TriangleHeightForce, say, must keep them
- * from collapsing. A membrane under tension by the frame that it spans, at constant area, is another thing:
+ * Vertices are not exchanged with the reservoir: triangles grow or shrink, and a TriangleHeightForce, say, must keep
+ * them from collapsing. A membrane under tension by the frame that it spans, at constant area, is another thing:
  * MonteCarloMembraneTension.
  */
 class SurfaceTensionForce : public MembraneForce {
