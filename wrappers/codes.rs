@@ -6,7 +6,8 @@ use crate::codes::{Attraction, Contribution, Form, MAX_PARAMETERS, Scheme};
 use crate::flip_records::{FlipRules, FlipState};
 use crate::interface::{Binding, NUMBERS};
 use crate::records::{
-    FollowerInput, NativeBuffer, NativePass, NativePlan, ParameterInfo, ParticleArrays, TermInput,
+    EdgeBath, FollowerInput, NativeBuffer, NativePass, NativePlan, ParameterInfo, ParticleArrays,
+    TermInput,
 };
 use std::ffi::CStr;
 use std::mem::offset_of;
@@ -48,6 +49,7 @@ pub fn comparison() -> String {
             "HelfrichParticleArrays",
             num_particles positions velocities forces
         );
+        text += &structure!(EdgeBath, "HelfrichEdgeBath", friction kt lag);
         text += &structure!(
             FlipRules,
             "HelfrichFlipRules",
