@@ -15,6 +15,7 @@ from ._placement import Placement, groups_for
 from ._quantities import checked_field, checked_number, encloses
 from ._vesicle_flips import bath_of, checked_flips, mover_of
 from ._vesicle_times import TimeScales
+from ._vesicle_viscosity import checked_viscosity, thermostat_of
 from .analysis import theory, triangle_areas
 from .forces import (
     BendingForce,
@@ -25,6 +26,7 @@ from .forces import (
     MonteCarloBondFlip,
     PlaquetteAreaForce,
     SurfaceAreaForce,
+    SurfaceViscosityThermostat,
     TriangleAreaForce,
     TriangleAreaRepulsionForce,
     TriangleHeightForce,
@@ -99,6 +101,12 @@ class Vesicle(TimeScales):
         start), or the arguments of a `MonteCarloBondFlip` after the triangles by their names, with
         ``randomNumberSeed`` and ``ensemble`` too. The temperature is that of the integrator in
         `simulation`, or else 300 K, unless it is given. Default: neighbours stay neighbours.
+    viscosity : float, Quantity or mapping, optional
+        Make the membrane viscous: the surface shear viscosity η, amu/ps, of a regular mesh, or the
+        arguments of a `SurfaceViscosityThermostat` after the triangles by their names, with
+        ``randomNumberSeed`` too. The temperature is as that of `flips`. The friction is the Context
+        parameter ``SurfaceViscosityFriction``, with the index of the first particle behind it
+        where that is not 0. Default: none.
 
     Raises
     ------
@@ -146,6 +154,7 @@ class Vesicle(TimeScales):
         edge_tension=0.0,
         gaussian_modulus=0.0,
         flips=None,
+        viscosity=None,
     ):
         nm = unit.nanometer
         if not isinstance(mesh, Mesh):
@@ -194,11 +203,14 @@ class Vesicle(TimeScales):
         if self._encloses:
             self._volume = checked_number("volume", volume, nm**3, zero=False)
         self._flips = None if flips is None else checked_flips(flips)
+        self._viscosity = None if viscosity is None else checked_viscosity(viscosity)
         self._placement = None
         # The forces refuse a scheme or form that does not exist: now, not when they are used.
         self._forces(0)
         if self._flips is not None:
             mover_of(self._flips, mesh, 0)
+        if self._viscosity is not None:
+            thermostat_of(self._viscosity, mesh, 0)
 
     def __repr__(self):
         return (
@@ -226,6 +238,10 @@ class Vesicle(TimeScales):
     flips = property(
         lambda self: None if self._flips is None else dict(self._flips),
         doc="Arguments of the `MonteCarloBondFlip` by name, or None.",
+    )
+    viscosity = property(
+        lambda self: None if self._viscosity is None else dict(self._viscosity),
+        doc="Arguments of the `SurfaceViscosityThermostat` by name, or None.",
     )
     area = property(lambda self: self._area, doc="Target area A0, nm².")
     volume = property(lambda self: self._volume, doc="Target volume V0, nm³, or None.")
@@ -279,11 +295,15 @@ class Vesicle(TimeScales):
             system.addParticle(self._mass)
         for force in forces.values():
             system.addForce(force)
-        mover = None
+        mover = thermostat = None
+        if self._viscosity is not None:
+            # Before flips, which are at the positions that it leaves.
+            thermostat = thermostat_of(self._viscosity, self._mesh, offset)
+            system.addForce(thermostat)
         if self._flips is not None:
             mover = mover_of(self._flips, self._mesh, offset)
             system.addForce(mover)
-        placement = Placement(system, offset, self._mesh.num_vertices, forces, mover)
+        placement = Placement(system, offset, self._mesh.num_vertices, forces, mover, thermostat)
         self._placement = placement
         return placement
 
@@ -318,9 +338,12 @@ class Vesicle(TimeScales):
             platform = openmm.Platform.getPlatformByName(platform)
         simulation = app.Simulation(self._mesh.topology(), system, integrator, platform)
         simulation.context.setPositions(self._mesh.vertices)
-        if self._flips is not None and "temperature" not in self._flips:
-            temperature = bath_of(integrator)
-            simulation.context.setParameter(MonteCarloBondFlip.Temperature(), temperature)
+        for given, cls in (
+            (self._flips, MonteCarloBondFlip),
+            (self._viscosity, SurfaceViscosityThermostat),
+        ):
+            if given is not None and "temperature" not in given:
+                simulation.context.setParameter(cls.Temperature(), bath_of(integrator))
         return simulation
 
     @property

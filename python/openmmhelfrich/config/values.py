@@ -34,6 +34,7 @@ __all__ = [
     "table",
     "text",
     "vector",
+    "viscosity",
 ]
 
 Reader = Callable[[Any, float], Any]
@@ -210,11 +211,34 @@ def flips(value, kT):
     """Attempts per edge and step, or a table of what `MonteCarloBondFlip` takes."""
     if not isinstance(value, dict):
         return number(least=0)(value, kT)
+    return _arguments("flips", _FLIPS, value, kT)
+
+
+#: The keys of ``viscosity``, with the arguments of `SurfaceViscosityThermostat` that they are.
+_VISCOSITY = {
+    "friction": ("friction", number(least=0)),
+    "temperature": ("temperature", number(above=0)),
+    "frequency": ("frequency", integer(0)),
+}
+
+
+def viscosity(value, kT):
+    """A surface shear viscosity, or a table of what `SurfaceViscosityThermostat` takes."""
+    if not isinstance(value, dict):
+        return number(least=0)(value, kT)
+    arguments = _arguments("viscosity", _VISCOSITY, value, kT)
+    if "friction" not in arguments:
+        raise ValueError("it lacks friction, amu/ps")
+    return arguments
+
+
+def _arguments(key, known, value, kT):
+    """The arguments that an inline table stands for."""
     arguments = {}
     for name, given in value.items():
-        if name not in _FLIPS:
-            raise ValueError(f"there is no {name!r} in flips; {nearest(name, _FLIPS)}")
-        argument, read = _FLIPS[name]
+        if name not in known:
+            raise ValueError(f"there is no {name!r} in {key}; {nearest(name, known)}")
+        argument, read = known[name]
         try:
             arguments[argument] = read(given, kT)
         except ValueError as reason:
