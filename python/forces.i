@@ -53,6 +53,8 @@ using namespace HelfrichPlugin;
 %ignore HelfrichPlugin::MonteCarloMembraneTension::getStatistics;
 %ignore HelfrichPlugin::MonteCarloMembraneTension::saveState;
 %ignore HelfrichPlugin::MonteCarloMembraneTension::restoreState;
+%ignore HelfrichPlugin::SurfaceViscosityThermostat::saveState;
+%ignore HelfrichPlugin::SurfaceViscosityThermostat::restoreState;
 %ignore HelfrichPlugin::MembraneForce::getParticles;
 %ignore HelfrichPlugin::MembraneForce::getVertexNumbers;
 %ignore HelfrichPlugin::MembraneForce::setVertexNumbers;
@@ -172,6 +174,16 @@ static std::vector<double> toDoubles(const char* data, size_t size) {
     }
 }
 
+%extend HelfrichPlugin::SurfaceViscosityThermostat {
+    PyObject* _saveState(OpenMM::Context& context) {
+        std::string saved = $self->saveState(context);
+        return toBytes(saved.data(), saved.size());
+    }
+    void _restoreState(OpenMM::Context& context, const char* data, size_t size) {
+        $self->restoreState(context, std::string(data, size));
+    }
+}
+
 /* `system.getForce(i)` and XML give plain openmm.Force objects; each class tells and casts its own. */
 %define MEMBRANE_FORCE(CLASS)
 %extend HelfrichPlugin::CLASS {
@@ -201,6 +213,7 @@ static std::vector<double> toDoubles(const char* data, size_t size) {
 HELFRICH_FORCES(MEMBRANE_FORCE)
 MEMBRANE_FORCE(MonteCarloBondFlip)
 MEMBRANE_FORCE(MonteCarloMembraneTension)
+MEMBRANE_FORCE(SurfaceViscosityThermostat)
 
 /* For platforms.py: why a System is not one for the platform Helfrich, or an empty text. */
 %inline %{
@@ -210,16 +223,18 @@ std::string _why_not_helfrich(const OpenMM::System& system, const OpenMM::Integr
 %}
 
 %pythoncode %{
-from openmmhelfrich import _arguments, _bond_flips, _tension
+from openmmhelfrich import _arguments, _bond_flips, _tension, _viscosity
 for _class in MembraneForce.__subclasses__():
     _arguments.accept_units(_class)
 _arguments.accept_arrays(TriangulatedForce)
 _bond_flips.accept_arguments(MonteCarloBondFlip)
 _tension.accept_arguments(MonteCarloMembraneTension)
+_viscosity.accept_arguments(SurfaceViscosityThermostat)
 __all__ = [
     "MembraneForce",
     "MonteCarloBondFlip",
     "MonteCarloMembraneTension",
+    "SurfaceViscosityThermostat",
     "TriangulatedForce",
     *(_class.__name__ for _class in MembraneForce.__subclasses__()),
 ]

@@ -152,6 +152,15 @@ forward! {
     /// Read one of the statistics of a MonteCarloMembraneTension in a Context by its name.
     Helfrich_MonteCarloMembraneTension_getStatistic =>
         helfrich_shim_getTensionStatistic(force: *mut Force, context: *mut c_void, name: *const c_char, value: *mut c_double) -> c_int;
+    /// Make a SurfaceViscosityThermostat; null if an argument is refused.
+    Helfrich_SurfaceViscosityThermostat_create =>
+        helfrich_shim_createViscosity(triangles: *const c_int, num_triangles: c_int, friction: c_double, temperature: c_double, frequency: c_int) -> *mut Force;
+    /// Copy the frequency to a Context.
+    Helfrich_SurfaceViscosityThermostat_updateParametersInContext =>
+        helfrich_shim_updateViscosity(force: *mut Force, context: *mut c_void) -> c_int;
+    /// Name the Context parameter that holds the friction.
+    Helfrich_SurfaceViscosityThermostat_setFrictionParameter =>
+        helfrich_shim_setFrictionParameter(force: *mut Force, name: *const c_char) -> c_int;
 }
 
 /// `get` and `set` of values of a mover.
@@ -174,6 +183,11 @@ mover_values! {
     MonteCarloMembraneTension as Tension,
     DefaultTemperature: c_double, DefaultTension: c_double, DefaultPullingForce: c_double, Frequency: c_int,
     Axes: c_int, ScaleMoleculesAsRigid: c_int, AdaptiveMoves: c_int, RandomNumberSeed: c_int
+}
+
+mover_values! {
+    SurfaceViscosityThermostat as Viscosity,
+    DefaultFriction: c_double, DefaultTemperature: c_double, Frequency: c_int, RandomNumberSeed: c_int
 }
 
 /// `create`, and `get` and `set` of each scalar, for a force class; what `create` does not take has a default.

@@ -65,6 +65,18 @@ pub enum Error {
     #[error("particle {particle} is at ({}, {}, {}) nm, which is more than a billion periodic boxes away: the simulation has blown up, or positions were never wrapped; use a smaller time step, or start from positions in the box", .position[0], .position[1], .position[2])]
     FarPosition { particle: u32, position: [f64; 3] },
 
+    /// NaN or infinity among the velocities of a running simulation.
+    #[error("particle {particle} has the velocity ({}, {}, {}) nm/ps, which is not finite: the simulation has blown up; use a smaller time step or a better relaxed start", .velocity[0], .velocity[1], .velocity[2])]
+    NonFiniteVelocity { particle: u32, velocity: [f64; 3] },
+
+    /// Two ends of an edge in the same place.
+    #[error("particles {} and {}, which an edge joins, are both at ({}, {}, {}) nm, so that it has no direction; use a smaller time step or a better relaxed start", .edge[0], .edge[1], .position[0], .position[1], .position[2])]
+    EdgeWithoutLength { edge: [u32; 2], position: [f64; 3] },
+
+    /// An edge is so long that its length is not a number.
+    #[error("the edge of particles {} and {} has grown beyond all numbers: the simulation has blown up; use a smaller time step or a better relaxed start", .edge[0], .edge[1])]
+    OverflownEdge { edge: [u32; 2] },
+
     /// A triangle has no area and therefore no normal.
     #[error("triangle {triangle} ({}, {}, {}) has no area, so its normal and the energy's gradient are undefined; keep its corners from falling on one line (TriangleHeightForce, or a smaller time step)", .corners[0], .corners[1], .corners[2])]
     DegenerateTriangle { triangle: usize, corners: [u32; 3] },

@@ -10,9 +10,11 @@ use std::ffi::{CString, c_int};
 mod bond_flip;
 mod membrane_tension;
 mod owned;
+mod surface_viscosity;
 pub use bond_flip::MonteCarloBondFlip;
 pub use membrane_tension::{Axes, MonteCarloMembraneTension};
 use owned::Owned;
+pub use surface_viscosity::SurfaceViscosityThermostat;
 
 /// A force on a membrane that no System owns yet.
 ///

@@ -8,7 +8,8 @@ use crate::codes::{
 use crate::flip_records::{FlipRules, FlipState};
 use crate::interface::{Binding, NUMBERS};
 use crate::records::{
-    FollowerInput, NativeBuffer, NativePass, NativePlan, ParameterInfo, ParticleArrays, TermInput,
+    EdgeBath, FollowerInput, NativeBuffer, NativePass, NativePlan, ParameterInfo, ParticleArrays,
+    TermInput,
 };
 use std::ffi::CStr;
 use std::mem::offset_of;
@@ -52,6 +53,7 @@ pub fn comparison() -> String {
             "HelfrichParticleArrays",
             num_particles positions velocities forces
         );
+        text += &structure!(EdgeBath, "HelfrichEdgeBath", friction kt lag);
         text += &structure!(
             FlipRules,
             "HelfrichFlipRules",

@@ -6,18 +6,20 @@ from openmm import app
 from . import platforms
 from ._placement import Placement, groups_for
 from ._vesicle_flips import bath_of, mover_of
-from .forces import MonteCarloBondFlip
+from ._vesicle_viscosity import thermostat_of
+from .forces import MonteCarloBondFlip, SurfaceViscosityThermostat
 
 __all__ = ["InSystems"]
 
 
 class InSystems:
-    """A mesh of particles of one mass, with forces by their names, and bond flips if it has any.
+    """A mesh of particles of one mass, with forces by their names, and bond flips and a viscosity if it has any.
 
     Derived classes have ``_mesh``, ``_mass``, and ``_forces(offset)`` for particles from `offset` on.
     """
 
     _flips = None
+    _viscosity = None
     _placement = None
 
     def add_to(self, system, force_groups=None):
@@ -55,11 +57,15 @@ class InSystems:
             system.addParticle(self._mass)
         for force in forces.values():
             system.addForce(force)
-        mover = None
+        mover = thermostat = None
+        if self._viscosity is not None:
+            # Before flips, which are at the positions that it leaves.
+            thermostat = thermostat_of(self._viscosity, self._mesh, offset)
+            system.addForce(thermostat)
         if self._flips is not None:
             mover = mover_of(self._flips, self._mesh, offset)
             system.addForce(mover)
-        placement = Placement(system, offset, self._mesh.num_vertices, forces, mover)
+        placement = Placement(system, offset, self._mesh.num_vertices, forces, mover, thermostat)
         self._placement = placement
         return placement
 
@@ -94,9 +100,12 @@ class InSystems:
             platform = openmm.Platform.getPlatformByName(platform)
         simulation = app.Simulation(self._mesh.topology(), system, integrator, platform)
         simulation.context.setPositions(self._mesh.vertices)
-        if self._flips is not None and "temperature" not in self._flips:
-            temperature = bath_of(integrator)
-            simulation.context.setParameter(MonteCarloBondFlip.Temperature(), temperature)
+        for given, cls in (
+            (self._flips, MonteCarloBondFlip),
+            (self._viscosity, SurfaceViscosityThermostat),
+        ):
+            if given is not None and "temperature" not in given:
+                simulation.context.setParameter(cls.Temperature(), bath_of(integrator))
         return simulation
 
     @property

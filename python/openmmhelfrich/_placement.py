@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import openmm
 from openmm import unit
 
-from .forces import MembraneForce, MonteCarloBondFlip
+from .forces import MembraneForce, MonteCarloBondFlip, SurfaceViscosityThermostat
 from .mesh import Mesh
 
 __all__ = ["NUM_GROUPS", "Placement", "groups_for"]
@@ -30,6 +30,8 @@ class Placement:
     """The forces by name: "area", "volume", "bending", "heights", and those switched on."""
     flips: MonteCarloBondFlip | None = None
     """What flips bonds, if anything does."""
+    viscosity: SurfaceViscosityThermostat | None = None
+    """What makes the membrane viscous, if anything does."""
 
     area = property(lambda self: self.forces["area"], doc="The `SurfaceAreaForce`.")
     volume = property(lambda self: self.forces["volume"], doc="The `EnclosedVolumeForce`.")

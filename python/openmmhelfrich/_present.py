@@ -5,16 +5,16 @@ from __future__ import annotations
 import numpy as np
 from openmm import unit
 
-from .forces import MembraneForce, MonteCarloBondFlip
+from .forces import MembraneForce, MonteCarloBondFlip, SurfaceViscosityThermostat
 
 __all__ = ["is_periodic", "present_box", "present_triangles", "surfaces_of"]
 
-_CLASSES = [MonteCarloBondFlip, *MembraneForce.__subclasses__()]
+_CLASSES = [MonteCarloBondFlip, *MembraneForce.__subclasses__(), SurfaceViscosityThermostat]
 
 
 def is_periodic(context, force) -> bool:
     """Whether the surface of a membrane force or mover lives in the periodic box of the Context."""
-    if not isinstance(force, MonteCarloBondFlip):
+    if isinstance(force, MembraneForce):
         return force.usesPeriodicBoundaryConditions()
     corners = force._triangleBuffer()
     for plain in context.getSystem().getForces():

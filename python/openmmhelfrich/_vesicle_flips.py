@@ -10,7 +10,7 @@ from .analysis import theory
 from .forces import MonteCarloBondFlip
 
 # The paper's, K.
-_TEMPERATURE = 300.0
+TEMPERATURE = 300.0
 # Steps from one round of flips to the next, where only a rate is given.
 _STEPS = 10
 _ARGUMENTS = (
@@ -40,7 +40,7 @@ def checked_flips(flips):
 
 def mover_of(flips, mesh, offset):
     """The mover for a mesh whose particles start at `offset`, from what `checked_flips` gave."""
-    arguments = {"temperature": _TEMPERATURE, **flips}
+    arguments = {"temperature": TEMPERATURE, **flips}
     seed = arguments.pop("randomNumberSeed", 0)
     ensemble = arguments.pop("ensemble", MonteCarloBondFlip.Canonical)
     mover = MonteCarloBondFlip(mesh, **arguments, offset=offset)
@@ -72,4 +72,4 @@ def bath_of(integrator):
         # As OpenMM's own, such as MTSLangevinIntegrator, call it.
         if "kT" in names:
             return integrator.getGlobalVariableByName("kT") / theory.BOLTZMANN
-    return _TEMPERATURE
+    return TEMPERATURE

@@ -13,9 +13,9 @@ from openmm import unit
 
 from . import _blocks, _writing
 from ._present import surfaces_of
-from .forces import MonteCarloMembraneTension
+from .forces import MonteCarloMembraneTension, SurfaceViscosityThermostat
 
-__all__ = ["load_state", "save_state", "tensions_of"]
+__all__ = ["load_state", "save_state", "tensions_of", "thermostats_of"]
 
 _KIND = "state"
 #: Newest versions of the blocks of a file.
@@ -27,8 +27,9 @@ _KNOWN = {
     "clock": 1,
     "connectivity": 1,
     "tension": 1,
+    "viscosity": 1,
 }
-_NEEDED = sorted(_KNOWN.keys() - {"connectivity", "tension"})
+_NEEDED = sorted(_KNOWN.keys() - {"connectivity", "tension", "viscosity"})
 
 
 def save_state(context, path) -> None:
@@ -36,8 +37,8 @@ def save_state(context, path) -> None:
 
     `load_state` restores them to the last bit of what OpenMM hands out: of all digits on the
     platforms Reference, CPU and Helfrich, and elsewhere in the precision of the platform. What
-    bond flips and a `MonteCarloMembraneTension` have come to, with their random numbers and their
-    statistics, is among it; the random numbers of integrators are not, so a run under
+    bond flips, a `MonteCarloMembraneTension` and a `SurfaceViscosityThermostat` have come to, with
+    their random numbers and their statistics, is among it; the random numbers of integrators are not, so a run under
     LangevinMiddle goes on along another path of the same ensemble, where one from a checkpoint of
     platform Helfrich goes on with the same bits.
 
@@ -75,6 +76,8 @@ def save_state(context, path) -> None:
         blocks[f"connectivity/{number}"] = _blocks.Block(force._saveConnectivity(context))
     for number, force in enumerate(tensions_of(context)):
         blocks[f"tension/{number}"] = _blocks.Block(force._saveState(context))
+    for number, force in enumerate(thermostats_of(context)):
+        blocks[f"viscosity/{number}"] = _blocks.Block(force._saveState(context))
     _writing.write_whole(path, _blocks.pack(_KIND, blocks))
 
 
@@ -115,17 +118,23 @@ def load_state(context, path) -> None:
     parameters = {key: float.fromhex(text) for key, text in values["parameters"].items()}
     surfaces = surfaces_of(context)
     connectivity = _in_order(values, "connectivity")
-    tensions, movers = _in_order(values, "tension"), tensions_of(context)
-    if tensions and len(tensions) != len(movers):
-        raise ValueError(
-            f"load_state: {name} has {len(tensions)} MonteCarloMembraneTension, but the Context "
-            f"has {len(movers)}"
-        )
+    stateful = []
+    for block, cls in (
+        ("tension", MonteCarloMembraneTension),
+        ("viscosity", SurfaceViscosityThermostat),
+    ):
+        states, movers = _in_order(values, block), _all_of(context, cls)
+        if states and len(states) != len(movers):
+            raise ValueError(
+                f"load_state: {name} has {len(states)} {cls.__name__}, but the Context has "
+                f"{len(movers)}"
+            )
+        # Files from before there was a mover leave it as it is.
+        stateful += zip(movers, states, strict=False)
     _check(context, name, values["positions"], parameters, surfaces, connectivity)
     # First what may be refused.
     _restore(context, surfaces, connectivity)
-    # Files from before there was a mover leave it as it is.
-    for force, saved in zip(movers, tensions, strict=False):
+    for force, saved in stateful:
         force._restoreState(context, saved)
     present = context.getParameters()
     for key, value in parameters.items():
@@ -155,7 +164,15 @@ def _restore(context, surfaces: list, connectivity: list[bytes]) -> None:
 
 def tensions_of(context) -> list[MonteCarloMembraneTension]:
     """What changes the box of a Context, in its order."""
-    cls = MonteCarloMembraneTension
+    return _all_of(context, MonteCarloMembraneTension)
+
+
+def thermostats_of(context) -> list[SurfaceViscosityThermostat]:
+    """What makes surfaces of a Context viscous, in its order."""
+    return _all_of(context, SurfaceViscosityThermostat)
+
+
+def _all_of(context, cls: type) -> list:
     return [cls.cast(force) for force in context.getSystem().getForces() if cls.isinstance(force)]
 
 

@@ -14,6 +14,7 @@ from ._quantities import checked_field, checked_number, encloses
 from ._vesicle_flips import checked_flips, mover_of
 from ._vesicle_times import TimeScales
 from ._vesicle_totals import checked_area_difference, checked_osmotic
+from ._vesicle_viscosity import checked_viscosity, thermostat_of
 from .analysis import theory, triangle_areas
 from .forces import (
     AreaDifferenceForce,
@@ -27,6 +28,7 @@ from .forces import (
     PressureForce,
     SurfaceAreaForce,
     SurfaceTensionForce,
+    SurfaceViscosityThermostat,
     TriangleAreaForce,
     TriangleAreaRepulsionForce,
     TriangleHeightForce,
@@ -111,6 +113,12 @@ class Vesicle(InSystems, TimeScales):
         start), or the arguments of a `MonteCarloBondFlip` after the triangles by their names, with
         ``randomNumberSeed`` and ``ensemble`` too. The temperature is that of the integrator in
         `simulation`, or else 300 K, unless it is given. Default: neighbours stay neighbours.
+    viscosity : float, Quantity or mapping, optional
+        Make the membrane viscous: the surface shear viscosity η, amu/ps, of a regular mesh, or the
+        arguments of a `SurfaceViscosityThermostat` after the triangles by their names, with
+        ``randomNumberSeed`` too. The temperature is as that of `flips`. The friction is the Context
+        parameter ``SurfaceViscosityFriction``, with the index of the first particle behind it
+        where that is not 0. Default: none.
 
     Raises
     ------
@@ -162,6 +170,7 @@ class Vesicle(InSystems, TimeScales):
         osmotic=None,
         area_difference=None,
         flips=None,
+        viscosity=None,
     ):
         nm = unit.nanometer
         if not isinstance(mesh, Mesh):
@@ -222,10 +231,13 @@ class Vesicle(InSystems, TimeScales):
                 area_difference, self._rigidity, self._area
             )
         self._flips = None if flips is None else checked_flips(flips)
+        self._viscosity = None if viscosity is None else checked_viscosity(viscosity)
         # The forces refuse a scheme or form that does not exist: now, not when they are used.
         self._forces(0)
         if self._flips is not None:
             mover_of(self._flips, mesh, 0)
+        if self._viscosity is not None:
+            thermostat_of(self._viscosity, mesh, 0)
 
     def __repr__(self):
         return (
@@ -253,6 +265,10 @@ class Vesicle(InSystems, TimeScales):
     flips = property(
         lambda self: None if self._flips is None else dict(self._flips),
         doc="Arguments of the `MonteCarloBondFlip` by name, or None.",
+    )
+    viscosity = property(
+        lambda self: None if self._viscosity is None else dict(self._viscosity),
+        doc="Arguments of the `SurfaceViscosityThermostat` by name, or None.",
     )
     area = property(lambda self: self._area, doc="Target area A0, nm².")
     volume = property(lambda self: self._volume, doc="Target volume V0, nm³, or None.")

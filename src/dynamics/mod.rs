@@ -1,5 +1,6 @@
-//! Time steps: the schemes of OpenMM's integrators, and the random numbers for them.
+//! Time steps: the schemes of OpenMM's integrators, random numbers, and what else changes velocities.
 
 pub mod instructions;
 pub mod integrate;
 pub mod random;
+pub mod viscosity;

@@ -62,6 +62,18 @@ pub struct ParticleArrays {
     pub(super) forces: *const f64,
 }
 
+/// Friction and noise along edges, as C++ hands them over.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct EdgeBath {
+    /// Friction times time, amu.
+    pub(super) friction: f64,
+    /// kJ/mol.
+    pub(super) kt: f64,
+    /// How long before the positions they act, ps.
+    pub(super) lag: f64,
+}
+
 /// What C++ reads of a buffer.
 #[repr(C)]
 pub struct NativeBuffer {

@@ -231,7 +231,7 @@ fn position(mesh: &Triangulation, positions: &[f64], vertex: usize) -> Vec3 {
 }
 
 /// Why an edge is not short enough.
-fn too_long(edge: [u32; 2], length: f64, positions: &[f64], cell: &Cell) -> Error {
+pub fn too_long(edge: [u32; 2], length: f64, positions: &[f64], cell: &Cell) -> Error {
     for particle in edge {
         let position = positions.as_chunks::<3>().0[particle as usize].into();
         if let Some(reason) = nowhere(Some(cell), particle, &position) {

@@ -1,4 +1,4 @@
-"""Both Monte Carlo movers as any OpenMM Force: arguments, what is refused, copies, XML."""
+"""All movers as any OpenMM Force: arguments, what is refused, copies, XML."""
 
 from __future__ import annotations
 
@@ -10,7 +10,11 @@ import openmm as mm
 import pytest
 from flowing import start
 from openmm import unit
-from openmmhelfrich import MonteCarloBondFlip, MonteCarloMembraneTension
+from openmmhelfrich import (
+    MonteCarloBondFlip,
+    MonteCarloMembraneTension,
+    SurfaceViscosityThermostat,
+)
 
 
 class Mover(NamedTuple):
@@ -68,7 +72,7 @@ def getter(argument: str) -> str:
     return "Default" + name if is_parameter else name
 
 
-# Of both.
+# Of all.
 REFUSED = [
     ({"temperature": 0}, mm.OpenMMException, "temperature.*above zero"),
     ({"temperature": float("nan")}, mm.OpenMMException, "temperature.*nan"),
@@ -202,6 +206,41 @@ MOVERS = [
             ),
         ],
         optional_xml=['frequency="25"', 'axes="XYIsotropic"', 'scaleMoleculesAsRigid="1"'],
+    ),
+    Mover(
+        SurfaceViscosityThermostat,
+        (start(), 20.0),
+        given={"temperature": 310.0, "frequency": 7},
+        further={
+            "DefaultFriction": 12.5,
+            "FrictionParameter": "of this one",
+            "RandomNumberSeed": -17,
+            "ForceGroup": 3,
+            "Name": "honey",
+        },
+        defaults={
+            "temperature": 300,
+            "frequency": 1,
+            "DefaultFriction": 20,
+            "FrictionParameter": "SurfaceViscosityFriction",
+            "RandomNumberSeed": 0,
+            "ForceGroup": 0,
+            "Name": "SurfaceViscosityThermostat",
+        },
+        refused=REFUSED,
+        refused_by_setters=[
+            *REFUSED_BY_SETTERS,
+            ("setDefaultFriction", -1),
+            ("setFrictionParameter", ""),
+        ],
+        wrong_xml=[
+            *WRONG_XML,
+            ('friction="12.5"', 'friction="thick"', 'friction="thick"'),
+            ('friction="12.5"', 'friction="-1"', "friction.*-1.*element"),
+            ('frictionParameter="of this one"', 'frictionParameter=""', "name of its own.*element"),
+            ("Triangles>", "Triangels>", "Triangels"),
+        ],
+        optional_xml=['frequency="1"', 'frictionParameter="SurfaceViscosityFriction"'],
     ),
 ]
 

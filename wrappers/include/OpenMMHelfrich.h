@@ -24,6 +24,7 @@
 #include "openmm-helfrich/SurfaceAreaForce.h"
 #include "openmm-helfrich/SurfaceRepulsionForce.h"
 #include "openmm-helfrich/SurfaceTensionForce.h"
+#include "openmm-helfrich/SurfaceViscosityThermostat.h"
 #include "openmm-helfrich/TriangleAreaForce.h"
 #include "openmm-helfrich/TriangleAreaRepulsionForce.h"
 #include "openmm-helfrich/TriangleHeightForce.h"

@@ -319,6 +319,24 @@ extern int Helfrich_MonteCarloMembraneTension_updateParametersInContext(OpenMM_F
 extern int Helfrich_MonteCarloMembraneTension_getStatistic(OpenMM_Force* force, OpenMM_Context* context,
                                                            const char* name, double* value);
 
+/*
+ * Friction and noise along edges. The functions of Helfrich_MembraneForce for triangles and destroy() are for this
+ * class too. Getters return NaN or -1 for failure.
+ */
+extern OpenMM_Force* Helfrich_SurfaceViscosityThermostat_create(const int* triangles, int numTriangles, double friction,
+                                                                double temperature, int frequency);
+extern double Helfrich_SurfaceViscosityThermostat_getDefaultFriction(OpenMM_Force* force);
+extern int Helfrich_SurfaceViscosityThermostat_setDefaultFriction(OpenMM_Force* force, double defaultFriction);
+extern double Helfrich_SurfaceViscosityThermostat_getDefaultTemperature(OpenMM_Force* force);
+extern int Helfrich_SurfaceViscosityThermostat_setDefaultTemperature(OpenMM_Force* force, double defaultTemperature);
+extern int Helfrich_SurfaceViscosityThermostat_getFrequency(OpenMM_Force* force);
+extern int Helfrich_SurfaceViscosityThermostat_setFrequency(OpenMM_Force* force, int frequency);
+extern int Helfrich_SurfaceViscosityThermostat_getRandomNumberSeed(OpenMM_Force* force);
+extern int Helfrich_SurfaceViscosityThermostat_setRandomNumberSeed(OpenMM_Force* force, int randomNumberSeed);
+/** Name the Context parameter that holds the friction, in place of "SurfaceViscosityFriction". */
+extern int Helfrich_SurfaceViscosityThermostat_setFrictionParameter(OpenMM_Force* force, const char* name);
+extern int Helfrich_SurfaceViscosityThermostat_updateParametersInContext(OpenMM_Force* force, OpenMM_Context* context);
+
 #ifdef __cplusplus
 }
 #endif

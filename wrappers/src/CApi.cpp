@@ -42,6 +42,10 @@ MonteCarloMembraneTension& asTension(void* force) {
     return as<MonteCarloMembraneTension>("MonteCarloMembraneTension", force);
 }
 
+SurfaceViscosityThermostat& asViscosity(void* force) {
+    return as<SurfaceViscosityThermostat>("SurfaceViscosityThermostat", force);
+}
+
 OpenMM::Context& asContext(void* context) {
     return *static_cast<OpenMM::Context*>(context);
 }
@@ -254,6 +258,26 @@ int helfrich_shim_getTensionStatistic(void* force, void* context, const char* na
         [&] { *value = pick("MonteCarloMembraneTension", asTension(force).getStatistics(asContext(context)), name); });
 }
 
+void* helfrich_shim_createViscosity(const int* triangles, int numTriangles, double friction, double temperature,
+                                    int frequency) {
+    OpenMM::Force* created = nullptr;
+    guarded([&] {
+        if (numTriangles < 0)
+            throw OpenMMException("SurfaceViscosityThermostat: the number of triangles is negative");
+        vector<int> corners(triangles, triangles + 3 * (size_t) numTriangles);
+        created = new SurfaceViscosityThermostat(corners, friction, temperature, frequency);
+    });
+    return created;
+}
+
+int helfrich_shim_updateViscosity(void* force, void* context) {
+    return guarded([&] { asViscosity(force).updateParametersInContext(asContext(context)); });
+}
+
+int helfrich_shim_setFrictionParameter(void* force, const char* name) {
+    return guarded([&] { asViscosity(force).setFrictionParameter(name); });
+}
+
 // A getter, which gives a value that cannot be if the force is of another class, and a setter.
 #define MOVER_VALUE(Mover, Type, Name, Nothing, Cast)                                                                  \
     Type helfrich_shim_get##Mover##Name(void* force) {                                                                 \
@@ -280,5 +304,9 @@ MOVER_VALUE(Tension, int, Axes, -1, MonteCarloMembraneTension::Axes)
 MOVER_VALUE(Tension, int, ScaleMoleculesAsRigid, -1, bool)
 MOVER_VALUE(Tension, int, AdaptiveMoves, -1, int)
 MOVER_VALUE(Tension, int, RandomNumberSeed, -1, int)
+MOVER_VALUE(Viscosity, double, DefaultFriction, std::nan(""), double)
+MOVER_VALUE(Viscosity, double, DefaultTemperature, std::nan(""), double)
+MOVER_VALUE(Viscosity, int, Frequency, -1, int)
+MOVER_VALUE(Viscosity, int, RandomNumberSeed, -1, int)
 #undef MOVER_VALUE
 }

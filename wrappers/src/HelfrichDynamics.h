@@ -30,6 +30,18 @@ struct HelfrichParticleArrays {
     const double* forces;
 };
 
+/** What acts along the edges of a membrane: src/dynamics/viscosity.rs. */
+struct HelfrichViscosity;
+
+struct HelfrichEdgeBath {
+    /** Friction times time, amu. */
+    double friction;
+    /** kJ/mol. */
+    double kt;
+    /** How long before the positions they act, ps. */
+    double lag;
+};
+
 int Helfrich_Team_available();
 int Helfrich_Team_create(int threads, HelfrichTeam** team);
 void Helfrich_Team_destroy(HelfrichTeam* team);
@@ -46,6 +58,12 @@ int Helfrich_Dynamics_brownian(const HelfrichDynamics* dynamics, HelfrichTeam* t
                                double friction, double kT);
 /** The 128 random bits of a number, for a key: `bits` gets two values. */
 void Helfrich_Random_bits(const uint32_t* key, uint64_t number, uint64_t* bits);
+int Helfrich_Viscosity_create(const char* subject, const HelfrichMembrane* membrane, int64_t numParticles,
+                              const double* masses, HelfrichViscosity** viscosity);
+void Helfrich_Viscosity_destroy(HelfrichViscosity* viscosity);
+int Helfrich_Viscosity_sweep(const char* subject, HelfrichViscosity* viscosity, const HelfrichMembrane* membrane,
+                             int64_t numParticles, double* positions, double* velocities, const double* box,
+                             const HelfrichEdgeBath* bath, HelfrichStream* stream);
 int Helfrich_Dynamics_clear(HelfrichTeam* team, int64_t numParticles, double* forces);
 }
 

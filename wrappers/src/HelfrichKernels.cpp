@@ -1,6 +1,7 @@
 #include "HelfrichKernels.h"
 #include "MonteCarloMembraneTensionImpl.h"
 #include "SharedMembrane.h"
+#include "SurfaceViscosityThermostatImpl.h"
 
 #include <openmm/BrownianIntegrator.h>
 #include <openmm/LangevinMiddleIntegrator.h>
@@ -29,6 +30,8 @@ const uint32_t CHECKPOINT_MARK = 0x31464c48;
 const uint32_t CONNECTIVITY_MARK = 0x32464c48;
 /** or these, connectivity or none, and then what each MonteCarloMembraneTension has come to. */
 const uint32_t TENSION_MARK = 0x33464c48;
+/** or these, connectivity and tensions or none, and then what each SurfaceViscosityThermostat has come to. */
+const uint32_t VISCOSITY_MARK = 0x34464c48;
 
 Kernel createReferenceKernel(const string& name, const Platform& platform, ContextImpl& context) {
     return Kernel(ReferenceKernelFactory().createKernelImpl(name, platform, context));
@@ -193,7 +196,11 @@ void HelfrichUpdateStateDataKernel::createCheckpoint(ContextImpl& context, std::
     reference.createCheckpoint(context, stream);
     vector<string> connectivity = SharedMembrane::saveAll(context);
     vector<TensionState> tensions = MonteCarloMembraneTensionImpl::saveAll(context);
-    uint32_t mark = !tensions.empty() ? TENSION_MARK : !connectivity.empty() ? CONNECTIVITY_MARK : CHECKPOINT_MARK;
+    vector<ViscosityState> viscosities = SurfaceViscosityThermostatImpl::saveAll(context);
+    uint32_t mark = !viscosities.empty() ? VISCOSITY_MARK
+        : !tensions.empty()              ? TENSION_MARK
+        : !connectivity.empty()          ? CONNECTIVITY_MARK
+                                         : CHECKPOINT_MARK;
     write(stream, mark);
     write(stream, (uint32_t) data.streams.size());
     for (const HelfrichStream& random : data.streams)
@@ -209,6 +216,11 @@ void HelfrichUpdateStateDataKernel::createCheckpoint(ContextImpl& context, std::
         return;
     write(stream, (uint32_t) tensions.size());
     for (const TensionState& state : tensions)
+        write(stream, state);
+    if (mark == TENSION_MARK)
+        return;
+    write(stream, (uint32_t) viscosities.size());
+    for (const ViscosityState& state : viscosities)
         write(stream, state);
 }
 
@@ -229,7 +241,7 @@ void HelfrichUpdateStateDataKernel::loadCheckpoint(ContextImpl& context, std::is
 
 void HelfrichUpdateStateDataKernel::loadOurs(ContextImpl& context, std::istream& stream) {
     auto mark = read<uint32_t>(stream);
-    if (mark != CHECKPOINT_MARK && mark != CONNECTIVITY_MARK && mark != TENSION_MARK)
+    if (mark != CHECKPOINT_MARK && mark != CONNECTIVITY_MARK && mark != TENSION_MARK && mark != VISCOSITY_MARK)
         throw OpenMMException("loadCheckpoint: the checkpoint has no random numbers of platform Helfrich; it is "
                               "damaged, or of another version of openmm-helfrich");
     // As with other platforms, a checkpoint may go on with another integrator; its streams stay as they are.
@@ -244,11 +256,16 @@ void HelfrichUpdateStateDataKernel::loadOurs(ContextImpl& context, std::istream&
         for (uint32_t left = read<uint32_t>(stream); left > 0; left--)
             connectivity.push_back(readBytes(stream, read<uint64_t>(stream)));
     vector<TensionState> tensions;
-    if (mark == TENSION_MARK)
+    if (mark == TENSION_MARK || mark == VISCOSITY_MARK)
         for (uint32_t left = read<uint32_t>(stream); left > 0; left--)
             tensions.push_back(read<TensionState>(stream));
+    vector<ViscosityState> viscosities;
+    if (mark == VISCOSITY_MARK)
+        for (uint32_t left = read<uint32_t>(stream); left > 0; left--)
+            viscosities.push_back(read<ViscosityState>(stream));
     SharedMembrane::restoreAll("loadCheckpoint", context, connectivity);
     MonteCarloMembraneTensionImpl::restoreAll(context, tensions);
+    SurfaceViscosityThermostatImpl::restoreAll(context, viscosities);
 }
 
 TimeStep::TimeStep(const string& name, const Platform& platform, ContextImpl& context)

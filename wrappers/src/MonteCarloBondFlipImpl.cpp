@@ -6,12 +6,7 @@
 #include <openmm/CompoundIntegrator.h>
 #include <openmm/CustomCVForce.h>
 #include <openmm/CustomIntegrator.h>
-#include <openmm/DPDIntegrator.h>
-#include <openmm/LangevinMiddleIntegrator.h>
-#include <openmm/NoseHooverIntegrator.h>
-#include <openmm/QTBIntegrator.h>
 #include <openmm/System.h>
-#include <openmm/VerletIntegrator.h>
 #include <openmm/reference/ReferencePlatform.h>
 #include <openmm/reference/SimTKOpenMMRealType.h>
 
@@ -74,15 +69,6 @@ void refuseCopies(const MonteCarloBondFlip& owner, const Integrator& integrator)
         throw OpenMMException(owner.getTypeName() +
                               ": the beads of an RPMDIntegrator would flip the bonds that they share, each by its own "
                               "energy, which is no ensemble; choose another integrator, or leave out the flips");
-}
-
-/** Whether an integrator keeps velocities of half a step ago and gives them the kick of a whole step at once. */
-bool isLeapfrog(const Integrator& integrator) {
-    return dynamic_cast<const VerletIntegrator*>(&integrator) != nullptr ||
-        dynamic_cast<const LangevinMiddleIntegrator*>(&integrator) != nullptr ||
-        dynamic_cast<const NoseHooverIntegrator*>(&integrator) != nullptr ||
-        dynamic_cast<const DPDIntegrator*>(&integrator) != nullptr ||
-        dynamic_cast<const QTBIntegrator*>(&integrator) != nullptr;
 }
 
 /**

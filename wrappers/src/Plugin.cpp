@@ -7,6 +7,8 @@
 #include "MonteCarloMembraneTensionImpl.h"
 #include "MonteCarloMembraneTensionProxy.h"
 #include "PlatformChoice.h"
+#include "SurfaceViscosityThermostatImpl.h"
+#include "SurfaceViscosityThermostatProxy.h"
 
 #include <openmm/Platform.h>
 
@@ -51,6 +53,8 @@ int helfrich_shim_registerSerialization() {
 #undef REGISTER
     OpenMM::SerializationProxy::registerProxy(typeid(MonteCarloBondFlip), new MonteCarloBondFlipProxy());
     OpenMM::SerializationProxy::registerProxy(typeid(MonteCarloMembraneTension), new MonteCarloMembraneTensionProxy());
+    OpenMM::SerializationProxy::registerProxy(typeid(SurfaceViscosityThermostat),
+                                              new SurfaceViscosityThermostatProxy());
     return 0;
 }
 
@@ -97,6 +101,8 @@ void* helfrich_shim_createImpl(const void* force) {
             impl = new MonteCarloBondFlipImpl(*mover);
         else if (auto* tension = dynamic_cast<const MonteCarloMembraneTension*>(&owner))
             impl = new MonteCarloMembraneTensionImpl(*tension);
+        else if (auto* thermostat = dynamic_cast<const SurfaceViscosityThermostat*>(&owner))
+            impl = new SurfaceViscosityThermostatImpl(*thermostat);
         else
             impl = new MembraneForceImpl(dynamic_cast<const MembraneForce&>(owner));
         return impl;

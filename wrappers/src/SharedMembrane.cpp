@@ -4,6 +4,7 @@
 #include "HelfrichPlatform.h"
 #include "MembraneForceImpl.h"
 #include "MonteCarloBondFlipImpl.h"
+#include "SurfaceViscosityThermostatImpl.h"
 
 #include <openmm/System.h>
 
@@ -28,8 +29,8 @@ std::multimap<const ContextImpl*, std::weak_ptr<SharedMembrane>> registry;
     throw OpenMMException(subject + ": particle " + std::to_string(particle) +
                           " belongs to two different triangulations, and a MonteCarloBondFlip would change one of them "
                           "only; give all membrane forces on these particles and the MonteCarloBondFlip the same "
-                          "triangles in the same order (SurfaceRepulsionForce and ParticleSurfaceForce may have those "
-                          "of several such membranes, one after another)");
+                          "triangles in the same order (SurfaceRepulsionForce, ParticleSurfaceForce and "
+                          "SurfaceViscosityThermostat may have those of several such membranes, one after another)");
 }
 
 } // namespace
@@ -156,9 +157,10 @@ SharedMembrane::~SharedMembrane() {
 bool SharedMembrane::belongsTo(ContextImpl& context) const {
     const vector<ForceImpl*>& impls = context.getForceImpls();
     auto isThere = [&](const ForceImpl* impl) { return std::find(impls.begin(), impls.end(), impl) != impls.end(); };
-    if (mover == nullptr && members.empty())
+    if (mover == nullptr && members.empty() && thermostats.empty())
         return false;
-    return (mover == nullptr || isThere(mover)) && std::all_of(members.begin(), members.end(), isThere);
+    return (mover == nullptr || isThere(mover)) && std::all_of(members.begin(), members.end(), isThere) &&
+        std::all_of(thermostats.begin(), thermostats.end(), isThere);
 }
 
 void SharedMembrane::join(MembraneForceImpl* member) {
@@ -366,6 +368,27 @@ int64_t SharedMembrane::flip(const string& subject, ContextImpl& context, int gr
     for (Link* link : links)
         link->followed = getFingerprint();
     return made;
+}
+
+HelfrichViscosity* SharedMembrane::makeViscosity(const string& subject, const vector<double>& masses) const {
+    HelfrichViscosity* viscosity = nullptr;
+    check(Helfrich_Viscosity_create(subject.c_str(), core, (int64_t) masses.size(), masses.data(), &viscosity));
+    return viscosity;
+}
+
+void SharedMembrane::sweep(const string& subject, ContextImpl& context, HelfrichViscosity& viscosity,
+                           const HelfrichEdgeBath& bath, vector<Vec3>& positions, vector<Vec3>& velocities,
+                           HelfrichStream& random) {
+    settle(context);
+    const double* vectors = findBox(context);
+    // Where no force on these triangles says so, they are in the box that other forces are in.
+    if (members.empty() && context.getSystem().usesPeriodicBoundaryConditions()) {
+        context.getPeriodicBoxVectors(box[0], box[1], box[2]);
+        vectors = reinterpret_cast<const double*>(box);
+    }
+    check(Helfrich_Viscosity_sweep(subject.c_str(), &viscosity, core, (int64_t) positions.size(),
+                                   reinterpret_cast<double*>(positions.data()),
+                                   reinterpret_cast<double*>(velocities.data()), vectors, &bath, &random));
 }
 
 vector<std::pair<int, int>> SharedMembrane::getEdges() const {

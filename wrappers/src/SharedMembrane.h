@@ -1,12 +1,14 @@
 #ifndef HELFRICH_SHARED_MEMBRANE_H_
 #define HELFRICH_SHARED_MEMBRANE_H_
 
+#include "HelfrichDynamics.h"
 #include "NativeMembrane.h"
 #include "openmm-helfrich/internal/Core.h"
 
 #include <openmm/Vec3.h>
 #include <openmm/internal/ContextImpl.h>
 
+#include <algorithm>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -18,6 +20,7 @@ namespace HelfrichPlugin {
 class MembraneForce;
 class MembraneForceImpl;
 class MonteCarloBondFlipImpl;
+class SurfaceViscosityThermostatImpl;
 struct SavedConnectivity;
 
 /** What decides the bits of evaluations beside positions. */
@@ -61,6 +64,13 @@ public:
     /** Add what flips edges, of which there can be one. */
     void join(MonteCarloBondFlipImpl* mover, OpenMM::ContextImpl& context);
     void leave(MonteCarloBondFlipImpl* mover, OpenMM::ContextImpl& context);
+    /** Add what lets friction act along edges. */
+    void join(SurfaceViscosityThermostatImpl* thermostat) {
+        thermostats.push_back(thermostat);
+    }
+    void leave(SurfaceViscosityThermostatImpl* thermostat) {
+        thermostats.erase(std::remove(thermostats.begin(), thermostats.end(), thermostat), thermostats.end());
+    }
     /** Whether a member is the first whose force group is among those asked for, of those that are evaluated like it.
      */
     bool isLeader(const MembraneForceImpl& member, int groups) const;
@@ -113,6 +123,22 @@ public:
     int64_t flip(const std::string& subject, OpenMM::ContextImpl& context, int groups,
                  const std::vector<OpenMM::Vec3>& positions, const HelfrichFlipRules& rules, int64_t attempts,
                  HelfrichFlipState& state, std::vector<OpenMM::Vec3>* forceChange);
+    /** Prepare sweeps of friction over the edges, for particles of these masses; the caller destroys it. */
+    HelfrichViscosity* makeViscosity(const std::string& subject, const std::vector<double>& masses) const;
+    /**
+     * Let friction and noise act along the present edges.
+     *
+     * @param subject     the class that messages shall name
+     * @param context     the Context
+     * @param viscosity   what makeViscosity() has made
+     * @param bath        friction and noise
+     * @param positions   of all particles, nm; they change if the bath has a lag
+     * @param velocities  of all particles, nm/ps
+     * @param random      the random numbers
+     */
+    void sweep(const std::string& subject, OpenMM::ContextImpl& context, HelfrichViscosity& viscosity,
+               const HelfrichEdgeBath& bath, std::vector<OpenMM::Vec3>& positions,
+               std::vector<OpenMM::Vec3>& velocities, HelfrichStream& random);
     /** Refuse rules that make no sense, or that the present triangles violate. */
     void checkRules(const std::string& subject, const HelfrichFlipRules& rules) const {
         check(Helfrich_Membrane_checkFlips(subject.c_str(), core, &rules));
@@ -248,6 +274,8 @@ private:
     std::vector<int> derivativeNumbers;
     /** What flips edges, or null. */
     MonteCarloBondFlipImpl* mover;
+    /** What lets friction act along edges. */
+    std::vector<SurfaceViscosityThermostatImpl*> thermostats;
     /** Whether it has been found to span the box, and no barostat tears it. */
     bool spans;
     /** Membranes that this one is made up of, and those that it is part of. */

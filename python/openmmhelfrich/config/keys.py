@@ -25,6 +25,7 @@ from .values import (
     signed_energy,
     text,
     vector,
+    viscosity,
 )
 
 __all__ = ["KEYS", "REQUIRED", "Key", "keys_of"]
@@ -158,6 +159,10 @@ KEYS: tuple[Key, ...] = (
         "Flip bonds, so that the membrane is fluid: attempts per edge and step, such as 0.01, or a "
         "table `{ attempts_per_edge = 0.1, frequency = 10, min_degree = 3, max_degree = 10, "
         "max_edge_length = 0, temperature = 300 }`; see [flips.md](flips.md). Default: none."),
+    Key("vesicle", "viscosity", viscosity, None,
+        "Make the membrane viscous: the surface shear viscosity η of a regular mesh, amu/ps, or a "
+        "table `{ friction = 20, frequency = 1, temperature = 300 }` with the friction of each "
+        "edge; see [viscosity.md](viscosity.md). Default: none."),
     Key("vesicle.mesh", "file", text, None,
         "A mesh file, beside the configuration: PLY, OBJ, STL, OFF, VTK, VTP, VTU, Gmsh."),
     Key("vesicle.mesh", "triangulate", boolean, False,

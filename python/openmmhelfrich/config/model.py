@@ -74,6 +74,11 @@ class Configuration(vcm.Config):
         if self.box is not None:
             # Outputs have a box then.
             self.general["SimulationBoxLength"] = float(self.box[0, 0])
+        viscous = any(membrane.vesicle.viscosity is not None for membrane in self.membranes)
+        if viscous and integrator["kind"] == "Brownian":
+            raise integrator.error(
+                "kind", "Brownian dynamics have no velocities for a viscosity to act on"
+            )
         self._tension = None
         if "tension" in document.data:
             self._tension = Table(document, ("tension",), "tension")
@@ -136,6 +141,11 @@ class Configuration(vcm.Config):
                 mover.setRandomNumberSeed(self.seed)
                 if "temperature" not in membrane.vesicle.flips:
                     mover.setDefaultTemperature(self.temperature)
+            thermostat = placement.viscosity
+            if thermostat is not None:
+                thermostat.setRandomNumberSeed(self.seed)
+                if "temperature" not in membrane.vesicle.viscosity:
+                    thermostat.setDefaultTemperature(self.temperature)
             for kind, group in zip(names, groups, strict=True):
                 alone = len(self.membranes) == 1 or not apart
                 term = kind if alone else f"{kind} {membrane.label}"

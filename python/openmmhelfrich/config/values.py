@@ -36,6 +36,7 @@ __all__ = [
     "table",
     "text",
     "vector",
+    "viscosity",
 ]
 
 Reader = Callable[[Any, float], Any]
@@ -239,6 +240,24 @@ def osmotic(value, kT):
 def area_difference(value, kT):
     """A table of what `area_difference_parameters` or `AreaDifferenceForce` takes."""
     return _arguments("area_difference", _AREA_DIFFERENCE, table(value, kT), kT)
+
+
+#: The keys of ``viscosity``, with the arguments of `SurfaceViscosityThermostat` that they are.
+_VISCOSITY = {
+    "friction": ("friction", number(least=0)),
+    "temperature": ("temperature", number(above=0)),
+    "frequency": ("frequency", integer(0)),
+}
+
+
+def viscosity(value, kT):
+    """A surface shear viscosity, or a table of what `SurfaceViscosityThermostat` takes."""
+    if not isinstance(value, dict):
+        return number(least=0)(value, kT)
+    arguments = _arguments("viscosity", _VISCOSITY, value, kT)
+    if "friction" not in arguments:
+        raise ValueError("it lacks friction, amu/ps")
+    return arguments
 
 
 def _arguments(where, known, value, kT):

@@ -25,7 +25,7 @@ _LOCK = ".lock"
 # What a run may leave behind that is killed before it has written anything.
 _NOTHING = (_LOCK, CHECKPOINT + ".new")
 _KIND = "run"
-_KNOWN = {"run": 1, "openmm": 1, "connectivity": 1, "tension": 1}
+_KNOWN = {"run": 1, "openmm": 1, "connectivity": 1, "tension": 1, "viscosity": 1}
 # How the checkpoints began that had no checksum.
 _UNCHECKED = b'{"format": "openmm-helfrich checkpoint 1"'
 
@@ -56,12 +56,14 @@ class State:
     """A Context at a checkpoint.
 
     openmm: OpenMM's checkpoint; connectivity: what is saved of each surface whose bonds flip, which
-    OpenMM's checkpoint has on the platform Helfrich only; tension: of what moves the box.
+    OpenMM's checkpoint has on the platform Helfrich only; tension: of what moves the box;
+    viscosity: of what makes surfaces viscous.
     """
 
     openmm: bytes
     connectivity: tuple[bytes, ...] = ()
     tension: tuple[bytes, ...] = ()
+    viscosity: tuple[bytes, ...] = ()
 
 
 class RunFolder:
@@ -172,7 +174,7 @@ class RunFolder:
             )
         blocks = unpack(data, _KIND, _KNOWN)
         movers = []
-        for name in ("connectivity", "tension"):
+        for name in ("connectivity", "tension", "viscosity"):
             saved: list[bytes] = []
             while (key := f"{name}/{len(saved)}") in blocks:
                 saved.append(blocks[key].value)
@@ -203,6 +205,8 @@ class RunFolder:
             blocks[f"connectivity/{number}"] = Block(surface)
         for number, mover in enumerate(state.tension):
             blocks[f"tension/{number}"] = Block(mover)
+        for number, thermostat in enumerate(state.viscosity):
+            blocks[f"viscosity/{number}"] = Block(thermostat)
         data = pack(_KIND, blocks)
         with self.writing():
             replace(self.path / CHECKPOINT, data, self.path / PREVIOUS)

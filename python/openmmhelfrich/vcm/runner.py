@@ -14,7 +14,7 @@ from pathlib import Path
 
 import openmm
 
-from ..states import tensions_of
+from ..states import tensions_of, thermostats_of
 from . import build
 from .config import Config
 from .connectivity import movers
@@ -259,7 +259,9 @@ class Run:
         moving = movers(self.context)
         connectivity = tuple(mover._saveConnectivity(self.context) for mover in moving)
         tension = tuple(mover._saveState(self.context) for mover in tensions_of(self.context))
-        self._folder.save(saved, State(self.context.createCheckpoint(), connectivity, tension))
+        viscosity = tuple(force._saveState(self.context) for force in thermostats_of(self.context))
+        checkpoint = self.context.createCheckpoint()
+        self._folder.save(saved, State(checkpoint, connectivity, tension, viscosity))
 
     @staticmethod
     def _agree(saved: Saved, platform: str | None, seed: int) -> tuple[str, int]:
@@ -283,6 +285,10 @@ class Run:
             of_box = tensions_of(self.context)
             for mover, moves in zip(of_box, state.tension, strict=True):
                 mover._restoreState(self.context, moves)
+            for force, sweeps in zip(
+                thermostats_of(self.context), state.viscosity, strict=True
+            ):
+                force._restoreState(self.context, sweeps)
         except openmm.OpenMMException as reason:
             raise RunError(f"OpenMM cannot go on from {self.folder}: {reason}") from None
         with self._folder.writing():

@@ -8,8 +8,8 @@
 namespace HelfrichPlugin {
 
 /**
- * What tries Monte Carlo moves now and then, at the temperature of a bath: what all such classes have in common. Base
- * is a HelfrichForce.
+ * What makes random moves now and then, at the temperature of a bath: what all such classes have in common. Base is a
+ * HelfrichForce.
  */
 template <class Base>
 class MonteCarloMover : public Base {
@@ -30,13 +30,13 @@ public:
         this->temperature = temperature;
     }
     /**
-     * Get every how many time steps moves are tried.
+     * Get every how many time steps there are moves.
      */
     int getFrequency() const {
         return frequency;
     }
     /**
-     * Set every how many time steps moves are tried; 0 for never.
+     * Set every how many time steps there are moves; 0 for never.
      */
     void setFrequency(int frequency) {
         if (frequency < 0)
@@ -61,7 +61,7 @@ protected:
 #ifndef SWIG
     /**
      * @param temperature  the default temperature, K
-     * @param frequency    every how many time steps moves are tried
+     * @param frequency    every how many time steps there are moves
      * @param base         the arguments of the base
      */
     template <class... Arguments>
