@@ -56,12 +56,14 @@ using namespace HelfrichPlugin;
 %ignore HelfrichPlugin::MembraneForce::getParticles;
 %ignore HelfrichPlugin::ParticleSurfaceForce::setParticles;
 %ignore HelfrichPlugin::MembraneForce::setParameterValue;
+%ignore HelfrichPlugin::VariableMassIntegrator::getMasses;
 %rename(_setElementValues) HelfrichPlugin::MembraneForce::setElementValues;
 %rename(_HelfrichForce) HelfrichPlugin::HelfrichForce;
 %nodefaultctor HelfrichPlugin::HelfrichForce;
 %nodefaultctor HelfrichPlugin::MonteCarloMover;
 %nodefaultctor HelfrichPlugin::TriangulatedForce;
 %nodefaultctor HelfrichPlugin::MembraneForce;
+%nodefaultctor HelfrichPlugin::VariableMassIntegrator;
 
 %{
 static PyObject* toBytes(const void* data, size_t size) {
@@ -158,6 +160,22 @@ static PyObject* toDict(const Mover& mover, OpenMM::Context& context) {
 %include "openmm-helfrich/CLASS.h"
 %enddef
 
+/* The same of XML and CompoundIntegrators, which give plain openmm.Integrator objects. */
+%define VARIABLE_MASS_INTEGRATOR(CLASS)
+%extend HelfrichPlugin::CLASS {
+    static bool isinstance(OpenMM::Integrator& integrator) {
+        return dynamic_cast<HelfrichPlugin::CLASS*>(&integrator) != nullptr;
+    }
+    static HelfrichPlugin::CLASS& cast(OpenMM::Integrator& integrator) {
+        auto* found = dynamic_cast<HelfrichPlugin::CLASS*>(&integrator);
+        if (found == nullptr)
+            throw OpenMM::OpenMMException(#CLASS ": cannot cast an integrator that is of another class");
+        return *found;
+    }
+}
+%include "openmm-helfrich/CLASS.h"
+%enddef
+
 %template(_IntVector) std::vector<int>;
 %template(_DoubleVector) std::vector<double>;
 %include "openmm-helfrich/internal/HelfrichForce.h"
@@ -171,6 +189,16 @@ HELFRICH_FORCES(MEMBRANE_FORCE)
 MEMBRANE_FORCE(MonteCarloBondFlip)
 MEMBRANE_FORCE(MonteCarloMembraneTension)
 
+%extend HelfrichPlugin::VariableMassIntegrator {
+    PyObject* _getMasses() {
+        std::vector<double> masses = $self->getMasses();
+        return toBytes(masses.data(), masses.size() * sizeof(double));
+    }
+}
+%include "openmm-helfrich/VariableMassIntegrator.h"
+VARIABLE_MASS_INTEGRATOR(VariableMassVerletIntegrator)
+VARIABLE_MASS_INTEGRATOR(VariableMassLangevinIntegrator)
+
 /* For platforms.py: why a System is not one for the platform Helfrich, or an empty text. */
 %inline %{
 std::string _why_not_helfrich(const OpenMM::System& system, const OpenMM::Integrator& integrator) {
@@ -179,17 +207,20 @@ std::string _why_not_helfrich(const OpenMM::System& system, const OpenMM::Integr
 %}
 
 %pythoncode %{
-from openmmhelfrich import _arguments, _bond_flips, _tension
+from openmmhelfrich import _arguments, _bond_flips, _integrators, _tension
 for _class in MembraneForce.__subclasses__():
     _arguments.accept_units(_class)
 _arguments.accept_arrays(TriangulatedForce)
 _bond_flips.accept_arguments(MonteCarloBondFlip)
 _tension.accept_arguments(MonteCarloMembraneTension)
+for _class in VariableMassIntegrator.__subclasses__():
+    _integrators.accept_arguments(_class)
 __all__ = [
     "MembraneForce",
     "MonteCarloBondFlip",
     "MonteCarloMembraneTension",
     "TriangulatedForce",
     *(_class.__name__ for _class in MembraneForce.__subclasses__()),
+    *(_class.__name__ for _class in VariableMassIntegrator.__subclasses__()),
 ]
 %}

@@ -119,6 +119,18 @@ pub enum Error {
     )]
     TouchingParticle { force: &'static str, particle: u32, triangle: usize, corners: [u32; 3] },
 
+    /// A vertex with a momentum that no time step could go on from.
+    #[error(
+        "the velocity of particle {particle} or the force on it is not finite: the simulation has blown up; use a smaller time step or a better relaxed start"
+    )]
+    NonFiniteMomentum { particle: u32 },
+
+    /// A time step whose implicit equations iteration does not solve.
+    #[error(
+        "the {equation} of a time step with the step size {step} ps has not converged in {iterations} iterations: particle {particle} would go {ways:.2} times as far as its plaquette is wide; use a smaller step size"
+    )]
+    NotConverged { equation: &'static str, step: f64, iterations: usize, particle: u32, ways: f64 },
+
     /// A scalar outside its domain.
     #[error("{parameter} must be {domain}, got {value}")]
     Parameter { parameter: String, domain: &'static str, value: f64 },

@@ -14,6 +14,7 @@ mod native;
 mod plugin;
 mod potentials;
 mod records;
+mod variable_mass;
 
 pub use membrane::*;
 pub use mesh::*;
@@ -23,6 +24,7 @@ pub use plugin::Helfrich_register;
 pub use plugin::*;
 pub use potentials::*;
 pub use records::*;
+pub use variable_mass::*;
 
 use crate::error::Result;
 use std::cell::RefCell;

@@ -6,7 +6,7 @@ use crate::codes::{Attraction, Contribution, Form, MAX_PARAMETERS, Scheme};
 use crate::flip_records::{FlipRules, FlipState};
 use crate::interface::{Binding, NUMBERS};
 use crate::records::{
-    FollowerInput, NativeBuffer, NativePass, NativePlan, ParameterInfo, ParticleArrays, TermInput,
+    FollowerInput, NativeBuffer, NativePass, NativePlan, ParameterInfo, ParticleArrays, SheetInput, TermInput,
 };
 use std::ffi::CStr;
 use std::mem::offset_of;
@@ -48,6 +48,7 @@ pub fn comparison() -> String {
             "HelfrichParticleArrays",
             num_particles positions velocities forces
         );
+        text += &structure!(SheetInput, "HelfrichSheet", corners num_triangles is_periodic);
         text += &structure!(
             FlipRules,
             "HelfrichFlipRules",

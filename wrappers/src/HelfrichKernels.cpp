@@ -1,6 +1,7 @@
 #include "HelfrichKernels.h"
 #include "MonteCarloMembraneTensionImpl.h"
 #include "SharedMembrane.h"
+#include "VariableMassStepKernel.h"
 
 #include <openmm/BrownianIntegrator.h>
 #include <openmm/LangevinMiddleIntegrator.h>
@@ -76,8 +77,9 @@ string readBytes(std::istream& stream, uint64_t size) {
 } // namespace
 
 vector<string> HelfrichKernelFactory::getKernelNames() {
-    return {CalcForcesAndEnergyKernel::Name(), UpdateStateDataKernel::Name(), IntegrateVerletStepKernel::Name(),
-            IntegrateLangevinMiddleStepKernel::Name(), IntegrateBrownianStepKernel::Name()};
+    return {CalcForcesAndEnergyKernel::Name(),   UpdateStateDataKernel::Name(),
+            IntegrateVerletStepKernel::Name(),   IntegrateLangevinMiddleStepKernel::Name(),
+            IntegrateBrownianStepKernel::Name(), IntegrateVariableMassStepKernel::Name()};
 }
 
 KernelImpl* HelfrichKernelFactory::createKernelImpl(string name, const Platform& platform, ContextImpl& context) const {
@@ -91,6 +93,8 @@ KernelImpl* HelfrichKernelFactory::createKernelImpl(string name, const Platform&
         return new HelfrichIntegrateLangevinMiddleStepKernel(name, platform, context);
     if (name == IntegrateBrownianStepKernel::Name())
         return new HelfrichIntegrateBrownianStepKernel(name, platform, context);
+    if (name == IntegrateVariableMassStepKernel::Name())
+        return new VariableMassStepKernel(name, platform, context);
     throw OpenMMException("Platform Helfrich: there is no kernel called \"" + name + "\"");
 }
 

@@ -7,6 +7,8 @@
 #include "MonteCarloMembraneTensionImpl.h"
 #include "MonteCarloMembraneTensionProxy.h"
 #include "PlatformChoice.h"
+#include "VariableMassIntegratorProxy.h"
+#include "VariableMassStepKernel.h"
 
 #include <openmm/Platform.h>
 
@@ -51,6 +53,15 @@ int helfrich_shim_registerSerialization() {
 #undef REGISTER
     OpenMM::SerializationProxy::registerProxy(typeid(MonteCarloBondFlip), new MonteCarloBondFlipProxy());
     OpenMM::SerializationProxy::registerProxy(typeid(MonteCarloMembraneTension), new MonteCarloMembraneTensionProxy());
+    OpenMM::SerializationProxy::registerProxy(typeid(VariableMassVerletIntegrator),
+                                              new VariableMassVerletIntegratorProxy());
+    OpenMM::SerializationProxy::registerProxy(typeid(VariableMassLangevinIntegrator),
+                                              new VariableMassLangevinIntegratorProxy());
+    // A second copy of the library in memory leaves the first one's kernel.
+    const std::string kernel = IntegrateVariableMassStepKernel::Name();
+    OpenMM::Platform& reference = OpenMM::Platform::getPlatformByName("Reference");
+    if (!reference.supportsKernels({kernel}))
+        reference.registerKernelFactory(kernel, new VariableMassKernelFactory());
     return 0;
 }
 
