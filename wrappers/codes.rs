@@ -6,7 +6,8 @@ use crate::codes::{Attraction, Contribution, Form, MAX_PARAMETERS, Scheme};
 use crate::flip_records::{FlipRules, FlipState};
 use crate::interface::{Binding, NUMBERS};
 use crate::records::{
-    FollowerInput, NativeBuffer, NativePass, NativePlan, ParameterInfo, ParticleArrays, SheetInput, TermInput,
+    FollowerInput, NativeBuffer, NativePass, NativePlan, ParameterInfo, ParticleArrays, SheetInput,
+    TermInput,
 };
 use std::ffi::CStr;
 use std::mem::offset_of;

@@ -151,10 +151,11 @@ void VariableMassStepKernel::execute(ContextImpl& context, const VariableMassInt
         throw OpenMMException(subject + ": the step size must be a finite number of ps, got " + std::to_string(step));
     findSurfaces(context);
     int groups = integrator.getIntegrationForceGroups();
-    if (forcesAreValid && groups == forceGroups)
-        *data.forces = forces;
-    else
+    if (!forcesAreValid || groups != forceGroups) {
         context.calcForcesAndEnergy(true, false, groups);
+        forces = *data.forces;
+        forceGroups = groups;
+    }
     oldPositions = *data.positions;
     oldVelocities = *data.velocities;
     double oldTime = data.time;
@@ -170,13 +171,13 @@ void VariableMassStepKernel::execute(ContextImpl& context, const VariableMassInt
         throw;
     }
     forces = *data.forces;
-    forceGroups = groups;
     data.stepCount++;
 }
 
 void VariableMassStepKernel::advance(ContextImpl& context, double step, int groups) {
     const double* box = findBox();
     HelfrichParticleArrays particles = getParticles();
+    particles.forces = &forces[0][0];
     auto bathe = [&] {
         if (bath != nullptr)
             check(Helfrich_VariableMasses_bathe(subject.c_str(), masses, team, &particles, box, stream, 0.5 * step,

@@ -45,13 +45,15 @@ impl Tile {
     }
 }
 
-/// A side that leaves a vertex, in each lane.
+/// What comes next around a vertex, in each lane, counter-clockwise.
 #[derive(Clone, Copy)]
-pub struct Neighbours {
-    /// Where it leads to, by the number of the lane.
-    pub vertices: Places,
-    /// The places of the vertex' own gradients in the triangles on both sides.
-    pub gradients: [Places; 2],
+pub struct Slot {
+    /// The vertex that a side leads to, by the number of its lane; beyond all lanes where there is none.
+    pub neighbours: Places,
+    /// The triangle after that side, by the number of its lane; beyond all lanes where there is none.
+    pub triangles: Places,
+    /// The place of the gradient of its area with respect to the vertex that is gone around.
+    pub gradients: Places,
 }
 
 /// All connected surfaces of a System.
@@ -64,14 +66,12 @@ pub struct Layout {
     pub triangle_tiles: Vec<Tile>,
     /// The places of each triangle's corners.
     pub corners: Vec<[Places; 3]>,
-    /// Where the triangles around each group of vertices begin in `around`; one entry more than groups.
-    around_offsets: Vec<usize>,
-    /// The number and the place of the vertex' gradient of each triangle.
-    pub around: Vec<[Places; 2]>,
-    /// Where the neighbours of each group begin in `neighbours`; one entry more than groups.
-    neighbour_offsets: Vec<usize>,
-    /// The sides that leave the vertices of each group.
-    pub neighbours: Vec<Neighbours>,
+    /// Where the slots of each group of vertices begin; one entry more than groups.
+    offsets: Vec<usize>,
+    /// What is around the vertices of each group.
+    pub slots: Vec<Slot>,
+    /// The place of the gradient in the triangle before the first slot, for each group.
+    pub before: Vec<Places>,
     /// Of each surface.
     pub is_periodic: Vec<bool>,
     /// The particles of all triangles, in the order in which forces have them.
@@ -117,23 +117,17 @@ impl Layout {
             tiles: Vec::new(),
             triangle_tiles: Vec::new(),
             corners: Vec::new(),
-            around_offsets: vec![0],
-            around: Vec::new(),
-            neighbour_offsets: vec![0],
-            neighbours: Vec::new(),
+            offsets: vec![0],
+            slots: Vec::new(),
+            before: Vec::new(),
             is_periodic: Vec::new(),
             triangles: (0..mesh.triangles().len()).map(|t| mesh.particles_of(t)).collect(),
         }
     }
 
-    /// The triangles around a group of vertices in `around`.
-    pub fn around_of(&self, group: usize) -> Range<usize> {
-        self.around_offsets[group]..self.around_offsets[group + 1]
-    }
-
-    /// The neighbours of some groups of vertices in `neighbours`.
-    pub fn neighbours_of(&self, groups: Range<usize>) -> Range<usize> {
-        self.neighbour_offsets[groups.start]..self.neighbour_offsets[groups.end]
+    /// Where the slots of some groups of vertices are.
+    pub fn slots_of(&self, groups: Range<usize>) -> Range<usize> {
+        self.offsets[groups.start]..self.offsets[groups.end]
     }
 
     /// Put the vertices into lanes, each surface into groups of its own. Returns the lane of each vertex.
@@ -190,8 +184,12 @@ impl Layout {
 
     /// Note what is around each vertex, in the order of its ring.
     fn surround(&mut self, mesh: &Triangulation, lanes: &[u32], triangle_lanes: &[u32]) {
-        let nothing = self.corners.len() * LANES;
-        let (no_triangle, no_gradient) = (nothing as u32, gradient_place(nothing, 0) as u32);
+        let (no_vertex, no_triangle) = (self.particles.len() * LANES, self.corners.len() * LANES);
+        let nothing = Slot {
+            neighbours: [no_vertex as u32; LANES],
+            triangles: [no_triangle as u32; LANES],
+            gradients: [gradient_place(no_triangle, 0) as u32; LANES],
+        };
         let gradient = |half: u32| {
             let triangle = triangle_lanes[half as usize / 3] as usize;
             gradient_place(triangle, half as usize % 3) as u32
@@ -201,44 +199,30 @@ impl Layout {
             vertex_of[lane as usize] = vertex as u32;
         }
         let mut ring = Vec::new();
-        for (group, vertices) in vertex_of.chunks(LANES).enumerate() {
-            let (start, side_start) = (self.around.len(), self.neighbours.len());
-            for (lane, &vertex) in vertices.iter().enumerate().filter(|(_, v)| **v != NONE) {
+        for vertices in vertex_of.chunks(LANES) {
+            let vertices = || vertices.iter().enumerate().filter(|(_, vertex)| **vertex != NONE);
+            let degree = vertices().map(|(_, vertex)| mesh.degrees()[*vertex as usize]).max();
+            let (start, mut before) = (self.slots.len(), nothing.gradients);
+            self.slots.resize(start + degree.unwrap_or(0) as usize, nothing);
+            let slots = &mut self.slots[start..];
+            for (lane, &vertex) in vertices() {
                 mesh.ring(vertex, &mut ring);
-                let own = std::array::from_fn(|lane| (group * LANES + lane) as u32);
-                let mut add_side = |slot: usize, neighbour: u32, gradients: [u32; 2]| {
-                    if self.neighbours.len() == side_start + slot {
-                        let gradients = [[no_gradient; LANES]; 2];
-                        self.neighbours.push(Neighbours { vertices: own, gradients });
-                    }
-                    let side = &mut self.neighbours[side_start + slot];
-                    side.vertices[lane] = lanes[neighbour as usize];
-                    side.gradients[0][lane] = gradients[0];
-                    side.gradients[1][lane] = gradients[1];
-                };
-                let is_border = mesh.is_border(vertex);
-                for (slot, &half) in ring.iter().enumerate() {
-                    if self.around.len() == start + slot {
-                        self.around.push([[no_triangle; LANES], [no_gradient; LANES]]);
-                    }
-                    self.around[start + slot][0][lane] = triangle_lanes[half as usize / 3];
-                    self.around[start + slot][1][lane] = gradient(half);
-                    // The triangle on the other side is the one before in the ring.
-                    let before = match slot {
-                        0 if is_border => no_gradient,
-                        0 => gradient(ring[ring.len() - 1]),
-                        _ => gradient(ring[slot - 1]),
-                    };
-                    add_side(slot, mesh.origin(next(half)), [before, gradient(half)]);
+                for (slot, &half) in slots.iter_mut().zip(&ring) {
+                    slot.neighbours[lane] = lanes[mesh.origin(next(half)) as usize];
+                    slot.triangles[lane] = triangle_lanes[half as usize / 3];
+                    slot.gradients[lane] = gradient(half);
                 }
-                if is_border {
-                    let last = ring[ring.len() - 1];
+                let last = ring[ring.len() - 1];
+                if mesh.is_border(vertex) {
+                    // After the last side there is no triangle.
                     let neighbour = mesh.origin(previous(last));
-                    add_side(ring.len(), neighbour, [gradient(last), no_gradient]);
+                    slots[ring.len()].neighbours[lane] = lanes[neighbour as usize];
+                } else {
+                    before[lane] = gradient(last);
                 }
             }
-            self.around_offsets.push(self.around.len());
-            self.neighbour_offsets.push(self.neighbours.len());
+            self.before.push(before);
+            self.offsets.push(self.slots.len());
         }
     }
 

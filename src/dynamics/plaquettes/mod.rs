@@ -8,7 +8,7 @@
 mod layout;
 mod passes;
 
-pub use layout::{Layout, Neighbours, Sheet, Tile};
+pub use layout::{Layout, Sheet, Slot, Tile};
 
 use crate::error::{Error, Result};
 use crate::evaluator::checks::culprit;
@@ -16,11 +16,14 @@ use crate::mesh::Cell;
 use crate::mesh::geometry::Vec3;
 use crate::mesh::topology::NONE;
 use crate::team::{Parts, Team};
-use passes::{Areas, Gather, Gradients};
+use passes::{Areas, Gather, GatherAreas, Gradients};
 use std::ops::Range;
 
 /// How many triangles or vertices are computed at once.
 pub const LANES: usize = 8;
+
+/// The share of a vertex in a triangle.
+pub(super) const THIRD: f64 = 1.0 / 3.0;
 
 /// A number for each lane.
 pub type Lanes = [f64; LANES];
@@ -40,12 +43,22 @@ pub(super) fn share(
     }
 }
 
+/// Whether two arrays have the same bits.
+fn is_same(one: &[f64], other: &[f64]) -> bool {
+    // A loop without an end before the end takes vector instructions.
+    let difference =
+        one.iter().zip(other).fold(0, |bits, (a, b)| bits | (a.to_bits() ^ b.to_bits()));
+    one.len() == other.len() && difference == 0
+}
+
 /// The connected surfaces of a System with the geometry of their plaquettes.
 pub struct Plaquettes {
     layout: Layout,
     /// Where the vertices are, nm, and in which box, for which all of the geometry holds; none before the first.
     at: Option<Option<Cell>>,
-    /// Positions, nm.
+    /// Positions of all particles there, nm.
+    placed: Vec<f64>,
+    /// The same of the vertices.
     pub(super) positions: Vec<Vectors>,
     /// Of triangles, nm²; the last group is zero, for places in rings that no triangle is at.
     triangle_areas: Vec<Lanes>,
@@ -72,12 +85,13 @@ impl Plaquettes {
         let (groups, triangle_groups) = (layout.particles.len(), layout.corners.len());
         Ok(Self {
             at: None,
+            placed: vec![0.0; 3 * num_particles],
             positions: vec![Vectors::default(); groups],
             triangle_areas: vec![Lanes::default(); triangle_groups + 1],
             gradients: vec![Default::default(); triangle_groups + 1],
             areas: vec![Lanes::default(); groups],
             total_gradients: vec![Vectors::default(); groups],
-            neighbour_gradients: vec![Vectors::default(); layout.neighbours.len()],
+            neighbour_gradients: vec![Vectors::default(); layout.slots.len()],
             totals: vec![0.0; layout.is_periodic.len()],
             tile_sums: vec![0.0; layout.triangle_tiles.len()],
             layout,
@@ -99,20 +113,17 @@ impl Plaquettes {
         positions: &[f64],
         cell: Option<&Cell>,
     ) -> Result<()> {
-        let mut has_moved = self.at != Some(cell.copied());
-        for (here, particles) in self.positions.iter_mut().zip(&self.layout.particles) {
-            for (lane, &particle) in particles.iter().enumerate().filter(|(_, p)| **p != NONE) {
-                for axis in 0..3 {
-                    let now = positions[3 * particle as usize + axis];
-                    has_moved |= here[axis][lane].to_bits() != now.to_bits();
-                    here[axis][lane] = now;
-                }
-            }
-        }
-        if !has_moved {
+        if self.at == Some(cell.copied()) && is_same(&self.placed, positions) {
             return Ok(());
         }
         self.at = None;
+        self.placed.copy_from_slice(positions);
+        for (here, particles) in self.positions.iter_mut().zip(&self.layout.particles) {
+            for (lane, &particle) in particles.iter().enumerate().filter(|(_, p)| **p != NONE) {
+                let place = positions.as_chunks::<3>().0[particle as usize];
+                (0..3).for_each(|axis| here[axis][lane] = place[axis]);
+            }
+        }
         self.differentiate(team, cell);
         self.sum_totals();
         // A triangle without area has no gradient.
@@ -156,14 +167,14 @@ impl Plaquettes {
                 let groups = layout.tiles[tile].groups();
                 // SAFETY: each tile has its own groups.
                 let areas = unsafe { areas.part(groups.clone()) };
-                passes::gather_areas(layout, groups, of_triangles, areas);
+                GatherAreas { layout, groups, of_triangles, areas }.run();
             }
         });
         self.sum_totals();
     }
 
     /// Areas and their gradients at the present positions.
-    fn differentiate(&mut self, team: &mut Option<&mut Team>, cell: Option<&Cell>) {
+    pub fn differentiate(&mut self, team: &mut Option<&mut Team>, cell: Option<&Cell>) {
         let layout = &self.layout;
         {
             let (of_triangles, sums) =
@@ -195,10 +206,10 @@ impl Plaquettes {
                     (
                         areas.part(groups.clone()),
                         totals.part(groups.clone()),
-                        neighbours.part(layout.neighbours_of(groups.clone())),
+                        neighbours.part(layout.slots_of(groups.clone())),
                     )
                 };
-                passes::gather_areas(layout, groups.clone(), of_triangles, areas);
+                GatherAreas { layout, groups: groups.clone(), of_triangles, areas }.run();
                 Gather::run(layout, groups, gradients, totals, neighbours);
             }
         });

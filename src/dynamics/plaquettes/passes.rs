@@ -1,7 +1,10 @@
 //! The passes over triangles and vertices, in lanes.
+//!
+//! Lanes are gone through by loops: calls of `array::map` and `from_fn` would not be compiled for the instruction set of
+//! the kernel that they are in.
 
-use super::layout::Layout;
-use super::{LANES, Lanes, Vectors};
+use super::layout::{Layout, Slot};
+use super::{LANES, Lanes, THIRD, Vectors};
 use crate::dynamics::instructions::{Arithmetic, Kernel, run};
 use crate::mesh::Cell;
 use crate::mesh::geometry::Vec3;
@@ -10,54 +13,90 @@ use std::ops::Range;
 /// A vector in each lane, from its places.
 #[inline(always)]
 fn load(values: &[f64], places: &[u32; LANES]) -> Vectors {
-    let mut loaded = Vectors::default();
-    for (lane, &place) in places.iter().enumerate() {
-        let place = place as usize;
+    let (mut x, mut y, mut z) = (Lanes::default(), Lanes::default(), Lanes::default());
+    for lane in 0..LANES {
+        let place = places[lane] as usize;
         let values = &values[place..place + 2 * LANES + 1];
-        for axis in 0..3 {
-            loaded[axis][lane] = values[axis * LANES];
-        }
+        x[lane] = values[0];
+        y[lane] = values[LANES];
+        z[lane] = values[2 * LANES];
     }
-    loaded
+    [x, y, z]
 }
 
-/// a − b.
+/// a + s b.
 #[inline(always)]
-fn minus(a: &Vectors, b: &Vectors) -> Vectors {
-    std::array::from_fn(|axis| std::array::from_fn(|lane| a[axis][lane] - b[axis][lane]))
+fn plus<A: Arithmetic>(a: &Vectors, s: f64, b: &Vectors) -> Vectors {
+    let (mut x, mut y, mut z) = (a[0], a[1], a[2]);
+    for lane in 0..LANES {
+        x[lane] = A::multiply_add(s, b[0][lane], a[0][lane]);
+        y[lane] = A::multiply_add(s, b[1][lane], a[1][lane]);
+        z[lane] = A::multiply_add(s, b[2][lane], a[2][lane]);
+    }
+    [x, y, z]
+}
+
+/// s a.
+#[inline(always)]
+fn times(s: &Lanes, a: &Vectors) -> Vectors {
+    let (mut x, mut y, mut z) = (a[0], a[1], a[2]);
+    for lane in 0..LANES {
+        x[lane] *= s[lane];
+        y[lane] *= s[lane];
+        z[lane] *= s[lane];
+    }
+    [x, y, z]
+}
+
+/// a d − b c.
+#[inline(always)]
+fn determinant<A: Arithmetic>(a: &Lanes, b: &Lanes, c: &Lanes, d: &Lanes) -> Lanes {
+    let mut results = Lanes::default();
+    for lane in 0..LANES {
+        results[lane] = A::multiply_add(a[lane], d[lane], -(b[lane] * c[lane]));
+    }
+    results
 }
 
 /// a × b.
 #[inline(always)]
 fn cross<A: Arithmetic>(a: &Vectors, b: &Vectors) -> Vectors {
-    std::array::from_fn(|axis| {
-        let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
-        std::array::from_fn(|lane| {
-            A::multiply_add(a[j][lane], b[k][lane], -(a[k][lane] * b[j][lane]))
-        })
-    })
+    [
+        determinant::<A>(&a[1], &a[2], &b[1], &b[2]),
+        determinant::<A>(&a[2], &a[0], &b[2], &b[0]),
+        determinant::<A>(&a[0], &a[1], &b[0], &b[1]),
+    ]
 }
 
 /// |a|.
 #[inline(always)]
 fn norm<A: Arithmetic>(a: &Vectors) -> Lanes {
-    std::array::from_fn(|lane| {
+    let mut norm = Lanes::default();
+    for lane in 0..LANES {
         let square = A::multiply_add(a[1][lane], a[1][lane], a[0][lane] * a[0][lane]);
-        A::multiply_add(a[2][lane], a[2][lane], square).sqrt()
-    })
+        norm[lane] = A::multiply_add(a[2][lane], a[2][lane], square).sqrt();
+    }
+    norm
 }
 
 /// The sides from the first corner to the others.
 #[inline(always)]
-fn sides(corners: &[[u32; LANES]; 3], positions: &[f64], cell: Option<&Cell>) -> [Vectors; 2] {
-    let [a, b, c] = [0, 1, 2].map(|k| load(positions, &corners[k]));
-    let mut sides = [minus(&b, &a), minus(&c, &a)];
+fn sides<A: Arithmetic>(
+    corners: &[[u32; LANES]; 3],
+    positions: &[f64],
+    cell: Option<&Cell>,
+) -> [Vectors; 2] {
+    let a = load(positions, &corners[0]);
+    let (b, c) = (load(positions, &corners[1]), load(positions, &corners[2]));
+    let mut sides = [plus::<A>(&b, -1.0, &a), plus::<A>(&c, -1.0, &a)];
     if let Some(cell) = cell {
         for side in &mut sides {
             for lane in 0..LANES {
                 let plain = Vec3::new(side[0][lane], side[1][lane], side[2][lane]);
                 let nearest = plain + cell.shift(cell.nearest(&plain));
-                (0..3).for_each(|axis| side[axis][lane] = nearest[axis]);
+                for axis in 0..3 {
+                    side[axis][lane] = nearest[axis];
+                }
             }
         }
     }
@@ -72,7 +111,9 @@ fn sum(areas: &mut [Lanes], padding: usize) -> f64 {
     }
     let mut sums = Lanes::default();
     for areas in areas {
-        (0..LANES).for_each(|lane| sums[lane] += areas[lane]);
+        for lane in 0..LANES {
+            sums[lane] += areas[lane];
+        }
     }
     sums.iter().sum()
 }
@@ -127,8 +168,11 @@ impl Kernel for Areas<'_> {
     fn execute<A: Arithmetic>(self) {
         let Triangles { corners, positions, cell, padding } = self.triangles;
         for (corners, areas) in corners.iter().zip(&mut *self.areas) {
-            let [ab, ac] = sides(corners, positions, cell);
-            *areas = norm::<A>(&cross::<A>(&ab, &ac)).map(|twice| 0.5 * twice);
+            let [ab, ac] = sides::<A>(corners, positions, cell);
+            let twice = norm::<A>(&cross::<A>(&ab, &ac));
+            for lane in 0..LANES {
+                areas[lane] = 0.5 * twice[lane];
+            }
         }
         *self.sum = sum(self.areas, padding);
     }
@@ -163,40 +207,59 @@ impl Kernel for Gradients<'_> {
         let Triangles { corners, positions, cell, padding } = self.triangles;
         let results = self.areas.iter_mut().zip(self.gradients);
         for (corners, (areas, gradients)) in corners.iter().zip(results) {
-            let [ab, ac] = sides(corners, positions, cell);
+            let [ab, ac] = sides::<A>(corners, positions, cell);
             let normal = cross::<A>(&ab, &ac);
             let twice = norm::<A>(&normal);
-            *areas = twice.map(|twice| 0.5 * twice);
-            let half_unit: Vectors =
-                normal.map(|n| std::array::from_fn(|lane| 0.5 * n[lane] / twice[lane]));
-            let bc = minus(&ac, &ab);
-            let ca = ac.map(|x| x.map(|x| -x));
-            *gradients = [bc, ca, ab].map(|opposite| cross::<A>(&half_unit, &opposite));
+            let mut scale = twice;
+            for lane in 0..LANES {
+                areas[lane] = 0.5 * twice[lane];
+                scale[lane] = 0.5 / twice[lane];
+            }
+            let half_unit = times(&scale, &normal);
+            let bc = plus::<A>(&ac, -1.0, &ab);
+            gradients[0] = cross::<A>(&half_unit, &bc);
+            gradients[1] = cross::<A>(&ac, &half_unit);
+            gradients[2] = cross::<A>(&half_unit, &ab);
         }
         *self.sum = sum(self.areas, padding);
     }
 }
 
 /// aᵢ of some groups of vertices.
-pub fn gather_areas(
-    layout: &Layout,
-    groups: Range<usize>,
-    of_triangles: &[Lanes],
-    areas: &mut [Lanes],
-) {
-    let of_triangles = of_triangles.as_flattened();
-    for (group, areas) in groups.zip(areas) {
-        let mut sums = Lanes::default();
-        for [triangles, _] in &layout.around[layout.around_of(group)] {
-            for (sum, &triangle) in sums.iter_mut().zip(triangles) {
-                *sum += of_triangles[triangle as usize];
-            }
-        }
-        *areas = sums.map(|sum| sum / 3.0);
+pub struct GatherAreas<'a> {
+    pub layout: &'a Layout,
+    pub groups: Range<usize>,
+    pub of_triangles: &'a [Lanes],
+    pub areas: &'a mut [Lanes],
+}
+
+impl GatherAreas<'_> {
+    pub fn run(self) {
+        run(self);
     }
 }
 
-/// The derivatives of areas with respect to the positions of some groups of vertices.
+impl Kernel for GatherAreas<'_> {
+    #[inline(always)]
+    fn execute<A: Arithmetic>(self) {
+        let of_triangles = self.of_triangles.as_flattened();
+        for (group, areas) in self.groups.zip(self.areas) {
+            let mut sums = Lanes::default();
+            for Slot { triangles, .. } in &self.layout.slots[self.layout.slots_of(group..group + 1)]
+            {
+                for lane in 0..LANES {
+                    sums[lane] += of_triangles[triangles[lane] as usize];
+                }
+            }
+            for lane in 0..LANES {
+                areas[lane] = sums[lane] * THIRD;
+            }
+        }
+    }
+}
+
+/// The derivatives of areas with respect to the positions of some groups of vertices. In slots without a neighbour they
+/// are anything finite.
 pub struct Gather<'a> {
     layout: &'a Layout,
     groups: Range<usize>,
@@ -221,22 +284,18 @@ impl<'a> Gather<'a> {
 impl Kernel for Gather<'_> {
     #[inline(always)]
     fn execute<A: Arithmetic>(self) {
-        let first = self.layout.neighbours_of(self.groups.clone()).start;
+        let mut neighbours = self.neighbours.iter_mut();
         for (group, total) in self.groups.zip(self.totals) {
-            *total = Vectors::default();
-            for [_, places] in &self.layout.around[self.layout.around_of(group)] {
-                let gradient = load(self.gradients, places);
-                for axis in 0..3 {
-                    (0..LANES).for_each(|lane| total[axis][lane] += gradient[axis][lane]);
-                }
+            let mut before = load(self.gradients, &self.layout.before[group]);
+            let mut sum = Vectors::default();
+            for slot in &self.layout.slots[self.layout.slots_of(group..group + 1)] {
+                let after = load(self.gradients, &slot.gradients);
+                let neighbour = neighbours.next().expect("as many as slots");
+                sum = plus::<A>(&sum, 1.0, &after);
+                *neighbour = times(&[THIRD; LANES], &plus::<A>(&before, 1.0, &after));
+                before = after;
             }
-            for slot in self.layout.neighbours_of(group..group + 1) {
-                let [before, after] = self.layout.neighbours[slot].gradients;
-                let (before, after) = (load(self.gradients, &before), load(self.gradients, &after));
-                self.neighbours[slot - first] = std::array::from_fn(|axis| {
-                    std::array::from_fn(|lane| (before[axis][lane] + after[axis][lane]) / 3.0)
-                });
-            }
+            *total = sum;
         }
     }
 }

@@ -89,9 +89,9 @@ impl VariableMasses {
         vertices.plaquettes.place(&mut None, positions, cell)?;
         vertices.weigh();
         let lanes = vertices.plaquettes.layout().particles.as_flattened();
-        for (&particle, &inverse) in lanes.iter().zip(vertices.inverse_masses.as_flattened()) {
-            if particle != NONE && inverse != 0.0 {
-                masses[particle as usize] = 1.0 / inverse;
+        for (&particle, &mass) in lanes.iter().zip(vertices.masses.as_flattened()) {
+            if particle != NONE {
+                masses[particle as usize] = mass;
             }
         }
         Ok(masses)

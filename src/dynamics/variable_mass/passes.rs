@@ -1,7 +1,7 @@
-//! The passes of the implicit equations over vertices, in lanes.
+//! The passes of a time step over vertices, in lanes.
 
 use crate::dynamics::instructions::{Arithmetic, Kernel, run};
-use crate::dynamics::plaquettes::{LANES, Lanes, Layout, Neighbours, Vectors};
+use crate::dynamics::plaquettes::{LANES, Lanes, Layout, THIRD, Vectors};
 use crate::dynamics::random::{GROUP, Stream, fill_group};
 use std::ops::Range;
 
@@ -19,17 +19,49 @@ impl Change {
     }
 }
 
-/// Put an iterate in the place of the one before.
+/// a b + c in each lane.
 #[inline(always)]
-fn replace(old: &mut f64, new: f64, change: &mut f64, scale: &mut f64) {
-    *change = change.max((new - *old).abs());
-    *scale = scale.max(new.abs());
-    *old = new;
+fn multiply_add<A: Arithmetic>(a: &Lanes, b: &Lanes, c: &Lanes) -> Lanes {
+    let mut sum = *c;
+    for lane in 0..LANES {
+        sum[lane] = A::multiply_add(a[lane], b[lane], c[lane]);
+    }
+    sum
+}
+
+/// The largest changes and sizes of the components in each lane.
+#[derive(Default)]
+struct Changes {
+    change: Lanes,
+    scale: Lanes,
+}
+
+impl Changes {
+    /// Put a component of an iterate in the place of the one before.
+    #[inline(always)]
+    fn replace(&mut self, old: &mut Lanes, new: Lanes) {
+        for lane in 0..LANES {
+            // Other than `f64::max`, these comparisons are one instruction.
+            let (change, scale) = ((new[lane] - old[lane]).abs(), new[lane].abs());
+            self.change[lane] = if change > self.change[lane] { change } else { self.change[lane] };
+            self.scale[lane] = if scale > self.scale[lane] { scale } else { self.scale[lane] };
+        }
+        *old = new;
+    }
+
+    #[inline(always)]
+    fn largest(&self) -> Change {
+        Change { change: largest(&self.change), scale: largest(&self.scale) }
+    }
 }
 
 #[inline(always)]
-fn largest(lanes: Lanes) -> f64 {
-    lanes.into_iter().fold(0.0, f64::max)
+fn largest(lanes: &Lanes) -> f64 {
+    let mut largest = 0.0f64;
+    for lane in lanes {
+        largest = largest.max(*lane);
+    }
+    largest
 }
 
 /// ∂K/∂aᵢ = −σ vᵢ²/2 at constant A and momenta, and the sum K of mᵢ vᵢ²/2; σ = mᵢ/aᵢ.
@@ -56,8 +88,11 @@ impl Kernel for Energies<'_> {
         let inputs = self.momenta.iter().zip(self.inverse_masses).zip(self.areas);
         for (((p, inverse), areas), by_area) in inputs.zip(self.by_area) {
             for lane in 0..LANES {
-                let v = [0, 1, 2].map(|axis| p[axis][lane] * inverse[lane]);
-                let square = A::multiply_add(v[2], v[2], A::multiply_add(v[1], v[1], v[0] * v[0]));
+                let mut square = 0.0;
+                for axis in 0..3 {
+                    let v = p[axis][lane] * inverse[lane];
+                    square = A::multiply_add(v, v, square);
+                }
                 by_area[lane] = -0.5 * self.density * square;
                 sums[lane] = A::multiply_add(by_area[lane], -areas[lane], sums[lane]);
             }
@@ -74,7 +109,7 @@ pub struct Kick<'a> {
     pub time: f64,
     /// 1 for vertices that move, 0 for others.
     pub free: &'a [Lanes],
-    /// ∂K/∂aᵢ of all vertices.
+    /// ∂K/∂aᵢ of all vertices, and 0 beyond them.
     pub by_area: &'a [Lanes],
     /// ∂K/∂A.
     pub by_total: f64,
@@ -95,40 +130,35 @@ impl Kick<'_> {
 impl Kernel for Kick<'_> {
     #[inline(always)]
     fn execute<A: Arithmetic>(self) {
-        let neighbours = &self.layout.neighbours;
-        let mut slot = self.layout.neighbours_of(self.groups.clone()).start;
         let mut gradients = self.neighbour_gradients.iter();
         let by_area = self.by_area.as_flattened();
-        let (mut change, mut scale) = (Lanes::default(), Lanes::default());
+        let mut changes = Changes::default();
         let results = self.momenta.iter_mut().zip(self.base).zip(self.total_gradients);
         for (group, (((p, base), total), free)) in self.groups.zip(results.zip(self.free)) {
-            let mut slope = Vectors::default();
-            let own = &self.by_area[group];
+            let (mut by_itself, mut time) = (self.by_area[group], *free);
             for lane in 0..LANES {
-                let by_itself = own[lane] / 3.0 + self.by_total;
-                (0..3).for_each(|axis| slope[axis][lane] = by_itself * total[axis][lane]);
+                by_itself[lane] = A::multiply_add(by_itself[lane], THIRD, self.by_total);
+                time[lane] *= -self.time;
             }
-            let end = self.layout.neighbours_of(group..group + 1).end;
-            for Neighbours { vertices, .. } in &neighbours[slot..end] {
-                let gradient = gradients.next().expect("as many as neighbours");
-                let theirs: Lanes = std::array::from_fn(|k| by_area[vertices[k] as usize]);
-                for axis in 0..3 {
-                    for lane in 0..LANES {
-                        slope[axis][lane] =
-                            A::multiply_add(theirs[lane], gradient[axis][lane], slope[axis][lane]);
-                    }
-                }
-            }
-            slot = end;
-            for axis in 0..3 {
+            let none = Lanes::default();
+            let mut x = multiply_add::<A>(&by_itself, &total[0], &none);
+            let mut y = multiply_add::<A>(&by_itself, &total[1], &none);
+            let mut z = multiply_add::<A>(&by_itself, &total[2], &none);
+            for slot in &self.layout.slots[self.layout.slots_of(group..group + 1)] {
+                let gradient = gradients.next().expect("as many as slots");
+                let mut theirs = Lanes::default();
                 for lane in 0..LANES {
-                    let time = -self.time * free[lane];
-                    let new = A::multiply_add(time, slope[axis][lane], base[axis][lane]);
-                    replace(&mut p[axis][lane], new, &mut change[lane], &mut scale[lane]);
+                    theirs[lane] = by_area[slot.neighbours[lane] as usize];
                 }
+                x = multiply_add::<A>(&theirs, &gradient[0], &x);
+                y = multiply_add::<A>(&theirs, &gradient[1], &y);
+                z = multiply_add::<A>(&theirs, &gradient[2], &z);
             }
+            changes.replace(&mut p[0], multiply_add::<A>(&time, &x, &base[0]));
+            changes.replace(&mut p[1], multiply_add::<A>(&time, &y, &base[1]));
+            changes.replace(&mut p[2], multiply_add::<A>(&time, &z, &base[2]));
         }
-        *self.change = Change { change: largest(change), scale: largest(scale) };
+        *self.change = changes.largest();
     }
 }
 
@@ -158,31 +188,33 @@ impl Drift<'_> {
 impl Kernel for Drift<'_> {
     #[inline(always)]
     fn execute<A: Arithmetic>(self) {
-        let (mut change, mut scale) = (Lanes::default(), Lanes::default());
+        let mut changes = Changes::default();
         let inputs = self.start.iter().zip(self.velocities).zip(self.momenta);
         let inputs = inputs.zip(self.areas).zip(self.free).zip(self.positions);
+        let time = [self.time; LANES];
         for (((((start, v), p), areas), free), x) in inputs {
             let inverse = inverse_masses(free, areas, self.inverse_density);
-            for axis in 0..3 {
-                for lane in 0..LANES {
-                    let twice = A::multiply_add(p[axis][lane], inverse[lane], v[axis][lane]);
-                    let new = A::multiply_add(self.time, twice, start[axis][lane]);
-                    replace(&mut x[axis][lane], new, &mut change[lane], &mut scale[lane]);
-                }
-            }
+            let twice = multiply_add::<A>(&p[0], &inverse, &v[0]);
+            changes.replace(&mut x[0], multiply_add::<A>(&time, &twice, &start[0]));
+            let twice = multiply_add::<A>(&p[1], &inverse, &v[1]);
+            changes.replace(&mut x[1], multiply_add::<A>(&time, &twice, &start[1]));
+            let twice = multiply_add::<A>(&p[2], &inverse, &v[2]);
+            changes.replace(&mut x[2], multiply_add::<A>(&time, &twice, &start[2]));
         }
-        *self.change = Change { change: largest(change), scale: largest(scale) };
+        *self.change = changes.largest();
     }
 }
 
 /// 1/mᵢ, 0 for vertices that stay where they are.
 #[inline(always)]
 pub fn inverse_masses(free: &Lanes, areas: &Lanes, inverse_density: f64) -> Lanes {
-    std::array::from_fn(|lane| {
+    let mut masses = Lanes::default();
+    for lane in 0..LANES {
         // Both are computed and one is chosen, which takes no branch.
         let inverse = inverse_density / areas[lane];
-        if free[lane] == 0.0 { 0.0 } else { inverse }
-    })
+        masses[lane] = if free[lane] == 0.0 { 0.0 } else { inverse };
+    }
+    masses
 }
 
 /// v = c v + s √(1/m) ξ: the exact step of an Ornstein–Uhlenbeck process, for some groups of components.

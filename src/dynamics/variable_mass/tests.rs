@@ -266,3 +266,65 @@ fn two_triangulations_of_the_same_particles_are_refused() {
     let failure = masses.set_surfaces(&sheets).unwrap_err().to_string();
     assert!(failure.contains("periodic"), "{failure}");
 }
+
+#[test]
+#[ignore]
+fn timing() {
+    let x: Vec<f64> = std::fs::read("/tmp/w/scratch/x.bin")
+        .unwrap()
+        .chunks(8)
+        .map(|c| f64::from_le_bytes(c.try_into().unwrap()))
+        .collect();
+    let t: Vec<[i32; 3]> = std::fs::read("/tmp/w/scratch/t.bin")
+        .unwrap()
+        .chunks(12)
+        .map(|c| {
+            std::array::from_fn(|k| i32::from_le_bytes(c[4 * k..4 * k + 4].try_into().unwrap()))
+        })
+        .collect();
+    let n = x.len() / 3;
+    let v: Vec<f64> = noise(3, 3 * n).iter().map(|v| v * 0.22).collect();
+    let m = vec![50.0; n];
+    let f = vec![0.0; 3 * n];
+    let p = Plaquettes::new(&[Sheet { triangles: &t, is_periodic: false }], n).unwrap();
+    let mut ve = Vertices::new(p, &m, 0.0);
+    let time = |name: &str, f: &mut dyn FnMut()| {
+        let mut best = f64::MAX;
+        for _ in 0..300 {
+            let a = std::time::Instant::now();
+            for _ in 0..10 {
+                f();
+            }
+            best = best.min(a.elapsed().as_secs_f64() / 10.0);
+        }
+        println!("{name} {:.2} us", best * 1e6);
+    };
+    let none = &mut None;
+    let mut y = x.clone();
+    time("differentiate", &mut || ve.plaquettes.differentiate(none, None));
+    time("place moved", &mut || {
+        y[0] += 1e-9;
+        ve.plaquettes.place(none, &y, None).unwrap()
+    });
+    time("place same", &mut || ve.plaquettes.place(none, &y, None).unwrap());
+    time("weigh", &mut || ve.weigh());
+    time("read", &mut || ve.read(&v));
+    time("add_forces", &mut || ve.add_forces(&f, 0.1));
+    time("find_energies", &mut || ve.find_energies(none));
+    time("kick", &mut || {
+        ve.kick(none, 0.1);
+    });
+    ve.read(&v);
+    ve.add_forces(&f, 0.1);
+    time("kick_implicitly", &mut || ve.kick_implicitly(none, 0.2).unwrap());
+    time("drift", &mut || ve.drift(none, None, 0.2).unwrap());
+    time("drift_once", &mut || {
+        ve.drift_once(none, 0.1);
+    });
+    let mut a = vec![Default::default(); ve.inverse_masses.len()];
+    let tr = ve.plaquettes.positions.clone();
+    time("measure", &mut || ve.plaquettes.measure(none, &tr, &mut a, None));
+    let mut w = v.clone();
+    time("write_v", &mut || ve.write_velocities(&mut w));
+    time("write_x", &mut || ve.write_positions(&mut w));
+}

@@ -14,7 +14,9 @@ const MOST_ITERATIONS: usize = 100;
 pub struct Vertices {
     /// The geometry at their positions.
     pub plaquettes: Plaquettes,
-    /// 1/m there, 1/amu; 0 for those that stay where they are.
+    /// m there, amu; 0 for those that stay where they are.
+    pub masses: Vec<Lanes>,
+    /// 1/m, 1/amu, or 0.
     pub inverse_masses: Vec<Lanes>,
     /// 1 for those that move, 0 for others.
     free: Vec<Lanes>,
@@ -33,7 +35,7 @@ pub struct Vertices {
     /// Positions on trial, nm, and the areas there.
     trial: Vec<Vectors>,
     trial_areas: Vec<Lanes>,
-    /// ∂K/∂aᵢ, and ∂K/∂A of each surface.
+    /// ∂K/∂aᵢ, with a last group of zeros for places without a neighbour, and ∂K/∂A of each surface.
     by_area: Vec<Lanes>,
     by_total: Vec<f64>,
     /// K of each tile.
@@ -60,6 +62,18 @@ impl Progress {
     }
 }
 
+/// The vectors of particles in lanes; those of the first for lanes without one.
+#[inline]
+fn of_particles(vectors: &[f64], particles: &[u32; LANES]) -> Vectors {
+    let vectors = vectors.as_chunks::<3>().0;
+    let mut found = Vectors::default();
+    for (lane, &particle) in particles.iter().enumerate() {
+        let vector = vectors[if particle == NONE { particles[0] } else { particle } as usize];
+        (0..3).for_each(|axis| found[axis][lane] = vector[axis]);
+    }
+    found
+}
+
 impl Vertices {
     /// Vertices with the masses of all particles of a System, amu, and the density that is given, amu/nm², or 0.
     pub fn new(plaquettes: Plaquettes, masses: &[f64], given_density: f64) -> Self {
@@ -79,6 +93,7 @@ impl Vertices {
         }
         let (vectors, lanes) = (vec![Vectors::default(); groups], vec![Lanes::default(); groups]);
         Self {
+            masses: lanes.clone(),
             inverse_masses: lanes.clone(),
             free,
             given_density,
@@ -88,7 +103,7 @@ impl Vertices {
             velocities: vectors.clone(),
             trial: vectors,
             trial_areas: lanes.clone(),
-            by_area: lanes,
+            by_area: vec![Lanes::default(); groups + 1],
             by_total: vec![0.0; surface_masses.len()],
             energies: vec![0.0; layout.tiles.len()],
             changes: vec![Change::default(); layout.tiles.len()],
@@ -101,10 +116,13 @@ impl Vertices {
     pub fn weigh(&mut self) {
         self.find_densities();
         for tile in &self.plaquettes.layout().tiles {
-            let inverse = 1.0 / self.densities[tile.surface];
+            let density = self.densities[tile.surface];
+            let inverse = 1.0 / density;
             for group in tile.groups() {
-                self.inverse_masses[group] =
-                    inverse_masses(&self.free[group], &self.plaquettes.areas[group], inverse);
+                let (free, areas) = (&self.free[group], &self.plaquettes.areas[group]);
+                self.inverse_masses[group] = inverse_masses(free, areas, inverse);
+                let masses = &mut self.masses[group];
+                (0..LANES).for_each(|k| masses[k] = density * areas[k] * free[k]);
             }
         }
     }
@@ -119,11 +137,11 @@ impl Vertices {
     /// Momenta from the velocities of all particles.
     pub fn read(&mut self, velocities: &[f64]) {
         let particles = &self.plaquettes.layout().particles;
-        let lanes = particles.iter().zip(&self.inverse_masses).zip(&mut self.momenta);
-        for ((particles, inverse), p) in lanes {
-            for lane in (0..LANES).filter(|lane| inverse[*lane] != 0.0) {
-                let first = 3 * particles[lane] as usize;
-                (0..3).for_each(|axis| p[axis][lane] = velocities[first + axis] / inverse[lane]);
+        let lanes = particles.iter().zip(&self.masses).zip(&mut self.momenta);
+        for ((particles, masses), p) in lanes {
+            let v = of_particles(velocities, particles);
+            for (p, v) in p.iter_mut().zip(&v) {
+                (0..LANES).for_each(|lane| p[lane] = masses[lane] * v[lane]);
             }
         }
     }
@@ -155,10 +173,10 @@ impl Vertices {
         let particles = &self.plaquettes.layout().particles;
         let lanes = particles.iter().zip(&self.free).zip(&self.momenta).zip(&mut self.base);
         for (((particles, free), p), base) in lanes {
-            *base = *p;
-            for lane in (0..LANES).filter(|lane| free[*lane] != 0.0) {
-                let first = 3 * particles[lane] as usize;
-                (0..3).for_each(|axis| base[axis][lane] += time * forces[first + axis]);
+            let f = of_particles(forces, particles);
+            for ((base, p), f) in base.iter_mut().zip(p).zip(&f) {
+                (0..LANES)
+                    .for_each(|k| base[k] = p[k] + if free[k] == 0.0 { 0.0 } else { time * f[k] });
             }
         }
     }
@@ -185,7 +203,7 @@ impl Vertices {
                     by_area,
                     by_total: by_total[layout.tiles[tile].surface],
                     total_gradients: &totals[groups.clone()],
-                    neighbour_gradients: &neighbours[layout.neighbours_of(groups.clone())],
+                    neighbour_gradients: &neighbours[layout.slots_of(groups.clone())],
                     base: &base[groups.clone()],
                     groups,
                     momenta,
@@ -198,7 +216,7 @@ impl Vertices {
     }
 
     /// The derivatives of K with respect to areas, at the present momenta.
-    fn find_energies(&mut self, team: &mut Option<&mut Team>) {
+    pub fn find_energies(&mut self, team: &mut Option<&mut Team>) {
         let layout = self.plaquettes.layout();
         let (by_area, sums) = (Parts::new(&mut self.by_area), Parts::new(&mut self.energies));
         let (momenta, inverse_masses) = (&self.momenta, &self.inverse_masses);
@@ -283,7 +301,7 @@ impl Vertices {
     }
 
     /// Positions on trial by the masses at those before.
-    fn drift_once(&mut self, team: &mut Option<&mut Team>, time: f64) -> Change {
+    pub fn drift_once(&mut self, team: &mut Option<&mut Team>, time: f64) -> Change {
         let layout = self.plaquettes.layout();
         let (trial, changes) = (Parts::new(&mut self.trial), Parts::new(&mut self.changes));
         let (start, areas, densities) =

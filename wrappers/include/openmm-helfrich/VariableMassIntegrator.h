@@ -70,8 +70,8 @@ public:
 protected:
     VariableMassIntegrator(const std::string& type, double stepSize, double density)
         : type(type), density(0), isBound(false), forcesAreValid(false) {
-        if (!std::isfinite(stepSize))
-            fail("stepSize must be a finite number of ps, got " + std::to_string(stepSize));
+        if (!(stepSize >= 0 && std::isfinite(stepSize)))
+            fail("stepSize must be a finite number of ps, zero or above, got " + std::to_string(stepSize));
         setStepSize(stepSize);
         setDensity(density);
     }
