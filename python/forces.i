@@ -66,12 +66,14 @@ using namespace HelfrichPlugin;
 %ignore *::setDomains;
 %ignore HelfrichPlugin::ParticleSurfaceForce::setParticles;
 %ignore HelfrichPlugin::MembraneForce::setParameterValue;
+%ignore HelfrichPlugin::VariableMassIntegrator::getMasses;
 %rename(_setElementValues) HelfrichPlugin::MembraneForce::setElementValues;
 %rename(_HelfrichForce) HelfrichPlugin::HelfrichForce;
 %nodefaultctor HelfrichPlugin::HelfrichForce;
 %nodefaultctor HelfrichPlugin::MonteCarloMover;
 %nodefaultctor HelfrichPlugin::TriangulatedForce;
 %nodefaultctor HelfrichPlugin::MembraneForce;
+%nodefaultctor HelfrichPlugin::VariableMassIntegrator;
 
 %{
 static PyObject* toBytes(const void* data, size_t size) {
@@ -201,6 +203,22 @@ static std::vector<double> toDoubles(const char* data, size_t size) {
 %include "openmm-helfrich/CLASS.h"
 %enddef
 
+/* The same of XML and CompoundIntegrators, which give plain openmm.Integrator objects. */
+%define VARIABLE_MASS_INTEGRATOR(CLASS)
+%extend HelfrichPlugin::CLASS {
+    static bool isinstance(OpenMM::Integrator& integrator) {
+        return dynamic_cast<HelfrichPlugin::CLASS*>(&integrator) != nullptr;
+    }
+    static HelfrichPlugin::CLASS& cast(OpenMM::Integrator& integrator) {
+        auto* found = dynamic_cast<HelfrichPlugin::CLASS*>(&integrator);
+        if (found == nullptr)
+            throw OpenMM::OpenMMException(#CLASS ": cannot cast an integrator that is of another class");
+        return *found;
+    }
+}
+%include "openmm-helfrich/CLASS.h"
+%enddef
+
 %template(_IntVector) std::vector<int>;
 %template(_DoubleVector) std::vector<double>;
 %include "openmm-helfrich/internal/HelfrichForce.h"
@@ -215,6 +233,16 @@ MEMBRANE_FORCE(MonteCarloBondFlip)
 MEMBRANE_FORCE(MonteCarloMembraneTension)
 MEMBRANE_FORCE(SurfaceViscosityThermostat)
 
+%extend HelfrichPlugin::VariableMassIntegrator {
+    PyObject* _getMasses() {
+        std::vector<double> masses = $self->getMasses();
+        return toBytes(masses.data(), masses.size() * sizeof(double));
+    }
+}
+%include "openmm-helfrich/VariableMassIntegrator.h"
+VARIABLE_MASS_INTEGRATOR(VariableMassVerletIntegrator)
+VARIABLE_MASS_INTEGRATOR(VariableMassLangevinIntegrator)
+
 /* For platforms.py: why a System is not one for the platform Helfrich, or an empty text. */
 %inline %{
 std::string _why_not_helfrich(const OpenMM::System& system, const OpenMM::Integrator& integrator) {
@@ -223,13 +251,15 @@ std::string _why_not_helfrich(const OpenMM::System& system, const OpenMM::Integr
 %}
 
 %pythoncode %{
-from openmmhelfrich import _arguments, _bond_flips, _tension, _viscosity
+from openmmhelfrich import _arguments, _bond_flips, _integrators, _tension, _viscosity
 for _class in MembraneForce.__subclasses__():
     _arguments.accept_units(_class)
 _arguments.accept_arrays(TriangulatedForce)
 _bond_flips.accept_arguments(MonteCarloBondFlip)
 _tension.accept_arguments(MonteCarloMembraneTension)
 _viscosity.accept_arguments(SurfaceViscosityThermostat)
+for _class in VariableMassIntegrator.__subclasses__():
+    _integrators.accept_arguments(_class)
 __all__ = [
     "MembraneForce",
     "MonteCarloBondFlip",
@@ -237,5 +267,6 @@ __all__ = [
     "SurfaceViscosityThermostat",
     "TriangulatedForce",
     *(_class.__name__ for _class in MembraneForce.__subclasses__()),
+    *(_class.__name__ for _class in VariableMassIntegrator.__subclasses__()),
 ]
 %}

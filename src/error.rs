@@ -154,6 +154,17 @@ pub enum Error {
         "the edge ({}, {}) of triangle {triangle} is {length:.6} nm long, but its spring must be shorter than {longest:.6} nm, so that the energy of {force} is not finite; use a smaller time step, another reference, or a smaller ratio of lengths at rest to the longest", .edge[0], .edge[1]
     )]
     LongSpring { force: &'static str, triangle: usize, edge: [u32; 2], length: f64, longest: f64 },
+    /// A vertex with a momentum that no time step could go on from.
+    #[error(
+        "the velocity of particle {particle} or the force on it is not finite: the simulation has blown up; use a smaller time step or a better relaxed start"
+    )]
+    NonFiniteMomentum { particle: u32 },
+
+    /// A time step whose implicit equations iteration does not solve.
+    #[error(
+        "the {equation} of a time step with the step size {step} ps has not converged in {iterations} iterations: particle {particle} would go {ways:.2} times as far as its plaquette is wide; use a smaller step size"
+    )]
+    NotConverged { equation: &'static str, step: f64, iterations: usize, particle: u32, ways: f64 },
 
     /// A scalar outside its domain.
     #[error("{parameter} must be {domain}, got {value}")]

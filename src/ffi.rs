@@ -14,6 +14,7 @@ mod native;
 mod plugin;
 mod potentials;
 mod records;
+mod variable_mass;
 mod viscosity;
 
 pub use membrane::*;
@@ -24,6 +25,7 @@ pub use plugin::Helfrich_register;
 pub use plugin::*;
 pub use potentials::*;
 pub use records::*;
+pub use variable_mass::*;
 pub use viscosity::*;
 
 use crate::error::Result;

@@ -9,7 +9,7 @@ use crate::flip_records::{FlipRules, FlipState};
 use crate::interface::{Binding, NUMBERS};
 use crate::records::{
     EdgeBath, FollowerInput, NativeBuffer, NativePass, NativePlan, ParameterInfo, ParticleArrays,
-    TermInput,
+    SheetInput, TermInput,
 };
 use std::ffi::CStr;
 use std::mem::offset_of;
@@ -54,6 +54,7 @@ pub fn comparison() -> String {
             num_particles positions velocities forces
         );
         text += &structure!(EdgeBath, "HelfrichEdgeBath", friction kt lag);
+        text += &structure!(SheetInput, "HelfrichSheet", corners num_triangles is_periodic);
         text += &structure!(
             FlipRules,
             "HelfrichFlipRules",

@@ -26,6 +26,7 @@ from .backend import adapters, get_backend, set_backend  # noqa: E402
 from .errors import MeshError  # noqa: E402
 from .forces import *  # noqa: E402, F403
 from .forces import __all__ as _force_names  # noqa: E402
+from .masses import plaquette_masses  # noqa: E402
 from .mesh import Mesh  # noqa: E402
 from .ramps import harden  # noqa: E402
 from .red_cell import RedCell, RedCellModel  # noqa: E402
@@ -62,6 +63,7 @@ __all__ = [
     "include_path",
     "library_path",
     "load_state",
+    "plaquette_masses",
     "platforms",
     "save_state",
     "set_backend",

@@ -1,7 +1,7 @@
 //! Evaluators own the buffers and run the passes over a mesh; they know no physics.
 
 mod borders;
-mod checks;
+pub(crate) mod checks;
 mod chosen;
 mod cpu;
 #[cfg_attr(not(feature = "gpu"), allow(dead_code, reason = "wgpu needs the rest"))]

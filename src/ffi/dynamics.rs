@@ -96,7 +96,7 @@ pub unsafe extern "C" fn Helfrich_Dynamics_destroy(dynamics: *mut Dynamics) {
 impl ParticleArrays {
     /// # Safety
     /// The arrays must be as long as they should be, and used by nobody else meanwhile.
-    unsafe fn particles(&self) -> Particles<'_> {
+    pub(super) unsafe fn particles(&self) -> Particles<'_> {
         let length = 3 * self.num_particles as usize;
         unsafe {
             Particles {

@@ -74,6 +74,15 @@ pub struct EdgeBath {
     pub(super) lag: f64,
 }
 
+/// The triangles of a force, as C++ hands them over.
+#[repr(C)]
+pub struct SheetInput {
+    pub(super) corners: *const c_int,
+    pub(super) num_triangles: i64,
+    /// Whether its sides are nearest images in the periodic box.
+    pub(super) is_periodic: c_int,
+}
+
 /// What C++ reads of a buffer.
 #[repr(C)]
 pub struct NativeBuffer {

@@ -1,7 +1,7 @@
 #ifndef OPENMM_HELFRICH_H_
 #define OPENMM_HELFRICH_H_
 
-/** All forces of the plugin. */
+/** All forces and integrators of the plugin. */
 
 #include "openmm-helfrich/AreaDifferenceForce.h"
 #include "openmm-helfrich/BendingForce.h"
@@ -28,6 +28,8 @@
 #include "openmm-helfrich/TriangleAreaForce.h"
 #include "openmm-helfrich/TriangleAreaRepulsionForce.h"
 #include "openmm-helfrich/TriangleHeightForce.h"
+#include "openmm-helfrich/VariableMassLangevinIntegrator.h"
+#include "openmm-helfrich/VariableMassVerletIntegrator.h"
 
 /** Apply a macro to the name of each force class: the list that the plugin and Python are made from. */
 // clang-format off: one a line

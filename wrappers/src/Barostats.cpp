@@ -55,3 +55,14 @@ void HelfrichPlugin::refuseTearing(const string& subject, const System& system) 
                                   "scale every particle with the barostat's setScaleMoleculesAsRigid(False)");
     }
 }
+
+void HelfrichPlugin::refuseScaling(const string& subject, const System& system) {
+    for (int i = 0; i < system.getNumForces(); i++) {
+        Barostat barostat = findBarostat(system.getForce(i));
+        if (barostat.acts && !barostat.movesMolecules)
+            throw OpenMMException(subject + ": the barostat \"" + system.getForce(i).getName() +
+                                  "\" scales the positions of single particles and weighs that without the kinetic "
+                                  "energy, but masses and so kinetic energies change with it; let it move molecules "
+                                  "as a whole, with its setScaleMoleculesAsRigid(True)");
+    }
+}

@@ -23,6 +23,14 @@ void refuseBarostats(const std::string& subject, const OpenMM::System& system);
  */
 void refuseTearing(const std::string& subject, const OpenMM::System& system);
 
+/**
+ * Refuse OpenMM's barostats that scale the positions of single particles, and so change the shape of membranes.
+ *
+ * @param subject  the class that the message shall name
+ * @param system   the System
+ */
+void refuseScaling(const std::string& subject, const OpenMM::System& system);
+
 } // namespace HelfrichPlugin
 
 #endif /*HELFRICH_BAROSTATS_H_*/

@@ -16,6 +16,9 @@ struct HelfrichTeam;
 /** Masses, ready for time steps. */
 struct HelfrichDynamics;
 
+/** Masses that follow plaquettes, ready for time steps. */
+struct HelfrichVariableMasses;
+
 /** A sequence of random numbers and the place in it. */
 struct HelfrichStream {
     /** The seed, and the number of the stream among those of a Context. */
@@ -64,7 +67,33 @@ void Helfrich_Viscosity_destroy(HelfrichViscosity* viscosity);
 int Helfrich_Viscosity_sweep(const char* subject, HelfrichViscosity* viscosity, const HelfrichMembrane* membrane,
                              int64_t numParticles, double* positions, double* velocities, const double* box,
                              const HelfrichEdgeBath* bath, HelfrichStream* stream);
+/** The triangles of a force. */
+struct HelfrichSheet {
+    const int* corners;
+    int64_t numTriangles;
+    /** Whether its sides are nearest images in the periodic box. */
+    int isPeriodic;
+};
+
 int Helfrich_Dynamics_clear(HelfrichTeam* team, int64_t numParticles, double* forces);
+/** `subject` is the class that messages shall name, `boxVectors` null where no surface is periodic. */
+int Helfrich_VariableMasses_create(const char* subject, int64_t numParticles, const double* masses, double density,
+                                   HelfrichVariableMasses** made);
+void Helfrich_VariableMasses_destroy(HelfrichVariableMasses* masses);
+int Helfrich_VariableMasses_setSurfaces(const char* subject, HelfrichVariableMasses* masses,
+                                        const HelfrichSheet* sheets, int64_t count);
+/** Write a mass for each particle. */
+int Helfrich_VariableMasses_get(const char* subject, HelfrichVariableMasses* masses,
+                                const HelfrichParticleArrays* particles, const double* boxVectors, double* out);
+/** From a step's start to its new positions, with the forces at the old ones. */
+int Helfrich_VariableMasses_begin(const char* subject, HelfrichVariableMasses* masses, HelfrichTeam* team,
+                                  const HelfrichParticleArrays* particles, const double* boxVectors, double step);
+/** To the step's end, with the forces at the new positions. */
+int Helfrich_VariableMasses_finish(const char* subject, HelfrichVariableMasses* masses, HelfrichTeam* team,
+                                   const HelfrichParticleArrays* particles, const double* boxVectors, double step);
+int Helfrich_VariableMasses_bathe(const char* subject, HelfrichVariableMasses* masses, HelfrichTeam* team,
+                                  const HelfrichParticleArrays* particles, const double* boxVectors,
+                                  HelfrichStream* stream, double time, double friction, double kT);
 }
 
 #endif /*HELFRICH_DYNAMICS_H_*/

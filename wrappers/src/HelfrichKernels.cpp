@@ -2,6 +2,7 @@
 #include "MonteCarloMembraneTensionImpl.h"
 #include "SharedMembrane.h"
 #include "SurfaceViscosityThermostatImpl.h"
+#include "VariableMassStepKernel.h"
 
 #include <openmm/BrownianIntegrator.h>
 #include <openmm/LangevinMiddleIntegrator.h>
@@ -79,8 +80,9 @@ string readBytes(std::istream& stream, uint64_t size) {
 } // namespace
 
 vector<string> HelfrichKernelFactory::getKernelNames() {
-    return {CalcForcesAndEnergyKernel::Name(), UpdateStateDataKernel::Name(), IntegrateVerletStepKernel::Name(),
-            IntegrateLangevinMiddleStepKernel::Name(), IntegrateBrownianStepKernel::Name()};
+    return {CalcForcesAndEnergyKernel::Name(),   UpdateStateDataKernel::Name(),
+            IntegrateVerletStepKernel::Name(),   IntegrateLangevinMiddleStepKernel::Name(),
+            IntegrateBrownianStepKernel::Name(), IntegrateVariableMassStepKernel::Name()};
 }
 
 KernelImpl* HelfrichKernelFactory::createKernelImpl(string name, const Platform& platform, ContextImpl& context) const {
@@ -94,6 +96,8 @@ KernelImpl* HelfrichKernelFactory::createKernelImpl(string name, const Platform&
         return new HelfrichIntegrateLangevinMiddleStepKernel(name, platform, context);
     if (name == IntegrateBrownianStepKernel::Name())
         return new HelfrichIntegrateBrownianStepKernel(name, platform, context);
+    if (name == IntegrateVariableMassStepKernel::Name())
+        return new VariableMassStepKernel(name, platform, context);
     throw OpenMMException("Platform Helfrich: there is no kernel called \"" + name + "\"");
 }
 

@@ -14,7 +14,7 @@
 
 namespace HelfrichPlugin {
 
-/** Makes the kernels of this file. */
+/** Makes the kernels of this file, and of VariableMassStepKernel.h. */
 class HelfrichKernelFactory : public OpenMM::KernelFactory {
 public:
     OpenMM::KernelImpl* createKernelImpl(std::string name, const OpenMM::Platform& platform,

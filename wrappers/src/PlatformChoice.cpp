@@ -2,6 +2,7 @@
 #include "openmm-helfrich/MembraneForce.h"
 #include "openmm-helfrich/MonteCarloMembraneTension.h"
 #include "openmm-helfrich/TriangulatedForce.h"
+#include "openmm-helfrich/VariableMassIntegrator.h"
 #include "openmm-helfrich/internal/Core.h"
 
 #include <OpenMM.h>
@@ -182,6 +183,9 @@ thread_local int timesRefused = 0;
 } // namespace
 
 string HelfrichPlugin::whyNotHelfrich(const System& system, const Integrator& integrator) {
+    // Whatever the System costs, no faster platform has the time steps.
+    if (dynamic_cast<const VariableMassIntegrator*>(&integrator) != nullptr)
+        return "";
     Tally tally(system);
     for (int i = 0; i < system.getNumForces(); i++) {
         string reason = tally.add(system.getForce(i));

@@ -9,6 +9,8 @@
 #include "PlatformChoice.h"
 #include "SurfaceViscosityThermostatImpl.h"
 #include "SurfaceViscosityThermostatProxy.h"
+#include "VariableMassIntegratorProxy.h"
+#include "VariableMassStepKernel.h"
 
 #include <openmm/Platform.h>
 
@@ -55,6 +57,15 @@ int helfrich_shim_registerSerialization() {
     OpenMM::SerializationProxy::registerProxy(typeid(MonteCarloMembraneTension), new MonteCarloMembraneTensionProxy());
     OpenMM::SerializationProxy::registerProxy(typeid(SurfaceViscosityThermostat),
                                               new SurfaceViscosityThermostatProxy());
+    OpenMM::SerializationProxy::registerProxy(typeid(VariableMassVerletIntegrator),
+                                              new VariableMassVerletIntegratorProxy());
+    OpenMM::SerializationProxy::registerProxy(typeid(VariableMassLangevinIntegrator),
+                                              new VariableMassLangevinIntegratorProxy());
+    // A second copy of the library in memory leaves the first one's kernel.
+    const std::string kernel = IntegrateVariableMassStepKernel::Name();
+    OpenMM::Platform& reference = OpenMM::Platform::getPlatformByName("Reference");
+    if (!reference.supportsKernels({kernel}))
+        reference.registerKernelFactory(kernel, new VariableMassKernelFactory());
     return 0;
 }
 

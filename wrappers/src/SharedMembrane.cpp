@@ -186,8 +186,12 @@ void SharedMembrane::checkAgreementWithMembers(const MembraneForceImpl& joining,
                           "\" does not; call setUsesPeriodicBoundaryConditions() of both with the same value");
 }
 
+bool SharedMembrane::isPeriodic() const {
+    return !members.empty() && members[0]->isPeriodic();
+}
+
 const double* SharedMembrane::findBox(ContextImpl& context) {
-    if (members.empty() || !members[0]->isPeriodic())
+    if (!isPeriodic())
         return nullptr;
     context.getPeriodicBoxVectors(box[0], box[1], box[2]);
     return reinterpret_cast<const double*>(box);

@@ -185,6 +185,8 @@ public:
     const std::vector<int>& getTriangles() const {
         return triangles;
     }
+    /** Whether its sides are nearest images in the periodic box. */
+    bool isPeriodic() const;
     int64_t getNumEdges() const {
         return Helfrich_Membrane_numEdges(core);
     }

@@ -18,10 +18,20 @@ namespace HelfrichPlugin {
 /** What the proxies read XML with; messages begin with the class of the force and name the element. */
 namespace xml {
 
+/** The name of an element, as XML has it. */
+inline std::string elementName(const std::string& type, const OpenMM::SerializationNode& node) {
+    if (!node.getName().empty())
+        return node.getName();
+    // The element of the object itself has no name when it is the root.
+    const std::string integrator = "Integrator";
+    bool isIntegrator = type.size() >= integrator.size() &&
+        type.compare(type.size() - integrator.size(), integrator.size(), integrator) == 0;
+    return isIntegrator ? integrator : "Force";
+}
+
 /** The beginning of a message about an element. */
 inline std::string about(const std::string& force, const OpenMM::SerializationNode& node) {
-    // The element of the force itself has no name when it is the root.
-    return force + ": element <" + (node.getName().empty() ? "Force" : node.getName()) + "> ";
+    return force + ": element <" + elementName(force, node) + "> ";
 }
 
 /** Refuse what a node should not have, so that nothing is lost unnoticed. */
@@ -121,8 +131,7 @@ void within(const std::string& force, const OpenMM::SerializationNode& node, Bod
         std::string message = error.what();
         if (message.find("element <") != std::string::npos)
             throw;
-        throw OpenMM::OpenMMException(message + " (in element <" + (node.getName().empty() ? "Force" : node.getName()) +
-                                      ">)");
+        throw OpenMM::OpenMMException(message + " (in element <" + elementName(force, node) + ">)");
     }
 }
 
