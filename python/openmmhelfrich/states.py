@@ -38,9 +38,9 @@ def save_state(context, path) -> None:
     `load_state` restores them to the last bit of what OpenMM hands out: of all digits on the
     platforms Reference, CPU and Helfrich, and elsewhere in the precision of the platform. What
     bond flips, a `MonteCarloMembraneTension` and a `SurfaceViscosityThermostat` have come to, with
-    their random numbers and their statistics, is among it; the random numbers of integrators are not, so a run under
-    LangevinMiddle goes on along another path of the same ensemble, where one from a checkpoint of
-    platform Helfrich goes on with the same bits.
+    their random numbers and their statistics, is among it; the random numbers of integrators are
+    not, so a run under LangevinMiddle goes on along another path of the same ensemble, where one
+    from a checkpoint of platform Helfrich goes on with the same bits.
 
     Parameters
     ----------

@@ -179,8 +179,8 @@ impl Viscosity {
             let velocity = &mut velocities[particle as usize];
             for axis in 0..3 {
                 position[axis] += lag * (found[axis] - velocity[axis]);
-                velocity[axis] = found[axis];
             }
+            velocity.copy_from_slice(&found[..3]);
         }
     }
 }

@@ -13,7 +13,7 @@ from openmmhelfrich.mesh import Mesh
 SURFACES = Path(__file__).parents[2] / "examples" / "surfaces"
 MODULES = (
     *("membranes", "reports", "tube", "minimal", "sheet_spectrum", "closing", "wrapping"),
-    "crossing",
+    *("crossing", "viscosity"),
 )
 
 
@@ -182,3 +182,20 @@ class TestCrossing:
         assert run["within"] > 100 and run["moved"] > 25
         # Many have touched, and energy is conserved.
         assert run["potential"] > 0.05 and run["scatter"] < 1e-3
+
+
+def test_viscosities_are_those_of_theory(tmp_path):
+    found = tables("viscosity", tmp_path)
+    for row in found["viscosity"]:
+        assert 0.75 < float(row["ratio"]) < 1
+        assert float(row["γΔt/m"]) > 0.1 or float(row["ratio"]) > 0.94
+    nets = found["viscosity_nets"]
+    assert float(nets[0]["affine"]) == pytest.approx(1)
+    assert float(nets[0]["flowing"]) == pytest.approx(1)
+    for row in nets[1:]:
+        assert 0.8 < float(row["flowing"]) < 1 < float(row["affine"])
+    for row in found["viscosity_springs"]:
+        if row["corrected"] == "True":
+            assert abs(float(row["energy"]) - 1) < 4 * float(row["error"]) < 0.1
+        else:
+            assert float(row["energy"]) < 0.95

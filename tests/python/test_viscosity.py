@@ -330,7 +330,7 @@ class TestPresentTriangles:
             movers[-1].setRandomNumberSeed(len(movers))
             system.addForce(movers[-1])
         context = REFERENCE.context(system, langevin())
-        context.setPositions(np.vstack([one.vertices, one.vertices + [400.0, 0, 0]]))
+        context.setPositions(np.vstack([one.vertices, one.translated((400, 0, 0)).vertices]))
         context.getIntegrator().step(41)
         now = [mover.getTrianglesInContext(context) for mover in movers]
         assert all(mover.getStatistics(context)["accepted"] > 20 for mover in movers)

@@ -28,7 +28,7 @@ def viscous(
     forces: list[helfrich.MembraneForce] | None = None,
     **arguments,
 ) -> tuple[mm.Context, Thermostat]:
-    """A Context of the vesicle of `flowing`, with its forces or others, a thermostat, and further forces."""
+    """A Context of the vesicle of `flowing`, with its forces or others, and a thermostat."""
     thermostat = thermostat_of(start(), **arguments)
     forces = forces_of(start()) if forces is None else forces
     for force in forces:

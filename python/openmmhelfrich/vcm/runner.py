@@ -285,9 +285,7 @@ class Run:
             of_box = tensions_of(self.context)
             for mover, moves in zip(of_box, state.tension, strict=True):
                 mover._restoreState(self.context, moves)
-            for force, sweeps in zip(
-                thermostats_of(self.context), state.viscosity, strict=True
-            ):
+            for force, sweeps in zip(thermostats_of(self.context), state.viscosity, strict=True):
                 force._restoreState(self.context, sweeps)
         except openmm.OpenMMException as reason:
             raise RunError(f"OpenMM cannot go on from {self.folder}: {reason}") from None

@@ -226,8 +226,8 @@ fn the_order_is_of_all_edges() {
 #[test]
 fn what_is_refused_changes_nothing() {
     let small = Cell::new([[3.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 3.0]]).unwrap();
-    type Change = fn(&mut Moving);
-    let cases: [(Change, Option<&Cell>, fn(&Error) -> bool); 5] = [
+    type Case<'a> = (fn(&mut Moving), Option<&'a Cell>, fn(&Error) -> bool);
+    let cases: [Case; 5] = [
         (
             |moving| moving.positions[3 * 4 + 1] = f64::NAN,
             None,
