@@ -30,7 +30,7 @@ impl Potential for LineTension {
         Needs::TRIANGLES
     }
 
-    fn constants(&self) -> Option<MadeOf> {
+    fn constants(&self, _: &Term) -> Option<MadeOf> {
         Some(MadeOf::Domains(shares))
     }
 
@@ -102,7 +102,7 @@ mod tests {
         let triangle = TriangleGeometry::new(&a, &b, &c);
         let values = [shares(domains, [false; 3])];
         let mut term = Term::new("LineTensionForce", 0, &[2.0]).unwrap();
-        term.constants = TriangleConstants { values: &values, version: 1 };
+        term.constants = TriangleConstants { values: &values, ..TriangleConstants::default() };
         let mut partials = [TrianglePartials::default()];
         let run = Triangles::Plain { first: 0, geometry: &[triangle], partials: &mut partials };
         let found = LineTension.triangles(&term, run);
