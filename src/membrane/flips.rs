@@ -58,7 +58,6 @@ impl Membrane {
         placed.check_references(terms)?;
         let (mesh, into) = (placed.present.mesh, before.as_deref_mut());
         self.local.fill(mesh, terms, cell, |survey| placed.survey(&equipped, into, survey))?;
-        drop(equipped);
 
         let mut touched: SmallVec<[Touched; 2]> = SmallVec::new();
         if terms.iter().any(is_contact) {
@@ -79,8 +78,8 @@ impl Membrane {
         }
 
         let mesh = &mut self.surface.mesh;
-        let made = flips::attempt(mesh, &mut self.local, terms, round, &mut touched);
-        drop(touched);
+        let made = flips::attempt(mesh, &mut self.local, &equipped, round, &mut touched);
+        drop((touched, equipped));
         if made > 0 {
             self.surface.note_flips(made);
             for follower in &mut *followers {

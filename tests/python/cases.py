@@ -496,6 +496,22 @@ def _borders() -> list[Case]:
     ]
 
 
+def _gaussian_domains() -> Case:
+    def moduli(m: Membrane) -> np.ndarray:
+        return np.random.default_rng(31).uniform(-60, 30, len(m.members))
+
+    return Case(
+        name="Gaussian curvature, domains",
+        force="GaussianCurvatureForce",
+        arguments=lambda m: {"modulus": -45.0},
+        energy=lambda m, a: numpy_energies.gaussian_curvature(m.positions, m.triangles, moduli(m)),
+        strings=lambda m, a, style: oracle.evaluate(
+            string_forces.gaussian_curvature(m.triangles, moduli(m), style), m.positions
+        ),
+        settings=lambda m: {"setVertexModulus": moduli(m)},
+    )
+
+
 # --- against a reference, and between domains -----------------------------------------------------
 
 
@@ -816,6 +832,7 @@ CASES = [
     *_triangle_area_repulsion(),
     *_plaquette_area(),
     *_borders(),
+    _gaussian_domains(),
     *_strains(),
     *_springs(),
     *_line_tension(),

@@ -241,10 +241,12 @@ def edge_tension(vertices, triangles, tension: float) -> float:
     return float(tension * np.sum(g.lengths[g.border]))
 
 
-def gaussian_curvature(vertices, triangles, modulus: float) -> float:
-    """By its definition, with no theorem."""
+def gaussian_curvature(vertices, triangles, modulus) -> float:
+    """By its definition, with no theorem; of one modulus, or one for each vertex in use."""
     g = Geometry(vertices, triangles)
-    return float(modulus * np.sum((2 * np.pi - g.angle_sums)[g.inner]))
+    moduli = np.zeros(len(g.vertices))
+    moduli[np.unique(triangles)] = modulus
+    return float(np.sum((moduli * (2 * np.pi - g.angle_sums))[g.inner]))
 
 
 # --- against a reference -------------------------------------------------------------------------

@@ -689,18 +689,23 @@ def edge_tension(triangles, tension: float, style: str) -> list[mm.Force]:
     return [_compound(stencil.expression(energy), bonds)] if bonds else []
 
 
-def gaussian_curvature(triangles, modulus: float, style: str) -> list[mm.Force]:
-    """κ_G Σ (2π − Σ θ) over the vertices on no border, where it is defined: a bond each corner."""
+def gaussian_curvature(triangles, modulus: Values, style: str) -> list[mm.Force]:
+    """κ_G Σ (2π − Σ θ) over the vertices on no border, where it is defined: a bond each corner.
+
+    The modulus may be one for each vertex, ascending.
+    """
     left_out, ring_of = on_borders(triangles), rings(triangles)
+    moduli = dict(zip(ring_of, np.broadcast_to(modulus, len(ring_of)).tolist(), strict=True))
     bonds, shares = [], []
     for a, b, c in _tuples(triangles):
         for corner in ((a, b, c), (b, c, a), (c, a, b)):
             if corner[0] not in left_out:
                 bonds.append(corner)
-                shares.append([2 * np.pi / len(ring_of[corner[0]])])
+                shares.append([moduli[corner[0]], 2 * np.pi / len(ring_of[corner[0]])])
     stencil = _stencil(style)
-    energy = f"{_number(modulus)}*(share-{stencil.corner(2, 1, 3)})"
-    return [_compound(stencil.expression(energy), bonds, ["share"], shares)] if bonds else []
+    energy = f"modulus*(share-{stencil.corner(2, 1, 3)})"
+    names = ["modulus", "share"]
+    return [_compound(stencil.expression(energy), bonds, names, shares)] if bonds else []
 
 
 # --- against a reference -------------------------------------------------------------------------

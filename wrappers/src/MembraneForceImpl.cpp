@@ -33,9 +33,7 @@ void MembraneForceImpl::initialize(ContextImpl& context) {
     inPlace = dynamic_cast<const ReferencePlatform*>(&context.getPlatform()) != nullptr;
     check(Helfrich_Potential_find(owner.getTypeName().c_str(), &term.potential));
     static std::atomic<uint64_t> lastOwner(0);
-    const char* name;
-    if (Helfrich_Potential_numbers(owner.getTypeName().c_str(), &name) != 0)
-        term.numbersOwner = ++lastOwner;
+    term.numbersOwner = ++lastOwner;
     term.wantsDerivatives = !derivatives.empty();
     membrane = SharedMembrane::acquire(owner.getTypeName(), context, owner.getTriangles());
     try {
@@ -83,7 +81,7 @@ void MembraneForceImpl::copyValues() {
     updated.numNumbers = (int64_t) rows.size();
     updated.numbersBox = vectors.empty() ? nullptr : vectors.data();
     static std::atomic<uint64_t> lastVersion(0);
-    if (rows != numbers || vectors != numbersBox)
+    if (rows != numbers || vectors != numbersBox || copies != fields)
         updated.numbersVersion = ++lastVersion;
     membrane->checkTerm(owner.getTypeName(), updated);
     membrane->checkParticles(owner.getTypeName(), updated);
