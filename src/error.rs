@@ -131,6 +131,12 @@ pub enum Error {
     )]
     TouchingParticle { force: &'static str, particle: u32, triangle: usize, corners: [u32; 3] },
 
+    /// What there is to be for each vertex is of more or fewer.
+    #[error(
+        "{name} is of {count} vertices, but there are {vertices}; give one row for each, in ascending order of particle index"
+    )]
+    Numbers { force: &'static str, name: String, count: usize, vertices: usize },
+
     /// The corners of a triangle are in one line in the reference.
     #[error(
         "triangle {triangle} ({}, {}, {}) has no area in the reference, so that no strain can be measured against it; give a reference in which its corners are not in one line", .corners[0], .corners[1], .corners[2]
@@ -225,6 +231,7 @@ impl Error {
             Self::InsideOut { force, .. }
             | Self::Border { force, .. }
             | Self::Spanning { force, .. }
+            | Self::Numbers { force, .. }
             | Self::FlatReference { force, .. }
             | Self::LongReference { force, .. }
             | Self::NoReferenceBox { force, .. }

@@ -135,10 +135,6 @@ mod tests {
             particles: std::ptr::null(),
             num_particles: 0,
             numbers: std::ptr::null(),
-            num_numbers: 0,
-            numbers_box: std::ptr::null(),
-            numbers_owner: 0,
-            numbers_version: 0,
         };
         let mut contribution = Contribution::default();
         unsafe {

@@ -69,7 +69,7 @@ pub fn comparison() -> String {
             TermInput,
             "HelfrichTerm",
             potential form switches wants_derivatives values fields field_lengths particles num_particles
-            numbers num_numbers numbers_box numbers_owner numbers_version
+            numbers
         );
         text += &structure!(
             FollowerInput,

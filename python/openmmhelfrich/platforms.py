@@ -153,7 +153,7 @@ def _evaluator(force: MembraneForce, platform: str) -> Choice:
         return Choice("none", f"{chosen}, but {elsewhere}")
     if not _can_leave_processor(force, False):
         return Choice("cpu", "contacts are for the processor")
-    if type(force).__name__ in _OF_BORDERS and (kind == "gpu" or not on_device):
+    if _is_of_borders(force) and (kind == "gpu" or not on_device):
         return Choice("cpu", "borders are for the processor")
     if kind == "gpu":
         spanning = "; what spans the box is for the processor"
@@ -172,6 +172,14 @@ def membranes_of(system: openmm.System) -> list[MembraneForce]:
     classes = MembraneForce.__subclasses__()
     forces = system.getForces()
     return [cls.cast(force) for force in forces for cls in classes if cls.isinstance(force)]
+
+
+def _is_of_borders(force: MembraneForce) -> bool:
+    """Whether it acts on borders only; a modulus by vertex acts on all triangles."""
+    if type(force).__name__ not in _OF_BORDERS:
+        return False
+    names = map(force.getParameterName, range(force.getNumParameters()))
+    return not any(force.getElementValues(name) for name in names)
 
 
 def _backend_of(force: MembraneForce) -> str:

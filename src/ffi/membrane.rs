@@ -101,14 +101,9 @@ impl TermInput {
             values: self.values,
             fields: std::array::from_fn(field),
             particles: unsafe { slice(self.particles, self.num_particles as usize) },
-            numbers: VertexNumbers {
-                values: unsafe { slice(self.numbers, self.num_numbers as usize) },
-                // What is no box has been refused when it was given.
-                cell: unsafe { cell(self.numbers_box) }.unwrap_or_default(),
-                owner: self.numbers_owner,
-                version: self.numbers_version,
-            },
-            constants: TriangleConstants::default(),
+            numbers: unsafe { self.numbers.cast::<VertexNumbers>().as_ref() }
+                .unwrap_or(VertexNumbers::NONE),
+            constants: TriangleConstants::NONE,
             wants_derivatives: self.wants_derivatives != 0,
         }
     }

@@ -4,7 +4,7 @@ use super::membrane::cell;
 use super::{ParameterInfo, guarded, slice, text};
 use crate::error::Error;
 use crate::potentials::{
-    self, Element, MadeOf, REGISTRY, Term, particle_surface, surface_repulsion,
+    self, Element, MadeOf, REGISTRY, Term, VertexNumbers, particle_surface, surface_repulsion,
 };
 use std::ffi::{c_char, c_int};
 
@@ -145,6 +145,36 @@ pub unsafe extern "C" fn Helfrich_Potential_checkNumbers(
         unsafe { cell(box_vectors) }?;
         made_of.check(unsafe { slice(numbers, count as usize) })
     })
+}
+
+/// What a force object has for each vertex; `before` is what it has had, or null. `box_vectors` has those of the periodic
+/// box that positions among the numbers are in, or is null.
+///
+/// # Safety
+/// `before` must come from here and be alive, or be null; `numbers` must hold `count` values; `box_vectors` must be readable
+/// or null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Numbers_create(
+    before: *const VertexNumbers,
+    numbers: *const f64,
+    count: i64,
+    box_vectors: *const [[f64; 3]; 3],
+) -> *mut VertexNumbers {
+    let owner = unsafe { before.as_ref() }.map(|numbers| numbers.owner);
+    let values = unsafe { slice(numbers, count as usize) }.to_vec();
+    let vectors = unsafe { box_vectors.as_ref() }.copied();
+    Box::into_raw(Box::new(VertexNumbers::new(values, vectors, owner)))
+}
+
+/// End their life; null is allowed.
+///
+/// # Safety
+/// `numbers` must come from [`Helfrich_Numbers_create`] and not be used again.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Numbers_destroy(numbers: *mut VertexNumbers) {
+    if !numbers.is_null() {
+        drop(unsafe { Box::from_raw(numbers) });
+    }
 }
 
 /// Whether a potential is one of contacts, so that it may act on several membranes together.

@@ -34,14 +34,8 @@ pub struct TermInput {
     /// Particles beside the vertices, null where there are none.
     pub(super) particles: *const u32,
     pub(super) num_particles: i64,
-    /// What the user has given for each vertex, null where there is nothing.
-    pub(super) numbers: *const f64,
-    pub(super) num_numbers: i64,
-    /// The vectors of the periodic box of these numbers, null if there is none.
-    pub(super) numbers_box: *const [[f64; 3]; 3],
-    /// Which object has the numbers, and what changes with them.
-    pub(super) numbers_owner: u64,
-    pub(super) numbers_version: u64,
+    /// What the user has given for each vertex, as `Helfrich_Numbers_create` has made it; null where there is nothing.
+    pub(super) numbers: *const c_void,
 }
 
 /// A membrane that follows the flips of another, as C++ hands it over.

@@ -3,7 +3,7 @@
 use super::Membrane;
 use crate::contact::Contacts;
 use crate::error::{Error, Result};
-use crate::potentials::{Element, MadeOf, Parameter, Term};
+use crate::potentials::{Element, Parameter, Term};
 
 /// Values of single edges, where edges come and go.
 fn of_edges(term: &Term, parameter: &Parameter) -> Error {
@@ -66,18 +66,6 @@ impl Membrane {
                 return Err(Error::Contract(format!(
                     "{name} has {} values, but there are {count} {elements}; give one for each",
                     field.len()
-                )));
-            }
-        }
-        let made_of = term.potential.constants(term);
-        if let Some((name, width)) = made_of.and_then(MadeOf::numbers) {
-            let (count, vertices) = (term.numbers.values.len(), self.mesh().num_vertices());
-            if count != width * vertices {
-                return Err(Error::Contract(format!(
-                    "{} is of {} vertices, but there are {vertices}; give one row for each, in ascending order of \
-                     particle index",
-                    name.to_string_lossy(),
-                    count / width
                 )));
             }
         }

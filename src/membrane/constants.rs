@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::mesh::{Cell, NONE, Triangulation};
-use crate::potentials::{CONSTANTS, Constants, Corners, Flaw, MadeOf, Term, TriangleConstants};
+use crate::potentials::{CONSTANTS, Common, Corners, Flaw, MadeOf, Term, TriangleConstants};
 use smallvec::SmallVec;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -25,10 +25,7 @@ struct Made {
     generation: u64,
     /// The triangles that they are of; empty if they do not hold any more.
     triangles: Vec<[u32; 3]>,
-    values: Vec<Constants>,
-    share: f64,
-    /// No other constants have the same number.
-    number: u64,
+    constants: TriangleConstants,
 }
 
 /// Whether terms have to be equipped: if none has constants, they are what they are.
@@ -41,7 +38,7 @@ impl Workshop {
     /// Terms with their constants on a mesh, of which `generation` changes with the connectivity.
     ///
     /// # Errors
-    /// A triangle that has no shape at rest; names it.
+    /// Numbers of more or fewer vertices than there are; a triangle that has no shape at rest, which is named.
     pub fn equip<'a>(
         &'a mut self,
         mesh: &Triangulation,
@@ -64,12 +61,27 @@ impl Workshop {
         made_of: MadeOf,
     ) -> Result<()> {
         let (potential, version) = (term.potential.name(), term.numbers.version);
-        debug_assert!(term.numbers.owner != 0, "{potential}: who has the numbers?");
+        if term.numbers.owner == 0 {
+            return Err(Error::Contract(format!(
+                "{potential} has no numbers of vertices, by whose owner its constants are known"
+            )));
+        }
         let place = self.all.iter().position(|made| made.is_of(term)).unwrap_or_else(|| {
             let owner = term.numbers.owner;
             self.all.push(Made { potential, owner, ..Made::default() });
             self.all.len() - 1
         });
+        if let Some((name, width)) = made_of.numbers() {
+            let (count, vertices) = (term.numbers.values.len(), mesh.num_vertices());
+            if count != width * vertices {
+                return Err(Error::Numbers {
+                    force: potential,
+                    name: name.to_string_lossy().into_owned(),
+                    count: count / width,
+                    vertices,
+                });
+            }
+        }
         let made = &mut self.all[place];
         if made.version != version {
             made.triangles.clear();
@@ -81,14 +93,9 @@ impl Workshop {
         Ok(())
     }
 
-    fn find(&self, term: &Term) -> TriangleConstants<'_> {
-        match self.all.iter().find(|made| made.is_of(term)) {
-            Some(made) => {
-                let Made { values, share, number, .. } = made;
-                TriangleConstants { values, share: *share, version: *number }
-            }
-            None => TriangleConstants::default(),
-        }
+    fn find(&self, term: &Term) -> &TriangleConstants {
+        let made = self.all.iter().find(|made| made.is_of(term));
+        made.map_or(TriangleConstants::NONE, |made| &made.constants)
     }
 }
 
@@ -103,8 +110,9 @@ impl Made {
         static LAST: AtomicU64 = AtomicU64::new(0);
         // If this fails, nothing is known.
         let mut known = std::mem::take(&mut self.triangles);
-        self.values.resize(mesh.triangles().len(), [0.0; CONSTANTS]);
-        self.share = made_of.share(term, mesh);
+        let TriangleConstants { values, common, version } = &mut self.constants;
+        values.resize(mesh.triangles().len(), [0.0; CONSTANTS]);
+        *common = made_of.common(term, mesh)?;
         for (triangle, vertices) in mesh.triangles().iter().enumerate() {
             if known.get(triangle) == Some(vertices) {
                 continue;
@@ -114,20 +122,20 @@ impl Made {
                 are_outer: vertices.map(|vertex| mesh.is_border(vertex)),
                 on_border: mesh.twins()[triangle].map(|twin| twin == NONE),
             };
-            self.values[triangle] = made_of
-                .constants(term, &corners, self.share)
-                .map_err(|flaw| named(flaw, mesh, term, triangle))?;
+            values[triangle] = made_of
+                .constants(term, &corners, common)
+                .map_err(|flaw| named(flaw, common, mesh, term, triangle))?;
         }
         known.clear();
         known.extend_from_slice(mesh.triangles());
         self.triangles = known;
-        self.number = LAST.fetch_add(1, Ordering::Relaxed) + 1;
+        *version = LAST.fetch_add(1, Ordering::Relaxed) + 1;
         Ok(())
     }
 }
 
 /// What is wrong with a triangle of a reference.
-fn named(flaw: Flaw, mesh: &Triangulation, term: &Term, triangle: usize) -> Error {
+fn named(flaw: Flaw, common: &Common, mesh: &Triangulation, term: &Term, triangle: usize) -> Error {
     let (force, corners) = (term.potential.name(), mesh.particles_of(triangle));
     match flaw {
         Flaw::Flat => Error::FlatReference { force, triangle, corners },
@@ -135,7 +143,7 @@ fn named(flaw: Flaw, mesh: &Triangulation, term: &Term, triangle: usize) -> Erro
             force,
             edge: [corners[side], corners[(side + 1) % 3]],
             length,
-            limit: term.numbers.cell.as_ref().map_or(0.0, Cell::half_width),
+            limit: common.cell.as_ref().map_or(0.0, Cell::half_width),
         },
     }
 }

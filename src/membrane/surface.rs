@@ -205,7 +205,7 @@ impl Placed<'_> {
         };
         let has_no_box = |term: &&Term| {
             let made_of = term.potential.constants(term);
-            matches!(made_of, Some(MadeOf::Reference(_))) && term.numbers.cell.is_none()
+            matches!(made_of, Some(MadeOf::Reference(_))) && term.numbers.vectors.is_none()
         };
         terms.iter().find(has_no_box).map_or(Ok(()), |term| {
             let (force, particle) = (term.potential.name(), mesh.particles_of(triangle)[0]);

@@ -295,7 +295,7 @@ fn constants_of(
     let make = |vertices: [u32; 3], on_border| {
         let are_outer = vertices.map(|vertex| mesh.is_border(vertex));
         let corners = Corners { vertices, are_outer, on_border };
-        made_of.constants(term, &corners, term.constants.share)
+        made_of.constants(term, &corners, &term.constants.common)
     };
     Ok([
         // The sides of I are il, lk and ki, those of J are jk, kl and lj.

@@ -37,37 +37,55 @@ pub struct Corners {
     pub on_border: [bool; 3],
 }
 
-/// The numbers of vertices that a term has.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct VertexNumbers<'a> {
-    /// Those of one vertex after those of another, in ascending order of particle index.
-    pub values: &'a [f64],
-    /// The periodic box in which positions at rest are, if there is one: sides are nearest images in it then.
-    pub cell: Option<Cell>,
-    /// Which object has them; no other has the same number.
+/// What a force object has for each vertex.
+#[derive(Debug)]
+pub struct VertexNumbers {
+    /// The numbers of one vertex after those of another, in ascending order of particle index.
+    pub values: Vec<f64>,
+    /// The vectors of the periodic box in which positions at rest are, nm, if there is one: sides are nearest images in it.
+    pub vectors: Option<[[f64; 3]; 3]>,
+    /// Which force object has them; 0 if none has.
     pub owner: u64,
-    /// Changes when its numbers do.
+    /// No others have the same number.
     pub version: u64,
 }
 
-impl<'a> VertexNumbers<'a> {
-    /// Numbers of an object of their own.
-    pub fn new(values: &'a [f64], cell: Option<Cell>) -> Self {
-        // Those of the C interface begin with 1.
-        static LAST: AtomicU64 = AtomicU64::new(1 << 63);
-        Self { values, cell, owner: LAST.fetch_add(1, Ordering::Relaxed), version: 0 }
+impl VertexNumbers {
+    /// Of terms that have none.
+    pub const NONE: &Self = &Self { values: Vec::new(), vectors: None, owner: 0, version: 0 };
+
+    /// Numbers of a new object, or of one that has had others.
+    pub fn new(values: Vec<f64>, vectors: Option<[[f64; 3]; 3]>, owner: Option<u64>) -> Self {
+        static LAST: AtomicU64 = AtomicU64::new(0);
+        let version = LAST.fetch_add(1, Ordering::Relaxed) + 1;
+        Self { values, vectors, owner: owner.unwrap_or(version), version }
     }
 }
 
 /// The constants of all triangles of a mesh, for one term.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct TriangleConstants<'a> {
+#[derive(Debug, Default)]
+pub struct TriangleConstants {
     /// In the order of the mesh; empty until they have been made.
-    pub values: &'a [Constants],
-    /// What [`MadeOf::share`] is for the mesh.
-    pub share: f64,
+    pub values: Vec<Constants>,
+    /// What they have in common.
+    pub common: Common,
     /// No other constants have the same number.
     pub version: u64,
+}
+
+/// What the constants of all triangles have in common, however they are connected.
+#[derive(Debug, Default)]
+pub struct Common {
+    /// The periodic box of the reference, if there is one.
+    pub cell: Option<Cell>,
+    /// The energy that each triangle has for itself.
+    pub share: f64,
+}
+
+impl TriangleConstants {
+    /// Of terms that have none.
+    pub const NONE: &Self =
+        &Self { values: Vec::new(), common: Common { cell: None, share: 0.0 }, version: 0 };
 }
 
 /// Why a triangle has no shape at rest.
@@ -130,16 +148,24 @@ impl MadeOf {
         Ok(())
     }
 
-    /// What the constants of all triangles have in common, however they are connected.
-    pub fn share(self, term: &Term, mesh: &Triangulation) -> f64 {
+    /// What the constants of all triangles have in common.
+    ///
+    /// # Errors
+    /// Vectors that are no box.
+    pub fn common(self, term: &Term, mesh: &Triangulation) -> Result<Common> {
+        let mut common = Common::default();
         match self {
-            Self::Reference(_) | Self::Domains(_) => 0.0,
+            Self::Reference(_) => {
+                common.cell = term.numbers.vectors.map(Cell::new).transpose()?;
+            }
+            Self::Domains(_) => {}
             Self::Values(_) => {
                 let inner = (0..mesh.num_vertices()).filter(|v| !mesh.is_border(*v as u32));
                 let sum: f64 = inner.map(|vertex| term.value(0, vertex)).sum();
-                TAU * sum / mesh.triangles().len() as f64
+                common.share = TAU * sum / mesh.triangles().len() as f64;
             }
         }
+        Ok(common)
     }
 
     /// The constants of a triangle.
@@ -150,20 +176,23 @@ impl MadeOf {
         self,
         term: &Term,
         corners: &Corners,
-        share: f64,
+        common: &Common,
     ) -> std::result::Result<Constants, Flaw> {
         let &Corners { vertices, are_outer, on_border } = corners;
+        let numbers = &term.numbers.values;
         match self {
-            Self::Reference(make) => Ok(make(&at_rest(&term.numbers, vertices)?, on_border)),
+            Self::Reference(make) => {
+                Ok(make(&at_rest(numbers, common.cell.as_ref(), vertices)?, on_border))
+            }
             Self::Domains(make) => {
-                Ok(make(vertices.map(|vertex| term.numbers.values[vertex as usize]), on_border))
+                Ok(make(vertices.map(|vertex| numbers[vertex as usize]), on_border))
             }
             Self::Values(make) => {
                 let value = |k: usize| match are_outer[k] {
                     true => 0.0,
                     false => term.value(0, vertices[k] as usize),
                 };
-                Ok(make([value(0), value(1), value(2)], share))
+                Ok(make([value(0), value(1), value(2)], common.share))
             }
         }
     }
@@ -171,18 +200,19 @@ impl MadeOf {
 
 /// The triangle that corners make in the reference.
 fn at_rest(
-    numbers: &VertexNumbers,
+    numbers: &[f64],
+    cell: Option<&Cell>,
     corners: [u32; 3],
 ) -> std::result::Result<TriangleGeometry, Flaw> {
-    let positions = numbers.values.as_chunks::<3>().0;
+    let positions = numbers.as_chunks::<3>().0;
     let [a, mut b, mut c] = corners.map(|vertex| Vec3::from(positions[vertex as usize]));
-    if let Some(cell) = &numbers.cell {
+    if let Some(cell) = cell {
         b += cell.shift(cell.nearest(&(b - a)));
         c += cell.shift(cell.nearest(&(c - a)));
     }
     let triangle = TriangleGeometry::new(&a, &b, &c);
     let lengths_squared = [0, 1, 2].map(|side| triangle.length_squared(side));
-    if let Some(cell) = &numbers.cell {
+    if let Some(cell) = cell {
         let limit = cell.half_width();
         if let Some(side) = (0..3).find(|side| lengths_squared[*side] >= limit * limit) {
             return Err(Flaw::Long { side, length: lengths_squared[side].sqrt() });

@@ -86,7 +86,7 @@ impl<'a> Place<'a> {
     /// Elements of the mesh as it is.
     #[inline(always)]
     pub fn new(term: &'a Term<'a>, ids: &'a [u32]) -> Self {
-        Self { term, ids, constants: term.constants.values, places: ids }
+        Self { term, ids, constants: &term.constants.values, places: ids }
     }
 
     /// A triangle that has constants of its own, if any.

@@ -100,9 +100,10 @@ mod tests {
 
     fn line(domains: [f64; 3], [a, b, c]: [Vec3; 3]) -> (f64, [Vec3; 3]) {
         let triangle = TriangleGeometry::new(&a, &b, &c);
-        let values = [shares(domains, [false; 3])];
+        let values = vec![shares(domains, [false; 3])];
         let mut term = Term::new("LineTensionForce", 0, &[2.0]).unwrap();
-        term.constants = TriangleConstants { values: &values, ..TriangleConstants::default() };
+        let constants = TriangleConstants { values, ..TriangleConstants::default() };
+        term.constants = &constants;
         let mut partials = [TrianglePartials::default()];
         let run = Triangles::Plain { first: 0, geometry: &[triangle], partials: &mut partials };
         let found = LineTension.triangles(&term, run);

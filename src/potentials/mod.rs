@@ -37,7 +37,7 @@ use crate::mesh::borders::{BorderPartials, BorderTotals};
 use crate::mesh::geometry::{TotalPartials, Totals};
 use crate::real::Real;
 pub use codes::{Attraction, CONSTANTS, Contribution, MAX_PARAMETERS, Needs};
-pub use constants::{Constants, Corners, Flaw, MadeOf, TriangleConstants, VertexNumbers};
+pub use constants::{Common, Constants, Corners, Flaw, MadeOf, TriangleConstants, VertexNumbers};
 pub use elements::*;
 pub use runs::*;
 use std::f64::consts::PI;
@@ -284,11 +284,11 @@ pub struct Term<'a> {
     pub fields: [&'a [f64]; MAX_PARAMETERS],
     /// Particles beside the vertices that the term acts on, by their indices in the System.
     pub particles: &'a [u32],
-    /// What the user has given for each vertex, if the potential has constants of triangles. They have an owner where only
-    /// fields are given, too.
-    pub numbers: VertexNumbers<'a>,
+    /// What the user has given for each vertex, if the potential has constants of triangles; their owner and version tell
+    /// whether the constants hold.
+    pub numbers: &'a VertexNumbers,
     /// These constants; a [`Membrane`](crate::membrane::Membrane) makes them.
-    pub constants: TriangleConstants<'a>,
+    pub constants: &'a TriangleConstants,
     /// Whether the derivatives with respect to the scalars will be read; those that cost extra may be
     /// wrong otherwise.
     pub wants_derivatives: bool,
@@ -325,8 +325,8 @@ impl<'a> Term<'a> {
             values: Values::default(),
             fields: Default::default(),
             particles: &[],
-            numbers: VertexNumbers::default(),
-            constants: TriangleConstants::default(),
+            numbers: VertexNumbers::NONE,
+            constants: TriangleConstants::NONE,
             wants_derivatives: false,
         }
     }

@@ -124,9 +124,10 @@ mod tests {
         corners: &[Vec3; 3],
     ) -> (f64, [f64; 2], [Vec3; 3]) {
         let geometry = |[a, b, c]: &[Vec3; 3]| TriangleGeometry::new(a, b, c);
-        let values = [constants(&geometry(rest), [false; 3])];
+        let values = vec![constants(&geometry(rest), [false; 3])];
         let mut term = Term::new(name, 0, &moduli).unwrap();
-        term.constants = TriangleConstants { values: &values, ..TriangleConstants::default() };
+        let constants = TriangleConstants { values, ..TriangleConstants::default() };
+        term.constants = &constants;
         let triangle = geometry(corners);
         let mut partials = [TrianglePartials::default()];
         let run = Triangles::Plain { first: 0, geometry: &[triangle], partials: &mut partials };

@@ -418,23 +418,26 @@ fn a_reference_is_in_a_box_of_its_own() {
         let rows = |positions: &[f64]| -> Vec<f64> {
             used.iter().flat_map(|v| positions[3 * *v as usize..][..3].to_vec()).collect()
         };
-        let evaluate = |values: &[f64], cell_of_reference, positions: &[f64], cell| {
-            let numbers = VertexNumbers::new(values, cell_of_reference);
-            let term = Term { numbers, ..Term::new("SkalakForce", 0, &[2.0, 3.0]).unwrap() };
+        let evaluate = |values: &[f64], vectors, positions: &[f64], cell| {
+            let numbers = VertexNumbers::new(values.to_vec(), vectors, None);
+            let term =
+                Term { numbers: &numbers, ..Term::new("SkalakForce", 0, &[2.0, 3.0]).unwrap() };
             let mut energies = [Contribution::default()];
             membrane(&mesh)
                 .evaluate(&[term], Configuration::new(positions, cell), &mut energies, None)
                 .map(|()| energies[0].energy)
         };
         for values in [rows(&mesh.0), rows(&wrapped(&mesh.0, &cell, 3.0, 5))] {
-            let found = evaluate(&values, Some(cell), &stretched, Some(&wide)).unwrap();
+            let found = evaluate(&values, Some(BOXES[0]), &stretched, Some(&wide)).unwrap();
             assert!((found / (at_rest * density) - 1.0).abs() < 1e-11, "{found}");
-            assert!(evaluate(&values, Some(cell), &mesh.0, Some(&cell)).unwrap() < 1e-24 * found);
+            assert!(
+                evaluate(&values, Some(BOXES[0]), &mesh.0, Some(&cell)).unwrap() < 1e-24 * found
+            );
         }
         let values = rows(&mesh.0);
         let refused = evaluate(&values, None, &mesh.0, Some(&cell)).unwrap_err();
         assert!(matches!(refused, Error::NoReferenceBox { force: "SkalakForce", .. }));
-        let narrow = Cell::new(BOXES[0].map(|row| row.map(|x| 0.125 * x))).unwrap();
+        let narrow = BOXES[0].map(|row| row.map(|x| 0.125 * x));
         let refused = evaluate(&values, Some(narrow), &mesh.0, Some(&cell)).unwrap_err();
         assert!(matches!(refused, Error::LongReference { force: "SkalakForce", .. }));
     }

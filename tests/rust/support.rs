@@ -148,13 +148,16 @@ pub fn terms_of_vertices(mesh: &Mesh, cell: Option<Cell>) -> Vec<Term<'static>> 
         [0, 1, 2].map(|k| place[k] + share * noise())
     };
     let at_rest: Vec<f64> = vertices.iter().flat_map(at_rest).collect();
-    let reference = VertexNumbers::new(at_rest.leak(), cell);
+    let vectors = cell.map(|cell| cell.vectors().map(Into::into));
+    let numbers =
+        |values, vectors| &*Box::leak(Box::new(VertexNumbers::new(values, vectors, None)));
+    let reference = numbers(at_rest, vectors);
     let domains: Vec<f64> = vertices.iter().map(|vertex| (vertex * 7 % 4 - 1) as f64).collect();
-    let domains = VertexNumbers::new(domains.leak(), None);
+    let domains = numbers(domains, None);
     let moduli: Vec<f64> = vertices.iter().map(|_| 2.0 * noise() - 1.0).collect();
     let mut by_vertex = Term::new("GaussianCurvatureForce", 0, &[1.0]).unwrap();
     by_vertex.fields[0] = moduli.leak();
-    by_vertex.numbers = VertexNumbers::new(&[], None);
+    by_vertex.numbers = numbers(Vec::new(), None);
     let with = |numbers, name, form, values: &[f64]| Term {
         numbers,
         ..Term::new(name, form, values).unwrap()

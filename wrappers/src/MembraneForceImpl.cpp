@@ -5,7 +5,6 @@
 #include <openmm/reference/ReferencePlatform.h>
 
 #include <algorithm>
-#include <atomic>
 
 using namespace HelfrichPlugin;
 using namespace OpenMM;
@@ -32,8 +31,6 @@ void MembraneForceImpl::initialize(ContextImpl& context) {
     PlatformChoice::end();
     inPlace = dynamic_cast<const ReferencePlatform*>(&context.getPlatform()) != nullptr;
     check(Helfrich_Potential_find(owner.getTypeName().c_str(), &term.potential));
-    static std::atomic<uint64_t> lastOwner(0);
-    term.numbersOwner = ++lastOwner;
     term.wantsDerivatives = !derivatives.empty();
     membrane = SharedMembrane::acquire(owner.getTypeName(), context, owner.getTriangles());
     try {
@@ -77,19 +74,21 @@ void MembraneForceImpl::copyValues() {
     updated.particles = indices.data();
     updated.numParticles = (int64_t) indices.size();
     vector<double> rows = owner.getVertexNumbers(), vectors = owner.getReferenceBox();
-    updated.numbers = rows.data();
-    updated.numNumbers = (int64_t) rows.size();
-    updated.numbersBox = vectors.empty() ? nullptr : vectors.data();
-    static std::atomic<uint64_t> lastVersion(0);
-    if (rows != numbers || vectors != numbersBox || copies != fields)
-        updated.numbersVersion = ++lastVersion;
+    std::unique_ptr<HelfrichNumbers, Destroy> changed;
+    if (rows != vertexNumbers || vectors != referenceBox || copies != fields) {
+        changed.reset(Helfrich_Numbers_create(numbers.get(), rows.data(), (int64_t) rows.size(),
+                                              vectors.empty() ? nullptr : vectors.data()));
+        updated.numbers = changed.get();
+    }
     membrane->checkTerm(owner.getTypeName(), updated);
     membrane->checkParticles(owner.getTypeName(), updated);
     // Moving the vectors leaves their contents where the term points.
     fields = std::move(copies);
     particles = std::move(indices);
-    numbers = std::move(rows);
-    numbersBox = std::move(vectors);
+    vertexNumbers = std::move(rows);
+    referenceBox = std::move(vectors);
+    if (changed != nullptr)
+        numbers = std::move(changed);
     term = updated;
 }
 

@@ -7,6 +7,8 @@
 
 #include <openmm/internal/CustomCPPForceImpl.h>
 
+#include <memory>
+
 namespace HelfrichPlugin {
 
 /**
@@ -79,7 +81,14 @@ private:
     /** What the fields of the term point to. */
     std::vector<std::vector<double>> fields;
     std::vector<int> particles;
-    std::vector<double> numbers, numbersBox;
+    std::vector<double> vertexNumbers, referenceBox;
+    /** The same for the core; others where any of them or a field has changed. */
+    struct Destroy {
+        void operator()(HelfrichNumbers* numbers) const {
+            Helfrich_Numbers_destroy(numbers);
+        }
+    };
+    std::unique_ptr<HelfrichNumbers, Destroy> numbers;
     /** For each scalar the Context parameter that stands in for it, or an empty text. */
     std::vector<std::string> contextParameters;
     std::vector<std::string> derivatives;

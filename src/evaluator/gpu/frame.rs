@@ -314,7 +314,7 @@ impl FrameConstants {
         for term in with() {
             let scales =
                 term.potential.constant_lengths().map(|length| unit.powi((-length).into()));
-            for values in term.constants.values {
+            for values in &term.constants.values {
                 for (value, scale) in values.iter().zip(scales) {
                     self.put(precision, value * scale);
                 }

@@ -14,6 +14,7 @@
 extern "C" {
 
 struct HelfrichMembrane;
+struct HelfrichNumbers;
 
 /** The scalars a potential can have at most. */
 #define HELFRICH_MAX_PARAMETERS 4
@@ -44,12 +45,7 @@ struct HelfrichTerm {
     const int* particles;
     int64_t numParticles;
     /** What the user has given for each vertex, null where there is nothing. */
-    const double* numbers;
-    int64_t numNumbers;
-    /** The vectors of the periodic box of these numbers, null if there is none. */
-    const double* numbersBox;
-    /** Which object has the numbers, and what changes with them. */
-    uint64_t numbersOwner, numbersVersion;
+    const HelfrichNumbers* numbers;
 };
 
 struct HelfrichNative;
@@ -133,6 +129,10 @@ int Helfrich_Potential_check(const char* potential, int index, double value);
 int Helfrich_Potential_numbers(const char* potential, const char** name);
 /** `box` has the vectors of the periodic box that positions among them are in, or is null. */
 int Helfrich_Potential_checkNumbers(const char* potential, const double* numbers, int64_t count, const double* box);
+/** What a force object has for each vertex, after what it has had `before` or null. */
+HelfrichNumbers* Helfrich_Numbers_create(const HelfrichNumbers* before, const double* numbers, int64_t count,
+                                         const double* box);
+void Helfrich_Numbers_destroy(HelfrichNumbers* numbers);
 int Helfrich_Membrane_create(const char* subject, const int* triangles, int64_t numTriangles, int64_t numParticles,
                              HelfrichMembrane** membrane);
 void Helfrich_Membrane_destroy(HelfrichMembrane* membrane);
