@@ -174,7 +174,7 @@ impl Plaquettes {
     }
 
     /// Areas and their gradients at the present positions.
-    pub fn differentiate(&mut self, team: &mut Option<&mut Team>, cell: Option<&Cell>) {
+    fn differentiate(&mut self, team: &mut Option<&mut Team>, cell: Option<&Cell>) {
         let layout = &self.layout;
         {
             let (of_triangles, sums) =

@@ -216,7 +216,7 @@ impl Vertices {
     }
 
     /// The derivatives of K with respect to areas, at the present momenta.
-    pub fn find_energies(&mut self, team: &mut Option<&mut Team>) {
+    fn find_energies(&mut self, team: &mut Option<&mut Team>) {
         let layout = self.plaquettes.layout();
         let (by_area, sums) = (Parts::new(&mut self.by_area), Parts::new(&mut self.energies));
         let (momenta, inverse_masses) = (&self.momenta, &self.inverse_masses);
@@ -301,7 +301,7 @@ impl Vertices {
     }
 
     /// Positions on trial by the masses at those before.
-    pub fn drift_once(&mut self, team: &mut Option<&mut Team>, time: f64) -> Change {
+    fn drift_once(&mut self, team: &mut Option<&mut Team>, time: f64) -> Change {
         let layout = self.plaquettes.layout();
         let (trial, changes) = (Parts::new(&mut self.trial), Parts::new(&mut self.changes));
         let (start, areas, densities) =

@@ -73,6 +73,7 @@ protected:
         if (!(stepSize >= 0 && std::isfinite(stepSize)))
             fail("stepSize must be a finite number of ps, zero or above, got " + std::to_string(stepSize));
         setStepSize(stepSize);
+        setConstraintTolerance(1e-5);
         setDensity(density);
     }
     [[noreturn]] void fail(const std::string& message) const {
