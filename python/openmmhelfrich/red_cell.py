@@ -6,7 +6,6 @@ import dataclasses
 import math
 from dataclasses import dataclass
 
-import numpy as np
 from openmm import unit
 
 from ._in_systems import InSystems

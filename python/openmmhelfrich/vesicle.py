@@ -28,7 +28,6 @@ from .forces import (
     PressureForce,
     SurfaceAreaForce,
     SurfaceTensionForce,
-    SurfaceViscosityThermostat,
     TriangleAreaForce,
     TriangleAreaRepulsionForce,
     TriangleHeightForce,

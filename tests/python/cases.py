@@ -69,6 +69,11 @@ class Case:
     invalid: tuple[Invalid, ...] = ()
 
     @property
+    def has_own_values(self) -> bool:
+        """Whether each element has values of its own in place of all scalars."""
+        return "domains" in self.name or "each its own" in self.name
+
+    @property
     def is_contact(self) -> bool:
         """Whether it acts on pairs of what is near, and not on the elements of a mesh."""
         return self.force in CONTACTS
@@ -438,8 +443,9 @@ def _dihedrals() -> list[Case]:
         return oracle.evaluate(forces, m.positions)
 
     forms = list(string_forces.DIHEDRAL_FORMS)
-    rows = [(form, "", flat) for form in forms] + [(form, ", at rest bent", bent) for form in forms]
-    rows += [(form, ", each its own", each) for form in ("Cosine", "SmoothExp46")]
+    rows = [(form, "", flat) for form in forms]
+    rows += [(form, ", at rest bent", bent) for form in ("Quartic", "SmoothExp46")]
+    rows += [("Cosine", ", each its own", each)]
     invalid = _never_below("stiffness", zero=True)
     invalid += tuple(Invalid("restAngle", value, "-pi to pi") for value in (3.2, -4.0, np.nan))
     return [

@@ -309,33 +309,24 @@ class TestScalars:
     def test_forces_scale_with_their_stiffness(self):
         for case in FIRST:
             m = membrane(case.place("jittered"))
-            name = next(
-                name
-                for name in (
-                    "modulus",
-                    "rigidity",
-                    "epsilon",
-                    "stiffness",
-                    "tension",
-                    "pressure",
-                    "thermalEnergy",
-                )
-                if name in case.arguments(m)
-            )
-            value = case.arguments(m)[name]
+            given = case.arguments(m)
+            names = {"modulus", "rigidity", "epsilon", "stiffness", "tension", "pressure"}
+            names |= {"thermalEnergy", "shearModulus", "areaModulus"}
+            names &= set(given)
+            assert names
             energy, forces = measure(context_of([case.make(m)], m))
-            double = measure(context_of([case.make(m, **{name: 2 * value})], m))
+            double = measure(context_of([case.make(m, **{n: 2 * given[n] for n in names})], m))
             assert_close(double, (2 * energy, 2 * forces), 1e-13)
-            if name == "thermalEnergy":
+            if "thermalEnergy" in names:
                 continue  # It is above zero.
-            nothing = measure(context_of([case.make(m, **{name: 0.0})], m))
+            nothing = measure(context_of([case.make(m, **dict.fromkeys(names, 0.0))], m))
             assert nothing[0] == 0
             assert not nothing[1].any()
 
-    # Where each vertex has its own values, the scalars do nothing.
+    # Where each element has its own values, the scalars do nothing.
     @pytest.mark.parametrize(
         ("case", "target"),
-        [(case, t) for case in PRESENT if "domains" not in case.name for t in ON_PROCESSOR]
+        [(case, t) for case in PRESENT if not case.has_own_values for t in ON_PROCESSOR]
         + [(case, OPENCL_DOUBLE) for case in FIRST[:2]],
         ids=str,
     )

@@ -10,10 +10,8 @@ import openmm as mm
 import openmmhelfrich as helfrich
 import pytest
 from flowing import forces_of, start
-from meshes import membrane
 from openmm import unit
 from openmmhelfrich import VariableMassLangevinIntegrator, VariableMassVerletIntegrator
-from periodic_meshes import BOXES
 from platforms import HELFRICH, REFERENCE
 
 KT = 0.00831446261815324 * 300
