@@ -1,4 +1,4 @@
-"""The integrators of variable masses as any OpenMM Integrator: arguments, copies, XML, states, what is refused."""
+"""Integrators of variable masses as any other: arguments, copies, XML, states, what is refused."""
 
 from __future__ import annotations
 
@@ -295,6 +295,40 @@ def test_forces_that_have_changed_are_computed_anew():
         bending.setRigidity(45.0)
 
 
+def test_in_a_compound_integrator_it_starts_from_what_others_leave():
+    compound = mm.CompoundIntegrator()
+    compound.addIntegrator(integrator_of("verlet"))
+    compound.addIntegrator(mm.BrownianIntegrator(300, 10.0, 0.01))
+    context = mm.Context(system_of(), compound)
+    assert context.getPlatform().getName() == "Helfrich"
+    context.setPositions(start().vertices)
+    compound.step(3)
+    compound.setCurrentIntegrator(1)
+    compound.step(3)
+    other = context_of(integrator_of("verlet"))
+    positions, velocities = bits(context)
+    other.setPositions(positions)
+    other.setVelocities(velocities)
+    compound.setCurrentIntegrator(0)
+    for each in (context, other):
+        each.getIntegrator().step(3)
+    assert same(bits(context), bits(other))
+    inside = VariableMassVerletIntegrator.cast(compound.getIntegrator(0))
+    assert inside.getMasses().sum() == pytest.approx(50.0 * start().num_vertices)
+
+
+def test_reinitialize_and_the_minimizer():
+    context = context_of(integrator_of("langevin"))
+    context.getIntegrator().step(5)
+    before = bits(context)
+    context.reinitialize(preserveState=True)
+    assert same(bits(context), before)
+    energy = energies(context)[1]
+    mm.LocalEnergyMinimizer.minimize(context, tolerance=0.1, maxIterations=20)
+    assert energies(context)[1] < energy
+    context.getIntegrator().step(5)
+
+
 # --- surfaces ------------------------------------------------------------------------------------
 
 
@@ -500,7 +534,7 @@ def test_a_barostat_that_moves_molecules_as_a_whole_is_taken():
 def test_constraints_and_vertices_that_are_virtual_sites_are_refused():
     system = system_of()
     system.addConstraint(0, 1, 1.0)
-    with pytest.raises(mm.OpenMMException, match="VariableMassVerletIntegrator: .*constraints"):
+    with pytest.raises(mm.OpenMMException, match=r"VariableMassVerletIntegrator: .*constraints"):
         HELFRICH.context(system, integrator_of("verlet"))
     system = system_of()
     system.setParticleMass(4, 0)
@@ -511,7 +545,7 @@ def test_constraints_and_vertices_that_are_virtual_sites_are_refused():
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_other_platforms_are_told_where_to_go(kind):
-    with pytest.raises(mm.OpenMMException, match="the platform CPU .*platform Helfrich, or Refer"):
+    with pytest.raises(mm.OpenMMException, match=r"the platform CPU .*platform Helfrich, or Refer"):
         CPU.context(system_of(), integrator_of(kind))
 
 
@@ -530,7 +564,7 @@ def test_two_triangulations_of_the_same_particles_are_refused():
     other[0], other[k] = [a, d, c], [d, b, c]
     system = system_of(helfrich.DihedralForce(other, 1.0))
     with pytest.raises(
-        mm.OpenMMException, match="(?s)VariableMass.*no surface.*the same triangles"
+        mm.OpenMMException, match=r"(?s)VariableMass.*no surface.*the same triangles"
     ):
         HELFRICH.context(system, integrator_of("verlet"))
 
@@ -540,7 +574,7 @@ def test_a_step_that_is_too_large_says_so_and_changes_nothing(platform):
     context = context_of(integrator_of("langevin"), platform=platform)
     before, time = bits(context), context.getTime()
     context.getIntegrator().setStepSize(500.0)
-    with pytest.raises(mm.OpenMMException, match="(?s)VariableMassLangevin.*500 ps.*smaller step"):
+    with pytest.raises(mm.OpenMMException, match=r"(?s)VariableMassLangevin.*500 ps.*smaller step"):
         context.getIntegrator().step(1)
     assert same(bits(context), before) and context.getTime() == time
     assert context.getStepCount() == 0
@@ -563,7 +597,7 @@ def test_velocities_that_are_no_numbers_name_the_particle():
 
 def test_velocities_need_positions_first():
     context = HELFRICH.context(system_of(), integrator_of("verlet"))
-    with pytest.raises(mm.OpenMMException, match="Integrator: triangle .*has no area"):
+    with pytest.raises(mm.OpenMMException, match=r"Integrator: triangle .*has no area"):
         context.setVelocitiesToTemperature(300)
 
 

@@ -160,6 +160,15 @@ string Tally::add(const Force& force) {
     return nameOf(force) + " costs more than membranes do";
 }
 
+bool hasVariableMasses(const Integrator& integrator) {
+    if (auto* compound = dynamic_cast<const CompoundIntegrator*>(&integrator)) {
+        for (int i = 0; i < compound->getNumIntegrators(); i++)
+            if (hasVariableMasses(compound->getIntegrator(i)))
+                return true;
+    }
+    return dynamic_cast<const VariableMassIntegrator*>(&integrator) != nullptr;
+}
+
 string whyNotIntegrator(const Integrator& integrator) {
     if (auto* compound = dynamic_cast<const CompoundIntegrator*>(&integrator)) {
         for (int i = 0; i < compound->getNumIntegrators(); i++) {
@@ -184,7 +193,7 @@ thread_local int timesRefused = 0;
 
 string HelfrichPlugin::whyNotHelfrich(const System& system, const Integrator& integrator) {
     // Whatever the System costs, no faster platform has the time steps.
-    if (dynamic_cast<const VariableMassIntegrator*>(&integrator) != nullptr)
+    if (hasVariableMasses(integrator))
         return "";
     Tally tally(system);
     for (int i = 0; i < system.getNumForces(); i++) {

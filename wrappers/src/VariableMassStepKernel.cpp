@@ -78,7 +78,8 @@ KernelImpl* VariableMassKernelFactory::createKernelImpl(string name, const Platf
 VariableMassStepKernel::VariableMassStepKernel(const string& name, const Platform& platform, ContextImpl& context)
     : IntegrateVariableMassStepKernel(name, platform),
       data(*static_cast<ReferencePlatform::PlatformData*>(context.getPlatformData())), bath(nullptr), masses(nullptr),
-      team(nullptr), isPeriodic(false), hasVirtualSites(false), stream(nullptr), ownStream(), forceGroups(0) {
+      team(nullptr), isPeriodic(false), hasVirtualSites(false), stream(nullptr), ownStream(), forceGroups(0),
+      stepCount(0) {
 }
 
 VariableMassStepKernel::~VariableMassStepKernel() {
@@ -151,7 +152,8 @@ void VariableMassStepKernel::execute(ContextImpl& context, const VariableMassInt
         throw OpenMMException(subject + ": the step size must be a finite number of ps, got " + std::to_string(step));
     findSurfaces(context);
     int groups = integrator.getIntegrationForceGroups();
-    if (!forcesAreValid || groups != forceGroups) {
+    // In a CompoundIntegrator, others may have made steps since.
+    if (!forcesAreValid || groups != forceGroups || data.stepCount != stepCount) {
         context.calcForcesAndEnergy(true, false, groups);
         forces = *data.forces;
         forceGroups = groups;
@@ -171,7 +173,7 @@ void VariableMassStepKernel::execute(ContextImpl& context, const VariableMassInt
         throw;
     }
     forces = *data.forces;
-    data.stepCount++;
+    stepCount = ++data.stepCount;
 }
 
 void VariableMassStepKernel::advance(ContextImpl& context, double step, int groups) {

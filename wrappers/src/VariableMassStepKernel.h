@@ -63,9 +63,10 @@ private:
     /** The random numbers: those of the Context on platform Helfrich, else the ones here. */
     HelfrichStream* stream;
     HelfrichStream ownStream;
-    /** The forces after the last step, and their groups; OpenMM's may have been overwritten. */
+    /** The forces after the last step, their groups and the step; OpenMM's may have been overwritten. */
     std::vector<OpenMM::Vec3> forces;
     int forceGroups;
+    long long stepCount;
     /** To go back to if a step fails. */
     std::vector<OpenMM::Vec3> oldPositions, oldVelocities;
 };

@@ -45,17 +45,6 @@ impl Tile {
     }
 }
 
-/// What comes next around a vertex, in each lane, counter-clockwise.
-#[derive(Clone, Copy)]
-pub struct Slot {
-    /// The vertex that a side leads to, by the number of its lane; beyond all lanes where there is none.
-    pub neighbours: Places,
-    /// The triangle after that side, by the number of its lane; beyond all lanes where there is none.
-    pub triangles: Places,
-    /// The place of the gradient of its area with respect to the vertex that is gone around.
-    pub gradients: Places,
-}
-
 /// All connected surfaces of a System.
 pub struct Layout {
     /// The particle in each lane, [`NONE`] in those that pad a surface.
@@ -66,10 +55,15 @@ pub struct Layout {
     pub triangle_tiles: Vec<Tile>,
     /// The places of each triangle's corners.
     pub corners: Vec<[Places; 3]>,
-    /// Where the slots of each group of vertices begin; one entry more than groups.
+    /// Where the slots of each group of vertices begin: what is around them, counter-clockwise. One entry more than
+    /// groups.
     offsets: Vec<usize>,
-    /// What is around the vertices of each group.
-    pub slots: Vec<Slot>,
+    /// For each slot the vertex that a side leads to, by the number of its lane; beyond all lanes where there is none.
+    pub neighbours: Vec<Places>,
+    /// The triangle after that side, by the number of its lane; beyond all lanes where there is none.
+    pub around: Vec<Places>,
+    /// The place of the gradient of its area with respect to the vertex that is gone around.
+    pub gradients: Vec<Places>,
     /// The place of the gradient in the triangle before the first slot, for each group.
     pub before: Vec<Places>,
     /// Of each surface.
@@ -118,7 +112,9 @@ impl Layout {
             triangle_tiles: Vec::new(),
             corners: Vec::new(),
             offsets: vec![0],
-            slots: Vec::new(),
+            neighbours: Vec::new(),
+            around: Vec::new(),
+            gradients: Vec::new(),
             before: Vec::new(),
             is_periodic: Vec::new(),
             triangles: (0..mesh.triangles().len()).map(|t| mesh.particles_of(t)).collect(),
@@ -185,11 +181,7 @@ impl Layout {
     /// Note what is around each vertex, in the order of its ring.
     fn surround(&mut self, mesh: &Triangulation, lanes: &[u32], triangle_lanes: &[u32]) {
         let (no_vertex, no_triangle) = (self.particles.len() * LANES, self.corners.len() * LANES);
-        let nothing = Slot {
-            neighbours: [no_vertex as u32; LANES],
-            triangles: [no_triangle as u32; LANES],
-            gradients: [gradient_place(no_triangle, 0) as u32; LANES],
-        };
+        let no_gradient = [gradient_place(no_triangle, 0) as u32; LANES];
         let gradient = |half: u32| {
             let triangle = triangle_lanes[half as usize / 3] as usize;
             gradient_place(triangle, half as usize % 3) as u32
@@ -202,27 +194,29 @@ impl Layout {
         for vertices in vertex_of.chunks(LANES) {
             let vertices = || vertices.iter().enumerate().filter(|(_, vertex)| **vertex != NONE);
             let degree = vertices().map(|(_, vertex)| mesh.degrees()[*vertex as usize]).max();
-            let (start, mut before) = (self.slots.len(), nothing.gradients);
-            self.slots.resize(start + degree.unwrap_or(0) as usize, nothing);
-            let slots = &mut self.slots[start..];
+            let (start, mut before) = (self.neighbours.len(), no_gradient);
+            let end = start + degree.unwrap_or(0) as usize;
+            self.neighbours.resize(end, [no_vertex as u32; LANES]);
+            self.around.resize(end, [no_triangle as u32; LANES]);
+            self.gradients.resize(end, no_gradient);
             for (lane, &vertex) in vertices() {
                 mesh.ring(vertex, &mut ring);
-                for (slot, &half) in slots.iter_mut().zip(&ring) {
-                    slot.neighbours[lane] = lanes[mesh.origin(next(half)) as usize];
-                    slot.triangles[lane] = triangle_lanes[half as usize / 3];
-                    slot.gradients[lane] = gradient(half);
+                for (slot, &half) in (start..).zip(&ring) {
+                    self.neighbours[slot][lane] = lanes[mesh.origin(next(half)) as usize];
+                    self.around[slot][lane] = triangle_lanes[half as usize / 3];
+                    self.gradients[slot][lane] = gradient(half);
                 }
                 let last = ring[ring.len() - 1];
                 if mesh.is_border(vertex) {
                     // After the last side there is no triangle.
                     let neighbour = mesh.origin(previous(last));
-                    slots[ring.len()].neighbours[lane] = lanes[neighbour as usize];
+                    self.neighbours[start + ring.len()][lane] = lanes[neighbour as usize];
                 } else {
                     before[lane] = gradient(last);
                 }
             }
             self.before.push(before);
-            self.offsets.push(self.slots.len());
+            self.offsets.push(end);
         }
     }
 

@@ -8,7 +8,7 @@
 mod layout;
 mod passes;
 
-pub use layout::{Layout, Sheet, Slot, Tile};
+pub use layout::{Layout, Sheet, Tile};
 
 use crate::error::{Error, Result};
 use crate::evaluator::checks::culprit;
@@ -91,7 +91,7 @@ impl Plaquettes {
             gradients: vec![Default::default(); triangle_groups + 1],
             areas: vec![Lanes::default(); groups],
             total_gradients: vec![Vectors::default(); groups],
-            neighbour_gradients: vec![Vectors::default(); layout.slots.len()],
+            neighbour_gradients: vec![Vectors::default(); layout.neighbours.len()],
             totals: vec![0.0; layout.is_periodic.len()],
             tile_sums: vec![0.0; layout.triangle_tiles.len()],
             layout,

@@ -3,7 +3,7 @@
 //! Lanes are gone through by loops: calls of `array::map` and `from_fn` would not be compiled for the instruction set of
 //! the kernel that they are in.
 
-use super::layout::{Layout, Slot};
+use super::layout::Layout;
 use super::{LANES, Lanes, THIRD, Vectors};
 use crate::dynamics::instructions::{Arithmetic, Kernel, run};
 use crate::mesh::Cell;
@@ -245,8 +245,7 @@ impl Kernel for GatherAreas<'_> {
         let of_triangles = self.of_triangles.as_flattened();
         for (group, areas) in self.groups.zip(self.areas) {
             let mut sums = Lanes::default();
-            for Slot { triangles, .. } in &self.layout.slots[self.layout.slots_of(group..group + 1)]
-            {
+            for triangles in &self.layout.around[self.layout.slots_of(group..group + 1)] {
                 for lane in 0..LANES {
                     sums[lane] += of_triangles[triangles[lane] as usize];
                 }
@@ -288,8 +287,8 @@ impl Kernel for Gather<'_> {
         for (group, total) in self.groups.zip(self.totals) {
             let mut before = load(self.gradients, &self.layout.before[group]);
             let mut sum = Vectors::default();
-            for slot in &self.layout.slots[self.layout.slots_of(group..group + 1)] {
-                let after = load(self.gradients, &slot.gradients);
+            for places in &self.layout.gradients[self.layout.slots_of(group..group + 1)] {
+                let after = load(self.gradients, places);
                 let neighbour = neighbours.next().expect("as many as slots");
                 sum = plus::<A>(&sum, 1.0, &after);
                 *neighbour = times(&[THIRD; LANES], &plus::<A>(&before, 1.0, &after));

@@ -144,11 +144,11 @@ impl Kernel for Kick<'_> {
             let mut x = multiply_add::<A>(&by_itself, &total[0], &none);
             let mut y = multiply_add::<A>(&by_itself, &total[1], &none);
             let mut z = multiply_add::<A>(&by_itself, &total[2], &none);
-            for slot in &self.layout.slots[self.layout.slots_of(group..group + 1)] {
+            for neighbours in &self.layout.neighbours[self.layout.slots_of(group..group + 1)] {
                 let gradient = gradients.next().expect("as many as slots");
                 let mut theirs = Lanes::default();
                 for lane in 0..LANES {
-                    theirs[lane] = by_area[slot.neighbours[lane] as usize];
+                    theirs[lane] = by_area[neighbours[lane] as usize];
                 }
                 x = multiply_add::<A>(&theirs, &gradient[0], &x);
                 y = multiply_add::<A>(&theirs, &gradient[1], &y);
