@@ -1,4 +1,4 @@
-"""What a model of a closed surface does with Systems: joins them, runs alone, and tells its energies."""
+"""What a model of a surface does with Systems: joins them, runs alone, tells its energies."""
 
 import openmm
 from openmm import app
@@ -13,9 +13,10 @@ __all__ = ["InSystems"]
 
 
 class InSystems:
-    """A mesh of particles of one mass, with forces by their names, and bond flips and a viscosity if it has any.
+    """A mesh of particles of one mass with forces by their names, bond flips and a viscosity.
 
-    Derived classes have ``_mesh``, ``_mass``, and ``_forces(offset)`` for particles from `offset` on.
+    Derived classes have ``_mesh``, ``_mass``, and ``_forces(offset)`` for particles from `offset`
+    on.
     """
 
     _flips = None
@@ -116,7 +117,8 @@ class InSystems:
         """
         if self._placement is None:
             raise RuntimeError(
-                f"{type(self).__name__}: it is in no System yet; call simulation(), system() or add_to() first"
+                f"{type(self).__name__}: it is in no System yet; call simulation(), system() or "
+                "add_to() first"
             )
         return self._placement
 

@@ -178,9 +178,10 @@ class RedCell(InSystems):
 
     Notes
     -----
-    The biconcave shape is that of E. A. Evans and Y.-C. Fung, doi:10.1016/0026-2862(72)90069-6, with
-    a diameter of 7.82 µm, an area of 134 µm² and a volume of 94 µm³, which are the targets. All
-    shapes, at the start and at rest, are images of one triangulated sphere by maps that keep areas.
+    The biconcave shape is that of E. A. Evans and Y.-C. Fung, doi:10.1016/0026-2862(72)90069-6,
+    with a diameter of 7.82 µm, an area of 134 µm² and a volume of 94 µm³, which are the targets.
+    All shapes, at the start and at rest, are images of one triangulated sphere by maps that keep
+    areas.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Axisymmetric shapes of a sphere's topology, and maps of a triangulated sphere to them that keep areas."""
+"""Axisymmetric shapes, and maps of a triangulated sphere to them that keep areas."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ __all__ = ["EVANS_FUNG_DIAMETER", "Profile", "evans_fung", "spheroid"]
 
 #: Diameter of the mean red cell of Evans and Fung, nm.
 EVANS_FUNG_DIAMETER = 7820.0
-# Thickness of that cell, nm: √(1 − x²) (c0 + c1 x² + c2 x⁴) at the distance x from the axis, in radii.
+# Thickness of that cell, nm: √(1 − x²) (c0 + c1 x² + c2 x⁴) at x radii from the axis.
 _THICKNESS = (810.0, 7830.0, -4390.0)
 _POINTS = 20_001
 
@@ -57,8 +57,8 @@ def evans_fung(diameter: float) -> Profile:
 
 
 def spheroid(area: float, reduced_volume: float) -> Profile:
-    """The oblate spheroid of an area, nm², and of a reduced volume 6 √π V / A^{3/2}; 1 is a sphere."""
-    # Near a sphere the reduced volume hardly depends on the aspect ratio, so that is no equation to solve.
+    """The oblate spheroid of an area, nm², and a reduced volume 6 √π V / A^{3/2}; 1 is a sphere."""
+    # Near a sphere the reduced volume hardly depends on the aspect ratio: no equation to solve.
     low, high = (1.0, 1.0) if reduced_volume == 1 else (1e-3, 1.0)
     for _ in range(60):
         aspect = 0.5 * (low + high)
