@@ -556,6 +556,24 @@ def test_a_system_without_membranes_is_refused():
         REFERENCE.context(system, integrator_of("verlet"))
 
 
+def test_a_surface_inside_of_another_force_is_refused_unless_it_is_outside_too():
+    def inside(mesh, offset):
+        variable = mm.CustomCVForce("0.1*area")
+        variable.addCollectiveVariable(
+            "area", helfrich.SurfaceAreaForce(mesh, 1.0, 0.9 * mesh.area, offset=offset)
+        )
+        return variable
+
+    count = start().num_vertices
+    integrator = integrator_of("verlet")
+    context = context_of(integrator, inside(start(), 0))
+    integrator.step(2)
+    assert context.getStepCount() == 2
+    system = system_of(inside(helfrich.Mesh.icosphere(1, 20.0), count), extra=12)
+    with pytest.raises(mm.OpenMMException, match=rf"particle {count} is a vertex.*CustomCVForce"):
+        HELFRICH.context(system, integrator_of("verlet"))
+
+
 def test_two_triangulations_of_the_same_particles_are_refused():
     other = start().triangles.copy()
     a, b, c = other[0]

@@ -5,9 +5,11 @@
 #include "Movers.h"
 #include "openmm-helfrich/MonteCarloBondFlip.h"
 #include "openmm-helfrich/MonteCarloMembraneTension.h"
+#include "openmm-helfrich/TriangulatedForce.h"
 
 #include <openmm/AndersenThermostat.h>
 #include <openmm/CMMotionRemover.h>
+#include <openmm/CustomCVForce.h>
 #include <openmm/OpenMMException.h>
 #include <openmm/System.h>
 #include <openmm/reference/SimTKOpenMMRealType.h>
@@ -58,7 +60,20 @@ void refuseOthers(const string& subject, const System& system) {
     refuseScaling(subject, system);
 }
 
-/** A System's membrane forces must be there: a misplaced one would leave its vertices constant masses, unnoticed. */
+/** Refuse a surface inside of a force, in a Context of its own: its vertices would keep constant masses, unnoticed. */
+void refuseIn(const string& subject, const vector<bool>& isVertex, const Force& contained, const string& outer) {
+    if (auto* variables = dynamic_cast<const CustomCVForce*>(&contained))
+        for (int i = 0; i < variables->getNumCollectiveVariables(); i++)
+            refuseIn(subject, isVertex, variables->getCollectiveVariable(i), outer);
+    if (auto* force = dynamic_cast<const TriangulatedForce*>(&contained))
+        for (int particle : force->getTriangles())
+            if (!isVertex[particle])
+                throw OpenMMException(subject + ": particle " + std::to_string(particle) + " is a vertex of a " +
+                                      force->getTypeName() + " inside of the force \"" + outer +
+                                      "\" only; its mass follows the surfaces of the System's own forces, so add one " +
+                                      "on these triangles");
+}
+
 vector<std::shared_ptr<SharedMembrane>> findMembranes(const string& subject, ContextImpl& context) {
     auto membranes = SharedMembrane::findAll(context);
     if (membranes.empty())
@@ -100,6 +115,13 @@ void VariableMassStepKernel::initialize(ContextImpl& context, const VariableMass
     check(Helfrich_VariableMasses_create(subject.c_str(), (int64_t) constant.size(), constant.data(),
                                          integrator.getDensity(), &masses));
     findSurfaces(context);
+    vector<bool> isVertex(constant.size());
+    for (const auto& membrane : membranes)
+        for (int particle : membrane->getTriangles())
+            isVertex[particle] = true;
+    for (const ForceImpl* impl : context.getForceImpls())
+        for (const Force* contained : impl->getContainedForces())
+            refuseIn(subject, isVertex, *contained, impl->getOwner().getName());
     auto* ours = HelfrichPlatform::getData(context);
     if (ours != nullptr && Helfrich_Dynamics_usesTeam(system.getNumParticles()))
         team = ours->getTeam();
