@@ -14,6 +14,7 @@ from . import platforms
 from ._placement import Placement, groups_for
 from ._quantities import checked_field, checked_number, encloses
 from ._vesicle_flips import bath_of, checked_flips, mover_of
+from ._vesicle_skeleton import checked_skeleton, skeleton_of
 from ._vesicle_times import TimeScales
 from .analysis import theory, triangle_areas
 from .forces import (
@@ -94,6 +95,10 @@ class Vesicle(TimeScales):
         Energy γ per length of borders of an `EdgeTensionForce`, kJ/mol/nm. Default 0: without.
     gaussian_modulus : float or Quantity
         Modulus κ_G of a `GaussianCurvatureForce`, kJ/mol; it acts at borders. Default 0: without.
+    skeleton : mapping, optional
+        Elasticity against a reference: ``law``, "Skalak" (the default), "NeoHookean",
+        "LinearElastic" or "Spring", with the arguments of that force by their names, such as
+        ``shearModulus`` and ``areaModulus``. The ``reference`` is the mesh unless it is given.
     flips : float or mapping, optional
         Make the membrane fluid: attempts to flip a bond for each edge and time step (0.01 is a good
         start), or the arguments of a `MonteCarloBondFlip` after the triangles by their names, with
@@ -145,6 +150,7 @@ class Vesicle(TimeScales):
         min_triangle_area=0.0,
         edge_tension=0.0,
         gaussian_modulus=0.0,
+        skeleton=None,
         flips=None,
     ):
         nm = unit.nanometer
@@ -180,6 +186,7 @@ class Vesicle(TimeScales):
         self._gaussian_modulus = checked_number(
             "gaussian_modulus", gaussian_modulus, _ENERGY, negative=True
         )
+        self._skeleton = None if skeleton is None else checked_skeleton(skeleton)
         self._min_height = mesh.min_height(self._softness)
         self._area = checked_number("area", mesh.area if area is None else area, nm**2, zero=False)
         if not self._encloses:
@@ -248,7 +255,7 @@ class Vesicle(TimeScales):
         The particles follow those which the System has, so several vesicles can share one. Each
         force gets a force group of its own and a name: "area", "volume" where there is one,
         "bending", "heights", and "dihedrals", "triangle_areas", "plaquettes", "triangle_repulsion",
-        "edge_tension", "gaussian_curvature" if they are switched on.
+        "edge_tension", "gaussian_curvature", "skeleton" if they are switched on.
 
         Parameters
         ----------
@@ -390,4 +397,6 @@ class Vesicle(TimeScales):
             forces["gaussian_curvature"] = GaussianCurvatureForce(
                 mesh, self._gaussian_modulus, **at
             )
+        if self._skeleton is not None:
+            forces["skeleton"] = skeleton_of(self._skeleton, mesh, offset)
         return forces

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import copy
+import ctypes
 
 import numpy as np
 import openmm as mm
 import openmmhelfrich as helfrich
 import pytest
 from openmm import unit
+from openmmhelfrich import _core
 from platforms import ON_DEVICE, ON_PROCESSOR, REFERENCE, Target
 from running import Running
 
@@ -277,6 +279,42 @@ def test_only_these_have_a_reference():
         assert wrong != xml
         with pytest.raises(mm.OpenMMException, match=message):
             mm.XmlSerializer.deserialize(wrong)
+
+
+class TestC:
+    """The C functions, on forces that Python holds."""
+
+    def test_set_a_reference(self):
+        mesh = helfrich.Mesh.sheet(6, 6, 10.0, periodic=True)
+        force = make("SpringForce", mesh, mesh.vertices)
+        library, address = _core.library(), ctypes.c_void_p(int(force.this))
+        points = np.ascontiguousarray(1.1 * mesh.vertices)
+        box = np.ascontiguousarray(1.1 * mesh.box)
+        numbers, vectors = (x.ctypes.data_as(ctypes.c_void_p) for x in (points, box))
+        set_reference = library.Helfrich_MembraneForce_setReference
+        assert set_reference(address, numbers, len(points), vectors) == 0
+        np.testing.assert_array_equal(force.getReference(), points)
+        np.testing.assert_array_equal(force.getReferenceBox(), box)
+        points[3, 1] = np.inf
+        assert set_reference(address, numbers, len(points), None) == 1
+        assert _core.last_error().startswith("SpringForce: reference has vertex 3 at (")
+        bending = helfrich.BendingForce(mesh, 50)
+        address = ctypes.c_void_p(int(bending.this))
+        assert set_reference(address, numbers, len(points), None) == 1
+        assert "BendingForce: has no reference" in _core.last_error()
+
+    def test_set_domains(self):
+        mesh = helfrich.Mesh.icosphere(2, radius=10.0)
+        force = helfrich.LineTensionForce(mesh, 1.0, [0] * 42)
+        library, address = _core.library(), ctypes.c_void_p(int(force.this))
+        domains = np.arange(42, dtype=np.intc)
+        numbers = domains.ctypes.data_as(ctypes.c_void_p)
+        assert library.Helfrich_LineTensionForce_setDomains(address, numbers, 42) == 0
+        np.testing.assert_array_equal(force.getDomains(), domains)
+        other = make("SkalakForce", mesh, mesh.vertices)
+        address = ctypes.c_void_p(int(other.this))
+        assert library.Helfrich_LineTensionForce_setDomains(address, numbers, 42) == 1
+        assert "is of another class" in _core.last_error()
 
 
 # --- periodic boxes ------------------------------------------------------------------------------

@@ -43,9 +43,9 @@ extern int Helfrich_MembraneForce_setParameterValue(OpenMM_Force* force, const c
 extern int Helfrich_MembraneForce_setElementValues(OpenMM_Force* force, const char* parameter, const double* values,
                                                    int count);
 /**
- * Set where the vertices are at rest: three numbers for each, nm, in ascending order of particle index. `boxVectors` are
- * the nine numbers of the periodic box in which that is, nm, or null. Forces with a
- * reference need it after their creation.
+ * Set where the vertices are at rest: three numbers for each, nm, in ascending order of particle index. `boxVectors`
+ * are the nine numbers of the periodic box in which that is, nm, or null. Forces with a reference need it after their
+ * creation.
  */
 extern int Helfrich_MembraneForce_setReference(OpenMM_Force* force, const double* positions, int numVertices,
                                                const double* boxVectors);
@@ -186,25 +186,29 @@ extern int Helfrich_GaussianCurvatureForce_setModulus(OpenMM_Force* force, doubl
 
 /* Helfrich_MembraneForce_setReference() gives these four their shape at rest. */
 
-extern OpenMM_Force* Helfrich_SkalakForce_create(const int* triangles, int numTriangles, double shearModulus, double areaModulus);
+extern OpenMM_Force* Helfrich_SkalakForce_create(const int* triangles, int numTriangles, double shearModulus,
+                                                 double areaModulus);
 extern double Helfrich_SkalakForce_getShearModulus(OpenMM_Force* force);
 extern int Helfrich_SkalakForce_setShearModulus(OpenMM_Force* force, double shearModulus);
 extern double Helfrich_SkalakForce_getAreaModulus(OpenMM_Force* force);
 extern int Helfrich_SkalakForce_setAreaModulus(OpenMM_Force* force, double areaModulus);
 
-extern OpenMM_Force* Helfrich_NeoHookeanForce_create(const int* triangles, int numTriangles, double shearModulus, double areaModulus);
+extern OpenMM_Force* Helfrich_NeoHookeanForce_create(const int* triangles, int numTriangles, double shearModulus,
+                                                     double areaModulus);
 extern double Helfrich_NeoHookeanForce_getShearModulus(OpenMM_Force* force);
 extern int Helfrich_NeoHookeanForce_setShearModulus(OpenMM_Force* force, double shearModulus);
 extern double Helfrich_NeoHookeanForce_getAreaModulus(OpenMM_Force* force);
 extern int Helfrich_NeoHookeanForce_setAreaModulus(OpenMM_Force* force, double areaModulus);
 
-extern OpenMM_Force* Helfrich_LinearElasticForce_create(const int* triangles, int numTriangles, double shearModulus, double areaModulus);
+extern OpenMM_Force* Helfrich_LinearElasticForce_create(const int* triangles, int numTriangles, double shearModulus,
+                                                        double areaModulus);
 extern double Helfrich_LinearElasticForce_getShearModulus(OpenMM_Force* force);
 extern int Helfrich_LinearElasticForce_setShearModulus(OpenMM_Force* force, double shearModulus);
 extern double Helfrich_LinearElasticForce_getAreaModulus(OpenMM_Force* force);
 extern int Helfrich_LinearElasticForce_setAreaModulus(OpenMM_Force* force, double areaModulus);
 
-extern OpenMM_Force* Helfrich_SpringForce_create(const int* triangles, int numTriangles, double stiffness, double ratio, int form);
+extern OpenMM_Force* Helfrich_SpringForce_create(const int* triangles, int numTriangles, double stiffness, double ratio,
+                                                 int form);
 extern double Helfrich_SpringForce_getStiffness(OpenMM_Force* force);
 extern int Helfrich_SpringForce_setStiffness(OpenMM_Force* force, double stiffness);
 extern double Helfrich_SpringForce_getRatio(OpenMM_Force* force);

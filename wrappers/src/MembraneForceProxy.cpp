@@ -184,8 +184,7 @@ void MembraneForceProxy::readForce(const SerializationNode& node, MembraneForce&
         return;
     const SerializationNode& vertices = child(forceName, node, numbers);
     bool isReference = numbers == "Reference";
-    allow(forceName, vertices, {},
-          isReference ? set<string>{"Vertex", "BoxVector"} : set<string>{"Vertex"});
+    allow(forceName, vertices, {}, isReference ? set<string>{"Vertex", "BoxVector"} : set<string>{"Vertex"});
     within(forceName, vertices, [&] {
         force.setVertexNumbers(readRows(forceName, vertices, "Vertex", isReference ? coordinates : label));
         vector<double> box = readRows(forceName, vertices, "BoxVector", coordinates);

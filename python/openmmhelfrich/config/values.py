@@ -31,6 +31,7 @@ __all__ = [
     "number",
     "scale",
     "signed_energy",
+    "skeleton",
     "table",
     "text",
     "vector",
@@ -210,11 +211,39 @@ def flips(value, kT):
     """Attempts per edge and step, or a table of what `MonteCarloBondFlip` takes."""
     if not isinstance(value, dict):
         return number(least=0)(value, kT)
+    return _arguments("flips", _FLIPS, value, kT)
+
+
+def _share(value, kT):
+    result = number(above=0)(value, kT)
+    if result >= 1:
+        raise ValueError(f"must be below 1, got {result:g}")
+    return result
+
+
+#: The same for ``skeleton`` and the forces that it may be.
+_SKELETON = {
+    "law": ("law", choice(("Skalak", "NeoHookean", "LinearElastic", "Spring"))),
+    "shear_modulus": ("shearModulus", number(least=0)),
+    "area_modulus": ("areaModulus", number(least=0)),
+    "stiffness": ("stiffness", number(least=0)),
+    "ratio": ("ratio", _share),
+    "form": ("form", choice(("Harmonic", "WLCPower"))),
+}
+
+
+def skeleton(value, kT):
+    """A table of a law and of what its force takes."""
+    return _arguments("skeleton", _SKELETON, table(value, kT), kT)
+
+
+def _arguments(where, known, value, kT):
+    """The values of a table by the names of a class."""
     arguments = {}
     for name, given in value.items():
-        if name not in _FLIPS:
-            raise ValueError(f"there is no {name!r} in flips; {nearest(name, _FLIPS)}")
-        argument, read = _FLIPS[name]
+        if name not in known:
+            raise ValueError(f"there is no {name!r} in {where}; {nearest(name, known)}")
+        argument, read = known[name]
         try:
             arguments[argument] = read(given, kT)
         except ValueError as reason:

@@ -12,8 +12,8 @@ namespace HelfrichPlugin {
  *
  * with the principal strains e = (l^2 - 1)/2 of the principal stretches l1, l2 and the area A0 of the triangle in the
  * reference. mu is the shear and K the area modulus at small strains. This is the law of de Saint-Venant and Kirchhoff
- * (P. G. Ciarlet, Mathematical Elasticity I, North-Holland 1988). It is for small strains: a triangle that is compressed
- * to nothing has a finite energy, and resists less and less on the way there.
+ * (P. G. Ciarlet, Mathematical Elasticity I, North-Holland 1988). It is for small strains: a triangle that is
+ * compressed to nothing has a finite energy, and resists less and less on the way there.
  *
  * The reference gives each vertex a position, so that a triangle which bond flips make has the shape at rest that its
  * new corners have there; see SkalakForce.

@@ -355,7 +355,8 @@ inline void MembraneForce::setReferenceBox(const std::vector<double>& vectors) {
         fail("has no reference that could be in a box");
     if (!vectors.empty() && vectors.size() != 9)
         fail("the box of the reference needs nine numbers, got " + std::to_string(vectors.size()));
-    check(Helfrich_Potential_checkNumbers(getTypeName().c_str(), nullptr, 0, vectors.empty() ? nullptr : vectors.data()));
+    check(
+        Helfrich_Potential_checkNumbers(getTypeName().c_str(), nullptr, 0, vectors.empty() ? nullptr : vectors.data()));
     referenceBox = vectors;
 }
 

@@ -10,12 +10,12 @@ namespace HelfrichPlugin {
  *
  *     E = sum over triangles of A0 [ mu/2 (l1/l2 + l2/l1 - 2) + K/2 (l1 l2 - 1)^2 ]
  *
- * with the principal stretches l1, l2 of a triangle, whose area in the reference is A0. Shear at fixed area costs mu and
- * growth K only, however large they are; at small strains mu is the shear and K the area modulus.
+ * with the principal stretches l1, l2 of a triangle, whose area in the reference is A0. Shear at fixed area costs mu
+ * and growth K only, however large they are; at small strains mu is the shear and K the area modulus.
  *
  * It is the first-order material of E. A. Evans and R. Skalak, Mechanics and Thermodynamics of Biomembranes (CRC Press,
- * 1980), mu beta + K/2 alpha^2 with alpha = l1 l2 - 1 and beta = (l1^2 + l2^2)/(2 l1 l2) - 1, to which G. Lim, M. Wortis
- * and R. Mukhopadhyay (doi:10.1073/pnas.202617299) add terms of higher order.
+ * 1980), mu beta + K/2 alpha^2 with alpha = l1 l2 - 1 and beta = (l1^2 + l2^2)/(2 l1 l2) - 1, to which G. Lim, M.
+ * Wortis and R. Mukhopadhyay (doi:10.1073/pnas.202617299) add terms of higher order.
  *
  * The reference gives each vertex a position, so that a triangle which bond flips make has the shape at rest that its
  * new corners have there; see SkalakForce.

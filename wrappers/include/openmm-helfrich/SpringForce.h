@@ -10,9 +10,9 @@ namespace HelfrichPlugin {
  *
  *     E = sum over edges of f(l)
  *
- * with the length l of an edge. Each spring has its minimum, f = 0, at the length l0 that its edge has in the reference,
- * and there the stiffness k = f'' that all have. A net of equilateral triangles without tension has the shear modulus
- * sqrt(3)/4 k and the area modulus sqrt(3)/2 k.
+ * with the length l of an edge. Each spring has its minimum, f = 0, at the length l0 that its edge has in the
+ * reference, and there the stiffness k = f'' that all have. A net of equilateral triangles without tension has the
+ * shear modulus sqrt(3)/4 k and the area modulus sqrt(3)/2 k.
  *
  * The reference gives each vertex a position, so that an edge which bond flips make is as long at rest as its ends are
  * apart there.
@@ -28,10 +28,10 @@ public:
          */
         Harmonic = 0,
         /**
-         * f = A [g(x) - g(x0)] + p (1/l - 1/l0), a worm-like chain with g(x) = (3 x^2 - 2 x^3)/(1 - x), x = l/lmax, and a
-         * repulsion, of which l0 and k determine A and p: D. A. Fedosov, B. Caswell and G. E. Karniadakis, Biophys. J. 98,
-         * 2215 (2010), doi:10.1016/j.bpj.2010.02.002, with m = 2, p = k_p and A = kBT lmax/(4p) there. An edge of
-         * length lmax or more is an error that names it.
+         * f = A [g(x) - g(x0)] + p (1/l - 1/l0), a worm-like chain with g(x) = (3 x^2 - 2 x^3)/(1 - x), x = l/lmax, and
+         * a repulsion, of which l0 and k determine A and p: D. A. Fedosov, B. Caswell and G. E. Karniadakis, Biophys.
+         * J. 98, 2215 (2010), doi:10.1016/j.bpj.2010.02.002, with m = 2, p = k_p and A = kBT lmax/(4p) there. An edge
+         * of length lmax or more is an error that names it.
          */
         WLCPower = 1
     };
