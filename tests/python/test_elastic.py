@@ -11,7 +11,7 @@ import openmmhelfrich as helfrich
 import pytest
 from openmm import unit
 from openmmhelfrich import _core
-from platforms import ON_DEVICE, ON_PROCESSOR, REFERENCE, Target
+from platforms import NATIVE, ON_DEVICE, ON_PROCESSOR, REFERENCE, Target
 from running import Running
 
 STRAINS = ("SkalakForce", "NeoHookeanForce", "LinearElasticForce")
@@ -349,6 +349,31 @@ def test_a_mesh_brings_its_box(name: str):
     bare.setReferenceBox(mesh.box / 4)
     with pytest.raises(mm.OpenMMException, match=f"^{name}: particles .* apart in the reference"):
         wide.energy(bare)
+
+
+@pytest.mark.parametrize("target", [*ON_PROCESSOR, *NATIVE], ids=str)
+def test_a_spanning_surface_needs_a_box_of_the_reference(target: Target):
+    """When it is first evaluated, and when a Context that knows it is told of another reference."""
+    mesh = helfrich.Mesh.sheet(6, 6, 10.0, periodic=True)
+    message = "SkalakForce: the surface .* the reference .* no box"
+    system = mm.System()
+    for _ in range(mesh.num_vertices):
+        system.addParticle(50.0)
+    system.setDefaultPeriodicBoxVectors(*mesh.box)
+    force = make("SkalakForce", mesh, mesh.vertices)
+    force.setBackend(target.backend)
+    system.addForce(force)
+    context = target.context(system)
+    context.setPositions(1.001 * mesh.vertices)
+    with pytest.raises(mm.OpenMMException, match=message):
+        context.getState(getEnergy=True)
+    force.setReferenceBox(mesh.box)
+    force.updateParametersInContext(context)
+    before = context.getState(getEnergy=True).getPotentialEnergy()
+    force.setReferenceBox(None)
+    with pytest.raises(mm.OpenMMException, match=message):
+        force.updateParametersInContext(context)
+    assert context.getState(getEnergy=True).getPotentialEnergy() == before
 
 
 # --- what may change -----------------------------------------------------------------------------

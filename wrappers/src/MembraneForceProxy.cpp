@@ -4,6 +4,7 @@
 #include "XmlElements.h"
 
 #include <algorithm>
+#include <cctype>
 #include <memory>
 #include <set>
 #include <vector>
