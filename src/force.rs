@@ -26,6 +26,14 @@ pub use surface_viscosity::SurfaceViscosityThermostat;
 /// bending.set("rigidity", 40.0)?.set_variant("GompperKrollBarycentric")?;
 /// assert_eq!(bending.get("rigidity")?, 40.0);
 /// assert!(bending.set("rigidity", f64::NAN).is_err());
+///
+/// let at_rest = [[1., 0., 0.], [-1., 0., 0.], [0., 1., 0.], [0., -1., 0.], [0., 0., 1.], [0., 0., -1.]];
+/// let mut skeleton = MembraneForce::new("SkalakForce", &octahedron, &[0.4, 1.0])?;
+/// skeleton.set_reference(&at_rest, None)?;
+/// assert!(bending.set_reference(&at_rest, None).is_err());
+/// let mut line = MembraneForce::new("LineTensionForce", &octahedron, &[2.0])?;
+/// line.set_domains(&[0, 0, 0, 0, 0, 1])?;
+/// assert!(skeleton.set_domains(&[0; 6]).is_err());
 /// # Ok::<(), openmm_helfrich::error::Error>(())
 /// ```
 pub struct MembraneForce {

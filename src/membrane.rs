@@ -19,7 +19,7 @@ mod surface;
 pub use connectivity::Connectivity;
 use constants::{Equipped, Workshop, need_constants};
 pub use flips::Follower;
-use surface::Surface;
+use surface::{Surface, check_references};
 
 /// How many membranes there are, which tells whether forces share them and whether any are left over.
 static ALIVE: AtomicI64 = AtomicI64::new(0);
@@ -181,12 +181,14 @@ impl Membrane {
     /// Some terms with their constants of triangles, for who evaluates them elsewhere; and the mesh.
     ///
     /// # Errors
-    /// A triangle that has no shape at rest.
+    /// Numbers of more or fewer vertices than there are; a triangle that has no shape at rest; a reference without a box,
+    /// where the surface is known to span its own.
     pub fn equip<'a>(
         &'a mut self,
         terms: &[Term<'a>],
     ) -> Result<(Equipped<'a>, &'a Triangulation)> {
         let surface = &self.surface;
+        check_references(&surface.mesh, terms)?;
         Ok((self.workshop.equip(&surface.mesh, surface.generation, terms)?, &surface.mesh))
     }
 

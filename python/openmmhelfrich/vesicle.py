@@ -12,6 +12,7 @@ from openmm import unit
 from ._in_systems import InSystems
 from ._quantities import checked_field, checked_number, encloses
 from ._vesicle_flips import checked_flips, mover_of
+from ._vesicle_skeleton import checked_skeleton, skeleton_of
 from ._vesicle_times import TimeScales
 from ._vesicle_totals import checked_area_difference, checked_osmotic
 from ._vesicle_viscosity import checked_viscosity, thermostat_of
@@ -107,6 +108,10 @@ class Vesicle(InSystems, TimeScales):
     area_difference : mapping, optional
         ``alpha`` and ``delta_a0`` of `area_difference_parameters`, for κ and A0, or ``modulus``,
         kJ/mol/nm², and ``target``, nm, of an `AreaDifferenceForce`.
+    skeleton : mapping, optional
+        Elasticity against a reference: ``law``, "Skalak" (the default), "NeoHookean",
+        "LinearElastic" or "Spring", with the arguments of that force by their names, such as
+        ``shearModulus`` and ``areaModulus``. The ``reference`` is the mesh unless it is given.
     flips : float or mapping, optional
         Make the membrane fluid: attempts to flip a bond for each edge and time step (0.01 is a good
         start), or the arguments of a `MonteCarloBondFlip` after the triangles by their names, with
@@ -168,6 +173,7 @@ class Vesicle(InSystems, TimeScales):
         surface_tension=0.0,
         osmotic=None,
         area_difference=None,
+        skeleton=None,
         flips=None,
         viscosity=None,
     ):
@@ -211,6 +217,7 @@ class Vesicle(InSystems, TimeScales):
         self._osmotic = None if osmotic is None else checked_osmotic(osmotic)
         if not self._encloses and (self._pressure != 0 or self._osmotic is not None):
             raise ValueError("Vesicle: the mesh encloses no volume on which a pressure could act")
+        self._skeleton = None if skeleton is None else checked_skeleton(skeleton)
         self._min_height = mesh.min_height(self._softness)
         self._area = checked_number("area", mesh.area if area is None else area, nm**2, zero=False)
         if not self._encloses:
@@ -326,4 +333,6 @@ class Vesicle(InSystems, TimeScales):
             forces["osmotic"] = OsmoticPressureForce(mesh, **self._osmotic, **at)
         if self._area_difference is not None:
             forces["area_difference"] = AreaDifferenceForce(mesh, **self._area_difference, **at)
+        if self._skeleton is not None:
+            forces["skeleton"] = skeleton_of(self._skeleton, mesh, offset)
         return forces

@@ -1,5 +1,6 @@
 //! Flips of a membrane, and of those that follow it.
 
+use super::surface::check_references;
 use super::{Configuration, Membrane};
 use crate::contact::is_contact;
 use crate::error::{Error, Result};
@@ -55,7 +56,7 @@ impl Membrane {
         let surface = &mut self.surface;
         let equipped = self.workshop.equip(&surface.mesh, surface.generation, terms)?;
         let mut placed = surface.place(at)?;
-        placed.check_references(terms)?;
+        check_references(placed.present.mesh, terms)?;
         let (mesh, into) = (placed.present.mesh, before.as_deref_mut());
         self.local.fill(mesh, terms, cell, |survey| placed.survey(&equipped, into, survey))?;
 

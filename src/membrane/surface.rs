@@ -194,25 +194,6 @@ impl Placed<'_> {
         Ok(of_geometry + self.borders.virial(mesh, terms, positions, cell)?)
     }
 
-    /// Refuse a reference that does not say how the surface goes on where it spans the periodic box.
-    ///
-    /// # Errors
-    /// Names the force.
-    pub fn check_references(&self, terms: &[Term]) -> Result<()> {
-        let mesh = self.present.mesh;
-        let Some(triangle) = mesh.images().iter().position(|images| *images != [[0; 3]; 3]) else {
-            return Ok(());
-        };
-        let has_no_box = |term: &&Term| {
-            let made_of = term.potential.constants(term);
-            matches!(made_of, Some(MadeOf::Reference(_))) && term.numbers.vectors.is_none()
-        };
-        terms.iter().find(has_no_box).map_or(Ok(()), |term| {
-            let (force, particle) = (term.potential.name(), mesh.particles_of(triangle)[0]);
-            Err(Error::NoReferenceBox { force, particle })
-        })
-    }
-
     /// Refuse triangles that all run clockwise, as a slip in a mesh has them, before a volume below zero becomes a
     /// pressure that blows the membrane up. That is settled by the first positions that a term asks about, for good:
     /// a shape that turns inside out later, or crosses itself, follows the formula, whose volume has a sign. What spans a
@@ -221,7 +202,7 @@ impl Placed<'_> {
     /// # Errors
     /// Names the force.
     pub fn look_for_outside(&mut self, terms: &[Term]) -> Result<()> {
-        self.check_references(terms)?;
+        check_references(self.present.mesh, terms)?;
         let mesh = self.present.mesh;
         if *self.has_outside && mesh.images().is_empty() {
             return Ok(());
@@ -244,4 +225,22 @@ impl Placed<'_> {
             }
         }
     }
+}
+
+/// Refuse a reference that does not say how the surface goes on where it spans the periodic box.
+///
+/// # Errors
+/// Names the force.
+pub(super) fn check_references(mesh: &Triangulation, terms: &[Term]) -> Result<()> {
+    let Some(triangle) = mesh.images().iter().position(|images| *images != [[0; 3]; 3]) else {
+        return Ok(());
+    };
+    let has_no_box = |term: &&Term| {
+        let made_of = term.potential.constants(term);
+        matches!(made_of, Some(MadeOf::Reference(_))) && term.numbers.vectors.is_none()
+    };
+    terms.iter().find(has_no_box).map_or(Ok(()), |term| {
+        let (force, particle) = (term.potential.name(), mesh.particles_of(triangle)[0]);
+        Err(Error::NoReferenceBox { force, particle })
+    })
 }

@@ -7,6 +7,7 @@ from pathlib import Path
 import contact_twin
 import numpy as np
 import openmm
+import openmmhelfrich as helfrich
 import pytest
 from click.testing import CliRunner
 from openmmhelfrich import (
@@ -615,6 +616,80 @@ class TestTotals:
     def test_mistakes(self, write, old, new, message):
         with pytest.raises(ConfigError, match=message):
             config.read(write(PRESSED.replace(old, new, 1)))
+
+
+SKELETON = """simulation.duration = 4
+
+[[vesicle]]
+skeleton = { law = "Skalak", shear_modulus = 0.4, area_modulus = 1 }
+mesh = { icosphere = 2, radius = 30 }
+"""
+
+
+class TestSkeleton:
+    @pytest.mark.parametrize(
+        ("table", "force", "arguments"),
+        [
+            (
+                'law = "Skalak", shear_modulus = 0.4, area_modulus = 1',
+                "SkalakForce",
+                {"shearModulus": 0.4, "areaModulus": 1},
+            ),
+            (
+                'law = "LinearElastic", shear_modulus = 0, area_modulus = 1',
+                "LinearElasticForce",
+                {"shearModulus": 0, "areaModulus": 1},
+            ),
+            (
+                'law = "Spring", stiffness = 2, form = "WLCPower", ratio = 0.4',
+                "SpringForce",
+                {"stiffness": 2, "form": "WLCPower", "ratio": 0.4},
+            ),
+        ],
+    )
+    def test_as_by_hand(self, write, table, force, arguments):
+        before = 'law = "Skalak", shear_modulus = 0.4, area_modulus = 1'
+        cfg = config.read(write(SKELETON.replace(before, table)))
+        mesh = Mesh.icosphere(2, 30)
+        shaken = mesh.vertices + np.random.default_rng(1).normal(size=mesh.vertices.shape)
+        context = cfg.simulation("Reference").context
+        context.setPositions(shaken)
+        by_hand = getattr(helfrich, force)(mesh, reference=mesh, **arguments)
+        expected = Mesh(shaken, mesh.triangles).energy(by_hand)
+        assert cfg.energies(context)["skeleton"] == pytest.approx(expected, rel=1e-12)
+        assert expected > 0.1
+
+    @pytest.mark.parametrize(
+        ("old", "new", "message"),
+        [
+            ("Skalak", "Skalac", r"skeleton: law: there is no 'Skalac'; did you mean Skalak"),
+            ("shear_modulus", "modulus", r"no 'modulus' in skeleton"),
+            ("shear_modulus = 0.4, ", "", r"SkalakForce: missing a required argument"),
+            ("= 0.4", "= -0.4", r"shear_modulus: must be 0 or more, got -0.4"),
+            ("shear_modulus = 0.4", "ratio = 1.0", r"ratio: must be below 1, got 1"),
+            ("= 0.4", "= 0.4, stiffness = 1", r"SkalakForce: .*'stiffness'"),
+            ('{ law = "Skalak", shear_modulus = 0.4, area_modulus = 1 }', "1", r"expected a table"),
+        ],
+    )
+    def test_mistakes(self, write, old, new, message):
+        with pytest.raises(ConfigError, match=message):
+            config.read(write(SKELETON.replace(old, new, 1)))
+
+    def test_of_a_vesicle(self):
+        mesh = Mesh.icosphere(2, 30)
+        larger = 1.1 * mesh.vertices
+        given = {"shearModulus": 0.4, "areaModulus": 1, "reference": larger}
+        vesicle = Vesicle(mesh, skeleton=given)
+        context = vesicle.simulation(openmm.VerletIntegrator(0.01), "Reference").context
+        expected = mesh.energy(helfrich.SkalakForce(mesh, 0.4, 1, larger))
+        assert vesicle.energies(context)["skeleton"] == pytest.approx(expected, rel=1e-12)
+        for wrong, error, message in (
+            (1.0, TypeError, "needs a mapping"),
+            ({"law": "Hooke"}, ValueError, "no law 'Hooke'; known are Skalak"),
+            ({"shearModulus": 1}, TypeError, "SkalakForce: missing"),
+        ):
+            with pytest.raises(error, match=message):
+                Vesicle(mesh, skeleton=wrong)
 
 
 class TestDocuments:

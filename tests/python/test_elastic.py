@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import copy
+import ctypes
 
 import numpy as np
 import openmm as mm
 import openmmhelfrich as helfrich
 import pytest
 from openmm import unit
-from platforms import ON_DEVICE, ON_PROCESSOR, REFERENCE, Target
+from openmmhelfrich import _core
+from platforms import NATIVE, ON_DEVICE, ON_PROCESSOR, REFERENCE, Target
 from running import Running
 
 STRAINS = ("SkalakForce", "NeoHookeanForce", "LinearElasticForce")
@@ -279,6 +281,42 @@ def test_only_these_have_a_reference():
             mm.XmlSerializer.deserialize(wrong)
 
 
+class TestC:
+    """The C functions, on forces that Python holds."""
+
+    def test_set_a_reference(self):
+        mesh = helfrich.Mesh.sheet(6, 6, 10.0, periodic=True)
+        force = make("SpringForce", mesh, mesh.vertices)
+        library, address = _core.library(), ctypes.c_void_p(int(force.this))
+        points = np.ascontiguousarray(1.1 * mesh.vertices)
+        box = np.ascontiguousarray(1.1 * mesh.box)
+        numbers, vectors = (x.ctypes.data_as(ctypes.c_void_p) for x in (points, box))
+        set_reference = library.Helfrich_MembraneForce_setReference
+        assert set_reference(address, numbers, len(points), vectors) == 0
+        np.testing.assert_array_equal(force.getReference(), points)
+        np.testing.assert_array_equal(force.getReferenceBox(), box)
+        points[3, 1] = np.inf
+        assert set_reference(address, numbers, len(points), None) == 1
+        assert _core.last_error().startswith("SpringForce: reference has vertex 3 at (")
+        bending = helfrich.BendingForce(mesh, 50)
+        address = ctypes.c_void_p(int(bending.this))
+        assert set_reference(address, numbers, len(points), None) == 1
+        assert "BendingForce: has no reference" in _core.last_error()
+
+    def test_set_domains(self):
+        mesh = helfrich.Mesh.icosphere(2, radius=10.0)
+        force = helfrich.LineTensionForce(mesh, 1.0, [0] * 42)
+        library, address = _core.library(), ctypes.c_void_p(int(force.this))
+        domains = np.arange(42, dtype=np.intc)
+        numbers = domains.ctypes.data_as(ctypes.c_void_p)
+        assert library.Helfrich_LineTensionForce_setDomains(address, numbers, 42) == 0
+        np.testing.assert_array_equal(force.getDomains(), domains)
+        other = make("SkalakForce", mesh, mesh.vertices)
+        address = ctypes.c_void_p(int(other.this))
+        assert library.Helfrich_LineTensionForce_setDomains(address, numbers, 42) == 1
+        assert "is of another class" in _core.last_error()
+
+
 # --- periodic boxes ------------------------------------------------------------------------------
 
 
@@ -311,6 +349,31 @@ def test_a_mesh_brings_its_box(name: str):
     bare.setReferenceBox(mesh.box / 4)
     with pytest.raises(mm.OpenMMException, match=f"^{name}: particles .* apart in the reference"):
         wide.energy(bare)
+
+
+@pytest.mark.parametrize("target", [*ON_PROCESSOR, *NATIVE], ids=str)
+def test_a_spanning_surface_needs_a_box_of_the_reference(target: Target):
+    """When it is first evaluated, and when a Context that knows it is told of another reference."""
+    mesh = helfrich.Mesh.sheet(6, 6, 10.0, periodic=True)
+    message = "SkalakForce: the surface .* the reference .* no box"
+    system = mm.System()
+    for _ in range(mesh.num_vertices):
+        system.addParticle(50.0)
+    system.setDefaultPeriodicBoxVectors(*mesh.box)
+    force = make("SkalakForce", mesh, mesh.vertices)
+    force.setBackend(target.backend)
+    system.addForce(force)
+    context = target.context(system)
+    context.setPositions(1.001 * mesh.vertices)
+    with pytest.raises(mm.OpenMMException, match=message):
+        context.getState(getEnergy=True)
+    force.setReferenceBox(mesh.box)
+    force.updateParametersInContext(context)
+    before = context.getState(getEnergy=True).getPotentialEnergy()
+    force.setReferenceBox(None)
+    with pytest.raises(mm.OpenMMException, match=message):
+        force.updateParametersInContext(context)
+    assert context.getState(getEnergy=True).getPotentialEnergy() == before
 
 
 # --- what may change -----------------------------------------------------------------------------

@@ -311,6 +311,12 @@ SURFACES = {
         DISK, helfrich.BendingForce(DISK, 50), helfrich.EdgeTensionForce(DISK, 1)
     ),
     "periodic": lambda: system_on(SHEET, helfrich.BendingForce(SHEET, 50)),
+    # By vertex it is one of all triangles.
+    "domains": lambda: system_on(
+        DISK,
+        helfrich.GaussianCurvatureForce(DISK, np.linspace(-9, -1, DISK.num_vertices)),
+        helfrich.SkalakForce(DISK, 1, 1, DISK),
+    ),
 }
 
 

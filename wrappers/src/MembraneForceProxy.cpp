@@ -4,6 +4,7 @@
 #include "XmlElements.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <memory>
 #include <set>

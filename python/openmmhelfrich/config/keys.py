@@ -23,6 +23,7 @@ from .values import (
     osmotic,
     scale,
     signed_energy,
+    skeleton,
     text,
     vector,
     viscosity,
@@ -155,6 +156,11 @@ KEYS: tuple[Key, ...] = (
         "Area-difference elasticity: `{ alpha = 1.4, delta_a0 = 1.1 }`, for `rigidity` and `area`, "
         "or `{ modulus = …, target = … }`, kJ/mol/nm² and nm; see [energies.md](energies.md). "
         "Default: none."),
+    Key("vesicle", "skeleton", skeleton, None,
+        "Elasticity against the mesh: `{ law = \"Skalak\", shear_modulus = 0.004, "
+        "area_modulus = 0.01 }`, kJ/mol/nm², or the laws `NeoHookean` and `LinearElastic`, or "
+        "`{ law = \"Spring\", stiffness = 0.01, form = \"WLCPower\", ratio = 0.45 }`; see "
+        "[energies.md](energies.md). Default: none."),
     Key("vesicle", "flips", flips, None,
         "Flip bonds, so that the membrane is fluid: attempts per edge and step, such as 0.01, or a "
         "table `{ attempts_per_edge = 0.1, frequency = 10, min_degree = 3, max_degree = 10, "

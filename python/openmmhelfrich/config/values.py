@@ -33,6 +33,7 @@ __all__ = [
     "osmotic",
     "scale",
     "signed_energy",
+    "skeleton",
     "table",
     "text",
     "vector",
@@ -258,6 +259,28 @@ def viscosity(value, kT):
     if "friction" not in arguments:
         raise ValueError("it lacks friction, amu/ps")
     return arguments
+
+def _share(value, kT):
+    result = number(above=0)(value, kT)
+    if result >= 1:
+        raise ValueError(f"must be below 1, got {result:g}")
+    return result
+
+
+#: The same for ``skeleton`` and the forces that it may be.
+_SKELETON = {
+    "law": ("law", choice(("Skalak", "NeoHookean", "LinearElastic", "Spring"))),
+    "shear_modulus": ("shearModulus", number(least=0)),
+    "area_modulus": ("areaModulus", number(least=0)),
+    "stiffness": ("stiffness", number(least=0)),
+    "ratio": ("ratio", _share),
+    "form": ("form", choice(("Harmonic", "WLCPower"))),
+}
+
+
+def skeleton(value, kT):
+    """A table of a law and of what its force takes."""
+    return _arguments("skeleton", _SKELETON, table(value, kT), kT)
 
 
 def _arguments(where, known, value, kT):
