@@ -95,12 +95,21 @@ def _stretched(u, lip):
     return x, 1 / slope(x)
 
 
-class _Shapes:
-    """Energy and constraints of one branch, as functions of the variables (a_n …, L)."""
+class Shapes:
+    """Energy and constraints as functions of the variables (a_n …, L).
 
-    def __init__(self, branch, lip=None):
-        every = 1 if branch == "stomatocyte" else 2
-        self.n = np.arange(every, 1 + MODES[branch], every)
+    Parameters
+    ----------
+    highest : int
+        Highest n.
+    every : int
+        1 for any shape, 2 for those that are their own image.
+    lip : (float, float), optional
+        Centre and width, in x, of what gets half of all nodes.
+    """
+
+    def __init__(self, highest, every, lip=None):
+        self.n = np.arange(every, 1 + highest, every)
         u, weights, integral = _nodes()
         self.u, self.u_weights = u, weights
         self.x, self.stretch = _stretched(u, lip)
@@ -144,6 +153,18 @@ class _Shapes:
         gradient[-1] += energy / length
         return energy, gradient
 
+    def area_difference(self, variables):
+        """Δa = ∫ (dψ/ds + sin ψ / r) r ds / 4 at A = 4π, and its gradient."""
+        length = variables[-1]
+        psi, slope = self.angles(variables)
+        r, d_r, _, _ = self._radius(psi, length)
+        weights = self.weights / 4
+        gradient = (weights * slope) @ d_r
+        gradient[:-1] += (weights * r / self.stretch) @ self.cosines
+        gradient[:-1] += length * (weights * np.cos(psi)) @ self.sines
+        gradient[-1] += weights @ np.sin(psi)
+        return weights @ (slope * r + length * np.sin(psi)), gradient
+
     def constraints(self, variables):
         """A / 4π and V / (4π/3), the end of r, and their gradients."""
         length, weights = variables[-1], self.weights
@@ -157,16 +178,21 @@ class _Shapes:
         d_volume[-1] += volume / length
         return np.array([area, volume, end]), np.array([d_area, d_volume, d_end])
 
-    def minimum(self, reduced_volume, start):
-        """Variables of the least energy near a start, or RuntimeError."""
+    def minimum(self, reduced_volume, start, energy=None, bounds=None):
+        """Variables of the least energy near a start, or RuntimeError.
+
+        Another energy than that of bending alone is a function of the variables, with its gradient;
+        bounds are those of each of them.
+        """
         targets = np.array([1, reduced_volume, 0])
         # Up-down symmetric contours end on the axis by themselves.
         used = slice(0, 3 if self.n[0] == 1 else 2)
         found = minimize(
-            self.energy,
+            energy or self.energy,
             start,
             jac=True,
             method="SLSQP",
+            bounds=bounds,
             constraints={
                 "type": "eq",
                 "fun": lambda variables: (self.constraints(variables)[0] - targets)[used],
@@ -230,6 +256,10 @@ def contour(branch, reduced_volume):
     return shapes.contour(branch, reduced_volume, shapes.minimum(reduced_volume, start))
 
 
+def _shapes(branch, lip=None):
+    return Shapes(MODES[branch], 1 if branch == "stomatocyte" else 2, lip)
+
+
 @cache
 def _along(branch, steps, upwards):
     """The shape that many steps in ν from the start of its branch, and its variables."""
@@ -244,7 +274,7 @@ def _along(branch, steps, upwards):
 def _first(branch):
     """A start for the first shape of a branch."""
     if branch != "stomatocyte":
-        shapes = _Shapes(branch)
+        shapes = _shapes(branch)
         start = np.append(0 * shapes.n, np.pi)
         start[0] = 0.6 if branch == "prolate" else -0.6
         return shapes, start
@@ -253,7 +283,7 @@ def _first(branch):
     inner = (1 - outer**2) ** 0.5
     lengths = np.pi * np.cumsum([0, 0.8 * outer, 0.5 * (outer - inner), 0.8 * inner])
     ends = lengths / lengths[-1]
-    shapes = _Shapes(branch, ((ends[1] + ends[2]) / 2, ends[2] - ends[1]))
+    shapes = _shapes(branch, ((ends[1] + ends[2]) / 2, ends[2] - ends[1]))
     psi = np.interp(shapes.x, ends, np.pi * np.array([0, 0.8, 1.8, 1]))
     start = shapes.variables(psi, lengths[-1])
     start[:-1] /= 1 + (shapes.n / 10) ** 2
@@ -266,7 +296,7 @@ def _continued(branch, shapes, variables):
         return shapes, variables
     psi, slope = shapes.angles(variables)
     highest = np.argmax(slope)
-    again = _Shapes(branch, (shapes.x[highest], np.pi / slope[highest]))
+    again = _shapes(branch, (shapes.x[highest], np.pi / slope[highest]))
     return again, again.variables(np.interp(again.x, shapes.x, psi), variables[-1])
 
 

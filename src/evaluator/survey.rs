@@ -15,7 +15,7 @@ pub struct Survey {
     pub vertices: Vec<SurveyedVertex>,
     /// The vectors of all vertices; empty unless a term needs Voronoi areas or vectors.
     pub vectors: Vec<VertexVectors>,
-    /// Area and volume.
+    /// Of the whole surface, as far as terms need them.
     pub totals: Totals,
 }
 

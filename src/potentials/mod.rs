@@ -405,6 +405,16 @@ mod tests {
     }
 
     #[test]
+    fn energies_of_totals_say_which_total() {
+        for potential in REGISTRY {
+            let values = vec![1.0; potential.parameters().len()];
+            let term = Term::new(potential.name(), 0, &values).unwrap();
+            let acts = potential.needs(&term).contains(Needs::TOTALS);
+            assert_eq!(potential.reference(&term).is_some(), acts, "{}", potential.name());
+        }
+    }
+
+    #[test]
     fn domains_are_kept() {
         let parameter = |domain| Parameter::new(c"x", 0, 1, domain);
         assert!(parameter(Domain::Angle).check(3.2).is_err());

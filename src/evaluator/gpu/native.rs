@@ -181,7 +181,7 @@ impl Native {
         if !frame.fill(topology, *precision, scale, terms, wishes, longest) {
             let names: Vec<_> = terms.iter().map(|term| term.potential.name()).collect();
             return Err(Error::Contract(format!(
-                "a target area or volume of {} is too large for a GPU platform; check its unit, or set the backend \
+                "a target of {} is too large for a GPU platform; check its unit, or set the backend \
                  \"cpu\"",
                 names.join(", ")
             )));
