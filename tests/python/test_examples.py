@@ -41,6 +41,18 @@ def demo(tmp_path_factory):
     return folder, result.stdout
 
 
+def test_variable_masses(tmp_path):
+    run(EXAMPLES / "variable_mass.py", "energy", "areas", "--quick", "--out", tmp_path)
+    energy, areas = (
+        list(csv.DictReader((tmp_path / f"{name}.csv").open(encoding="utf-8")))
+        for name in ("energy", "areas")
+    )
+    assert len(energy) == 2 and len(areas) == 3
+    assert all(0 < float(row["largest"]) < 1e-3 for row in energy)
+    variances = [float(row["variance"]) for row in areas]
+    assert 0 < variances[1] < variances[0] < 1
+
+
 class TestDemo:
     def test_prints_what_it_measures(self, demo):
         _, text = demo

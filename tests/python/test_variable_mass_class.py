@@ -531,6 +531,19 @@ def test_a_barostat_that_moves_molecules_as_a_whole_is_taken():
     assert context.getState().getPeriodicBoxVolume() != box
 
 
+def test_an_integrator_that_was_refused_is_free_for_another_context():
+    integrator = integrator_of("verlet")
+    with pytest.raises(mm.OpenMMException, match="CMMotionRemover"):
+        HELFRICH.context(system_of(mm.CMMotionRemover()), integrator)
+    with pytest.raises(mm.OpenMMException, match="the platform CPU"):
+        CPU.context(system_of(), integrator)
+    context = context_of(integrator)
+    integrator.step(1)
+    assert context.getStepCount() == 1
+    with pytest.raises(mm.OpenMMException, match="belongs to another Context"):
+        context_of(integrator)
+
+
 def test_constraints_and_vertices_that_are_virtual_sites_are_refused():
     system = system_of()
     system.addConstraint(0, 1, 1.0)

@@ -94,7 +94,10 @@ protected:
         try {
             getKernel().initialize(contextImpl, *this);
         } catch (...) {
+            // There will be no Context that the destructor could tell of its end.
             kernel = OpenMM::Kernel();
+            context = nullptr;
+            owner = nullptr;
             throw;
         }
         isBound = true;
