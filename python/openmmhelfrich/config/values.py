@@ -260,6 +260,7 @@ def viscosity(value, kT):
         raise ValueError("it lacks friction, amu/ps")
     return arguments
 
+
 def _share(value, kT):
     result = number(above=0)(value, kT)
     if result >= 1:
