@@ -99,6 +99,9 @@ forward! {
     /// Set where the vertices are at rest, in ascending order of particle index, and in which periodic box; null for none.
     Helfrich_MembraneForce_setReference =>
         helfrich_shim_setReference(force: *mut Force, positions: *const c_double, num_vertices: c_int, box_vectors: *const c_double) -> c_int;
+    /// Say to which domain each vertex belongs, in ascending order of particle index.
+    Helfrich_LineTensionForce_setDomains =>
+        helfrich_shim_setDomains(force: *mut Force, domains: *const c_int, num_vertices: c_int) -> c_int;
     /// Choose the variant of the potential.
     Helfrich_MembraneForce_setForm => helfrich_shim_setForm(force: *mut Force, form: c_int) -> c_int;
     /// Switch something on or off.
@@ -243,3 +246,7 @@ force_class!(PressureForce(pressure));
 force_class!(SurfaceTensionForce(tension));
 force_class!(OsmoticPressureForce(solutes, concentration, thermalEnergy));
 force_class!(AreaDifferenceForce(modulus, target));
+force_class!(NeoHookeanForce(shearModulus, areaModulus));
+force_class!(LinearElasticForce(shearModulus, areaModulus));
+force_class!(SpringForce(stiffness, ratio) form);
+force_class!(LineTensionForce(tension));

@@ -137,6 +137,12 @@ pub enum Error {
     )]
     NoReferenceBox { force: &'static str, particle: u32 },
 
+    /// A spring is longer than it can be.
+    #[error(
+        "the edge ({}, {}) of triangle {triangle} is {length:.6} nm long, but its spring must be shorter than {longest:.6} nm, so that the energy of {force} is not finite; use a smaller time step, another reference, or a smaller ratio of lengths at rest to the longest", .edge[0], .edge[1]
+    )]
+    LongSpring { force: &'static str, triangle: usize, edge: [u32; 2], length: f64, longest: f64 },
+
     /// A scalar outside its domain.
     #[error("{parameter} must be {domain}, got {value}")]
     Parameter { parameter: String, domain: &'static str, value: f64 },
@@ -199,6 +205,7 @@ impl Error {
             | Self::FlatReference { force, .. }
             | Self::LongReference { force, .. }
             | Self::NoReferenceBox { force, .. }
+            | Self::LongSpring { force, .. }
             | Self::Touching { force }
             | Self::TouchingSurface { force, .. }
             | Self::TouchingParticle { force, .. } => Some(force),

@@ -146,6 +146,19 @@ impl MembraneForce {
         Ok(self)
     }
 
+    /// Say to which domain each vertex belongs, in ascending order of particle index.
+    ///
+    /// # Errors
+    /// Another class than LineTensionForce.
+    pub fn set_domains(&mut self, domains: &[c_int]) -> Result<&mut Self> {
+        let (force, count) = (self.force.as_ptr(), domains.len() as c_int);
+        // SAFETY: the force is alive, and the domains are as many as is said.
+        check(unsafe {
+            c_api::Helfrich_LineTensionForce_setDomains(force, domains.as_ptr(), count)
+        })?;
+        Ok(self)
+    }
+
     /// Choose a variant by its name, such as a bending scheme.
     ///
     /// # Errors

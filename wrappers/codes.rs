@@ -2,7 +2,9 @@
 //! `src/moves/records.rs`, so that the
 //! build stops where they differ.
 
-use crate::codes::{Attraction, Coefficients, Contribution, Form, MAX_PARAMETERS, Scheme};
+use crate::codes::{
+    Attraction, Coefficients, Contribution, Form, MAX_PARAMETERS, Scheme, SpringForm,
+};
 use crate::flip_records::{FlipRules, FlipState};
 use crate::interface::{Binding, NUMBERS};
 use crate::records::{
@@ -31,6 +33,7 @@ pub fn comparison() -> String {
     for (class, kind, names) in [
         ("BendingForce", "Scheme", Scheme::NAMES),
         ("DihedralForce", "Form", Form::NAMES),
+        ("SpringForce", "Form", SpringForm::NAMES),
         ("ParticleSurfaceForce", "Attraction", Attraction::NAMES),
         ("LimForce", "Coefficients", Coefficients::NAMES),
     ] {

@@ -113,7 +113,7 @@ impl BorderEvaluator {
 }
 
 /// Where the corner that a half-edge begins at is, beside the others of its triangle.
-fn place(mesh: &Triangulation, positions: &[f64], cell: Option<&Cell>, half: u32) -> Vec3 {
+pub fn place(mesh: &Triangulation, positions: &[f64], cell: Option<&Cell>, half: u32) -> Vec3 {
     let particle = mesh.particles()[mesh.origin(half) as usize] as usize;
     let position = Vec3::from_column_slice(&positions[3 * particle..][..3]);
     match (mesh.images().as_flattened().get(half as usize), cell) {

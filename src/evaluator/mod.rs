@@ -11,7 +11,7 @@ mod reference;
 pub(crate) mod simd;
 mod survey;
 
-pub use borders::BorderEvaluator;
+pub use borders::{BorderEvaluator, place};
 pub use chosen::{ChosenEvaluator, LEAST_VERTICES_FOR_GPU, Present};
 pub use cpu::{CpuEvaluator, InstructionSet};
 pub use reference::ReferenceEvaluator;

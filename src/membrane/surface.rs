@@ -2,7 +2,9 @@
 
 use super::Configuration;
 use crate::error::{Error, Result};
-use crate::evaluator::{BorderEvaluator, ChosenEvaluator, Present, ReferenceEvaluator, Survey};
+use crate::evaluator::{
+    BorderEvaluator, ChosenEvaluator, Present, ReferenceEvaluator, Survey, place,
+};
 use crate::mesh::cell::Image;
 use crate::mesh::numbering::breadth_first;
 use crate::mesh::orientation::is_inside_out;
@@ -108,7 +110,9 @@ impl Placed<'_> {
         let Present { mesh, cell, .. } = present;
         let on_borders = self.borders.forward(mesh, terms, positions, cell)?;
         let into = forces.as_deref_mut();
-        self.evaluator.evaluate(present, terms, positions, contributions, into)?;
+        self.evaluator
+            .evaluate(present, terms, positions, contributions, into)
+            .map_err(|error| self.explained(error, terms))?;
         self.borders.add(mesh, positions, cell, on_borders, contributions, forces);
         Ok(())
     }
@@ -118,7 +122,41 @@ impl Placed<'_> {
     /// # Errors
     /// Those of [`ChosenEvaluator::look`].
     pub fn look(&mut self, terms: &[Term], forces: &mut [f64]) -> Result<()> {
-        self.evaluator.look(self.present, terms, self.positions, forces)
+        self.evaluator
+            .look(self.present, terms, self.positions, forces)
+            .map_err(|error| self.explained(error, terms))
+    }
+
+    /// An error that names the side of a triangle which has become too long, if that is why an energy is not finite.
+    fn explained(&self, error: Error, terms: &[Term]) -> Error {
+        let Error::NonFiniteEnergy { force, .. } = error else { return error };
+        let broken = terms.iter().find_map(|term| match term.potential.limits_sides(term) {
+            true => self.broken_side(term),
+            false => None,
+        });
+        broken.filter(|broken| broken.class() == Some(force)).unwrap_or(error)
+    }
+
+    /// The first side that is too long for a term.
+    fn broken_side(&self, term: &Term) -> Option<Error> {
+        let Present { mesh, cell, .. } = self.present;
+        term.constants.values.iter().enumerate().find_map(|(triangle, constants)| {
+            let corners =
+                [0, 1, 2].map(|k| place(mesh, self.positions, cell, 3 * triangle as u32 + k));
+            let longest = term.potential.longest_sides(term, constants);
+            (0..3).find_map(|k| {
+                let (next, particles) = ((k + 1) % 3, mesh.particles_of(triangle));
+                let (length, longest) = ((corners[next] - corners[k]).norm(), longest[k]);
+                let (force, edge) = (term.potential.name(), [particles[k], particles[next]]);
+                (length >= longest).then_some(Error::LongSpring {
+                    force,
+                    triangle,
+                    edge,
+                    length,
+                    longest,
+                })
+            })
+        })
     }
 
     /// Note what all terms but those of contacts find of every element. Forces are added.
@@ -135,7 +173,9 @@ impl Placed<'_> {
         let Present { mesh, cell, .. } = present;
         let on_borders = self.borders.forward(mesh, terms, positions, cell)?;
         let into = forces.as_deref_mut();
-        self.evaluator.survey(present, terms, positions, into, survey)?;
+        self.evaluator
+            .survey(present, terms, positions, into, survey)
+            .map_err(|error| self.explained(error, terms))?;
         self.borders.add(mesh, positions, cell, on_borders, &mut [], forces);
         Ok(())
     }

@@ -94,6 +94,11 @@ variants! {
 }
 
 variants! {
+    /// The forms of `SpringForce`; `spring.rs` has their formulas.
+    SpringForm { Harmonic, WLCPower }
+}
+
+variants! {
     /// The attractions of `ParticleSurfaceForce`; `particle_surface.rs` has their formulas.
     Attraction { WCA, LennardJones, NineThree }
 }

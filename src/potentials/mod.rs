@@ -14,12 +14,16 @@ mod elements;
 mod enclosed_volume;
 mod gaussian_curvature;
 mod lim;
+mod line_tension;
+mod linear_elastic;
+mod neo_hookean;
 mod osmotic_pressure;
 pub(crate) mod particle_surface;
 mod plaquette_area;
 mod pressure;
 mod runs;
 mod skalak;
+mod spring;
 mod strain;
 mod surface_area;
 pub(crate) mod surface_repulsion;
@@ -41,7 +45,7 @@ use std::ffi::CStr;
 pub use surface_repulsion::ONLY_BETWEEN_PARTS;
 
 /// All potentials, by the names of their OpenMM classes.
-pub static REGISTRY: [&dyn Potential; 18] = [
+pub static REGISTRY: [&dyn Potential; 22] = [
     &surface_area::SurfaceArea,
     &enclosed_volume::EnclosedVolume,
     &bending::Bending,
@@ -60,6 +64,10 @@ pub static REGISTRY: [&dyn Potential; 18] = [
     &surface_tension::SurfaceTension,
     &osmotic_pressure::OsmoticPressure,
     &area_difference::AreaDifference,
+    &neo_hookean::NeoHookean,
+    &linear_elastic::LinearElastic,
+    &spring::Spring,
+    &line_tension::LineTension,
 ];
 
 /// What a scalar may be given for one by one.
@@ -82,6 +90,8 @@ pub enum Domain {
     Positive,
     /// Finite and not below zero.
     NonNegative,
+    /// Above zero and below one.
+    Share,
     /// Finite.
     Real,
     /// From −π to π.
@@ -133,6 +143,7 @@ impl Parameter {
         let (allowed, domain) = match self.domain {
             Domain::Positive => (value > 0.0, "a finite number above zero"),
             Domain::NonNegative => (value >= 0.0, "a finite number, zero or above"),
+            Domain::Share => (value > 0.0 && value < 1.0, "a number above zero and below one"),
             Domain::Real => (true, "a finite number"),
             Domain::Angle => (value.abs() <= PI, "an angle from -pi to pi"),
         };
@@ -219,6 +230,17 @@ pub trait Potential: Sync {
     /// difference before it rounds.
     fn reference(&self, _: &Term) -> Option<Total> {
         None
+    }
+
+    /// Whether a side of a triangle can become too long for it: then every evaluation, also of forces alone, refuses an
+    /// energy that is not finite.
+    fn limits_sides(&self, _: &Term) -> bool {
+        false
+    }
+
+    /// The lengths, nm, that the sides of a triangle must stay below, if there are any such.
+    fn longest_sides(&self, _: &Term, _: &Constants) -> [f64; 3] {
+        [f64::INFINITY; 3]
     }
 
     /// Energy of the total area, volume and mean curvature.
@@ -385,6 +407,10 @@ mod tests {
     fn domains_are_kept() {
         let parameter = |domain| Parameter::new(c"x", 0, 1, domain);
         assert!(parameter(Domain::Angle).check(3.2).is_err());
+        assert!(parameter(Domain::Share).check(0.999).is_ok());
+        for value in [f64::NAN, -0.1, 0.0, 1.0, f64::INFINITY] {
+            assert!(parameter(Domain::Share).check(value).is_err());
+        }
         for domain in [Domain::Positive, Domain::NonNegative, Domain::Real, Domain::Angle] {
             assert!(parameter(domain).check(f64::NAN).is_err());
             assert!(parameter(domain).check(f64::INFINITY).is_err());

@@ -6,10 +6,8 @@
 //! and K = C there. At small strains the shear modulus is μ/2 and the area modulus K + μ/2. In the invariants of
 //! `strain.rs` it is μ (½ (tr ε)² − det ε) + ½ K (tr ε + 2 det ε)² by area.
 
-use super::strain::{Density, Elastic, LENGTHS, Law, OF_STRAIN, Strain};
-use super::{
-    CONSTANTS, Contribution, Domain, MadeOf, Needs, Parameter, Potential, Term, Triangles,
-};
+use super::strain::{Density, Elastic, LENGTHS, Law, MODULI, OF_STRAIN, Strain};
+use super::{CONSTANTS, Contribution, MadeOf, Needs, Parameter, Potential, Term, Triangles};
 use crate::real::Real;
 
 /// Skalak's law.
@@ -21,12 +19,7 @@ impl Potential for Skalak {
     }
 
     fn parameters(&self) -> &'static [Parameter] {
-        const {
-            &[
-                Parameter::new(c"shearModulus", 1, -2, Domain::NonNegative),
-                Parameter::new(c"areaModulus", 1, -2, Domain::NonNegative),
-            ]
-        }
+        MODULI
     }
 
     fn needs(&self, _: &Term) -> Needs {
@@ -50,7 +43,7 @@ impl Potential for Skalak {
 impl Law for Skalak {
     #[inline(always)]
     fn density<R: Real>(&self, [shear, area]: [f64; 2], strain: &Strain<R>) -> Density<R> {
-        let &Strain { trace, determinant } = strain;
+        let &Strain { trace, determinant, .. } = strain;
         // ½ I₂
         let growth = trace + determinant * 2.0;
         let by_growth = growth * area;

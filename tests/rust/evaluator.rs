@@ -9,7 +9,7 @@ use openmm_helfrich::mesh::Topology;
 use openmm_helfrich::potentials::{Contribution, REGISTRY, Term};
 use proptest::prelude::*;
 use std::sync::Arc;
-use support::{Mesh, all_terms, beside, border_terms, open_meshes, open_terms, random, spheroid};
+use support::{Mesh, beside, border_terms, open_meshes, open_terms, random, spheroid, terms_on};
 
 fn evaluator(mesh: &Mesh) -> CpuEvaluator {
     CpuEvaluator::new(Arc::new(Topology::new(&mesh.1, mesh.0.len() / 3).unwrap()))
@@ -33,7 +33,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 #[test]
 fn every_potential_of_the_registry_is_tested_here() {
-    let terms = [all_terms(true), border_terms()].concat();
+    let terms = [terms_on(&spheroid(6, 9, &mut random(1)), true), border_terms()].concat();
     // No evaluator sees those of pairs, which `src/contact/` looks after.
     let pairs = ["SurfaceRepulsionForce", "ParticleSurfaceForce"];
     for potential in REGISTRY.into_iter().filter(|one| !pairs.contains(&one.name())) {
@@ -43,9 +43,10 @@ fn every_potential_of_the_registry_is_tested_here() {
 
 #[test]
 fn forces_are_minus_the_gradient() {
-    check_gradients(&spheroid(6, 9, &mut random(1)), &all_terms(true));
+    let mesh = spheroid(6, 9, &mut random(1));
+    check_gradients(&mesh, &terms_on(&mesh, true));
     for mesh in &open_meshes(2)[..7] {
-        check_gradients(mesh, &open_terms(true));
+        check_gradients(mesh, &open_terms(mesh, true));
     }
 }
 
@@ -80,7 +81,7 @@ fn check_gradients(mesh: &Mesh, terms: &[Term]) {
 fn parameter_derivatives_match_finite_differences() {
     let mesh = spheroid(6, 9, &mut random(2));
     let mut evaluator = evaluator(&mesh);
-    for term in all_terms(true) {
+    for term in terms_on(&mesh, true) {
         let found = evaluate(&mut evaluator, &[term], &mesh.0).0[0].by_parameter;
         for index in 0..term.potential.parameters().len() {
             let step = 1e-4 * term.values[index].abs().max(0.1);
@@ -102,7 +103,7 @@ fn parameter_derivatives_match_finite_differences() {
 fn terms_add_up_however_they_are_grouped() {
     let mesh = spheroid(7, 8, &mut random(3));
     let mut evaluator = evaluator(&mesh);
-    let terms = all_terms(true);
+    let terms = terms_on(&mesh, true);
     let (together, forces) = evaluate(&mut evaluator, &terms, &mesh.0);
     let mut sum = vec![0.0; forces.len()];
     for (term, contribution) in terms.iter().zip(&together) {
@@ -121,7 +122,7 @@ fn bits_do_not_depend_on_the_number_of_threads() {
     // Many tiles of every array, so that no number of threads divides them evenly.
     let mesh = spheroid(70, 90, &mut random(4));
     assert!(mesh.1.len() > 12_000);
-    let terms = all_terms(true);
+    let terms = terms_on(&mesh, true);
     let topology = Arc::new(Topology::new(&mesh.1, mesh.0.len() / 3).unwrap());
     for set in [InstructionSet::Best, InstructionSet::Avx2, InstructionSet::Scalar] {
         let mut alone = CpuEvaluator::with(topology.clone(), set, 1);
@@ -140,10 +141,10 @@ fn bits_do_not_depend_on_the_number_of_threads() {
 fn every_instruction_set_agrees_with_the_reference() {
     let two = beside(spheroid(5, 7, &mut random(8)), spheroid(9, 11, &mut random(9)));
     for (mesh, pairs) in [(spheroid(6, 9, &mut random(10)), true), (two, true)] {
-        instruction_sets_agree(&mesh, &all_terms(true), &all_terms(false), pairs);
+        instruction_sets_agree(&mesh, &terms_on(&mesh, true), &terms_on(&mesh, false), pairs);
     }
     for (n, mesh) in open_meshes(11).iter().enumerate() {
-        instruction_sets_agree(mesh, &open_terms(true), &open_terms(false), n == 2);
+        instruction_sets_agree(mesh, &open_terms(mesh, true), &open_terms(mesh, false), n == 2);
     }
 }
 
@@ -254,7 +255,7 @@ fn a_mesh_far_from_the_origin_loses_few_digits() {
     let far: Vec<f64> = mesh.0.iter().map(|x| x + 1e6).collect();
     // What the doubles at the far place say, brought back without rounding.
     let back: Vec<f64> = far.iter().map(|x| x - 1e6).collect();
-    let terms = all_terms(true);
+    let terms = terms_on(&mesh, true);
     let (near, near_forces) = evaluate(&mut evaluator, &terms, &back);
     let (away, away_forces) = evaluate(&mut evaluator, &terms, &far);
     for (a, b) in near.iter().zip(&away) {
@@ -288,7 +289,7 @@ fn a_refused_evaluation_leaves_no_repulsions_behind() {
 fn degenerate_and_lost_meshes_are_named_and_change_nothing() {
     let mesh = spheroid(5, 7, &mut random(7));
     let mut evaluator = evaluator(&mesh);
-    let terms = all_terms(true);
+    let terms = terms_on(&mesh, true);
     let terms: Vec<_> = terms.iter().collect();
     let mut contributions = vec![Contribution::default(); terms.len()];
     let mut forces = vec![1.0; mesh.0.len()];
@@ -318,7 +319,7 @@ fn degenerate_and_lost_meshes_are_named_and_change_nothing() {
     forces.fill(0.0);
     let fine = evaluator.evaluate(&terms, &mesh.0, &mut contributions, Some(&mut forces));
     assert_eq!(fine, Ok(()));
-    let expected = evaluate(&mut self::evaluator(&mesh), &all_terms(true), &mesh.0);
+    let expected = evaluate(&mut self::evaluator(&mesh), &terms_on(&mesh, true), &mesh.0);
     assert!(expected == (contributions.clone(), forces.clone()));
 
     let few = &mut forces[..3];
@@ -341,7 +342,7 @@ proptest! {
                 [p.x + shift, p.y - 2.0 * shift, p.z + shift]
             }).collect()
         };
-        for term in all_terms(true) {
+        for term in terms_on(&mesh, true) {
             let (energy, forces) = evaluate(&mut evaluator, &[term], &mesh.0);
             let scale: f64 = forces.iter().map(|f| f.abs()).sum();
             let mut net = nalgebra::Vector3::zeros();

@@ -17,7 +17,10 @@ use openmm_helfrich::moves::{FlipRules, FlipState, Round};
 use openmm_helfrich::potentials::{Contribution, Term};
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
-use support::{Mesh, all_terms, border_terms, open_meshes, open_terms, random, spheroid};
+use support::{
+    Mesh, border_terms, equipped, open_meshes, open_terms, random, spheroid, terms_of_vertices,
+    terms_on,
+};
 
 const ANY: FlipRules =
     FlipRules { temperature: 1.0, min_degree: 3, max_degree: 64, max_edge_length: 0.0, demon: 0 };
@@ -28,6 +31,7 @@ fn seeded(seed: u32) -> FlipState {
 
 /// The energies of terms by the readable evaluator, on a mesh built from nothing.
 fn energies(triangles: &[[i64; 3]], terms: &[Term], positions: &[f64]) -> Vec<f64> {
+    let terms = &equipped(triangles, positions.len() / 3, terms);
     let topology = Arc::new(Topology::new(triangles, positions.len() / 3).unwrap());
     let mut sums = vec![Contribution::default(); terms.len()];
     let mesh = Triangulation::new(&topology);
@@ -56,7 +60,8 @@ fn walk(
     let mut mesh = Triangulation::new(&Topology::new(triangles, count).unwrap());
     let mut local = LocalEnergy::default();
     let fill = |local: &mut LocalEnergy, mesh: &Triangulation| {
-        let terms_in_use: Vec<_> = terms.iter().collect();
+        let equipped = equipped(&corners(mesh), count, terms);
+        let terms_in_use: Vec<_> = equipped.iter().collect();
         let mut evaluator = CpuEvaluator::of(mesh, &breadth_first(mesh), InstructionSet::Best, 1);
         let survey = |survey: &mut _| evaluator.survey(&terms_in_use, positions, None, survey);
         local.fill(mesh, terms, None, survey).unwrap();
@@ -94,10 +99,6 @@ fn walk(
     assert!((kept - fresh).abs() <= 1e-9 * fresh.abs().max(1.0), "{kept} {fresh}");
 }
 
-fn difference_is_that_of_two_evaluations(terms: &[Term], flips: usize, seed: u64) {
-    difference_is_right_on(&spheroid(6, 9, &mut random(seed)), terms, flips, seed);
-}
-
 fn difference_is_right_on(mesh: &Mesh, terms: &[Term], flips: usize, seed: u64) {
     walk(mesh, terms, flips, seed, |before, after, difference| {
         let [old, new] = [before, after].map(|triangles| energies(triangles, terms, &mesh.0));
@@ -113,20 +114,27 @@ fn difference_is_right_on(mesh: &Mesh, terms: &[Term], flips: usize, seed: u64) 
 
 #[test]
 fn the_energy_of_a_flip_is_that_of_two_evaluations_for_each_term() {
-    for (index, term) in all_terms(false).iter().enumerate() {
+    for index in 0.. {
+        let seed = 100 + index as u64;
+        let mesh = spheroid(6, 9, &mut random(seed));
+        let Some(term) = terms_on(&mesh, false).get(index).copied() else { break };
         for wants_derivatives in [false, true] {
-            let term = Term { wants_derivatives, ..*term };
-            difference_is_that_of_two_evaluations(&[term], 40, 100 + index as u64);
+            let term = Term { wants_derivatives, ..term };
+            difference_is_right_on(&mesh, &[term], 40, seed);
         }
     }
 }
 
 #[test]
 fn the_energy_of_a_flip_is_that_of_two_evaluations_for_all_terms_together() {
-    let mut terms = all_terms(true);
-    difference_is_that_of_two_evaluations(&terms, 60, 3);
-    terms.reverse();
-    difference_is_that_of_two_evaluations(&terms, 60, 4);
+    for seed in [3, 4] {
+        let mesh = spheroid(6, 9, &mut random(seed));
+        let mut terms = terms_on(&mesh, true);
+        if seed == 4 {
+            terms.reverse();
+        }
+        difference_is_right_on(&mesh, &terms, 60, seed);
+    }
 }
 
 /// The open meshes that have edges to flip.
@@ -136,8 +144,9 @@ fn flipping(seed: u64) -> Vec<Mesh> {
 
 #[test]
 fn the_energy_of_a_flip_near_a_border_is_that_of_two_evaluations() {
-    let with_borders = |wants_derivatives| [open_terms(wants_derivatives), border_terms()].concat();
     for (n, mesh) in flipping(3).iter().enumerate() {
+        let with_borders =
+            |wants_derivatives| [open_terms(mesh, wants_derivatives), border_terms()].concat();
         for term in with_borders(n % 2 == 0) {
             difference_is_right_on(mesh, &[term], 40, 50 + n as u64);
         }
@@ -161,20 +170,22 @@ fn values_of_vertices_and_triangles_take_part() {
         bending.fields[1] = &spontaneous;
         let mut areas = Term::new("TriangleAreaForce", 0, &[1.0, 8.0]).unwrap();
         areas.fields[1] = &targets;
-        difference_is_that_of_two_evaluations(&[bending, areas], 60, 9 + form as u64);
+        let mesh = spheroid(6, 9, &mut random(9 + form as u64));
+        difference_is_right_on(&mesh, &[bending, areas], 60, 9 + form as u64);
     }
 }
 
 /// A million flips with a full validation now and then, and with evaluations that must follow.
 #[test]
 fn many_flips_leave_a_valid_surface_and_current_evaluators() {
-    flip_often(&spheroid(6, 9, &mut random(21)), &all_terms(true), 1_000_000);
+    let mesh = spheroid(6, 9, &mut random(21));
+    flip_often(&mesh, &terms_on(&mesh, true), 1_000_000);
 }
 
 #[test]
 fn many_flips_near_borders_leave_a_valid_surface_and_current_evaluators() {
     for mesh in flipping(22) {
-        flip_often(&mesh, &open_terms(true), 100_000);
+        flip_often(&mesh, &open_terms(&mesh, true), 100_000);
     }
 }
 
@@ -209,7 +220,8 @@ fn flip_often((positions, triangles): &Mesh, terms: &[Term], flips: u64) {
                 .unwrap();
             let topology = Arc::new(Topology::new(&mesh, count).unwrap());
             let (mut expected, mut exact) = (sums.clone(), vec![0.0; positions.len()]);
-            let borrowed: Vec<_> = terms.iter().collect();
+            let equipped = equipped(&mesh, count, terms);
+            let borrowed: Vec<_> = equipped.iter().collect();
             ReferenceEvaluator::new(topology)
                 .evaluate(&borrowed, positions, &mut expected, Some(&mut exact))
                 .unwrap();
@@ -233,9 +245,10 @@ fn flip_often((positions, triangles): &Mesh, terms: &[Term], flips: u64) {
 
 #[test]
 fn what_was_saved_goes_on_with_the_same_bits() {
-    let (positions, triangles) = spheroid(8, 11, &mut random(2));
+    let mesh = spheroid(8, 11, &mut random(2));
+    let terms = terms_on(&mesh, true);
+    let (positions, triangles) = mesh;
     let count = positions.len() / 3;
-    let terms = all_terms(true);
     let run = |membrane: &mut Membrane, state: &mut FlipState| {
         membrane
             .flip(
@@ -268,8 +281,9 @@ fn what_was_saved_goes_on_with_the_same_bits() {
 
 #[test]
 fn a_demon_keeps_the_energy() {
-    let (positions, triangles) = spheroid(6, 9, &mut random(31));
-    let terms = all_terms(true);
+    let mesh = spheroid(6, 9, &mut random(31));
+    let terms = terms_on(&mesh, true);
+    let (positions, triangles) = mesh;
     let mut membrane = Membrane::new(&triangles, positions.len() / 3).unwrap();
     let mut state = FlipState { demon_energy: 40.0, ..seeded(3) };
     let total = |membrane: &Membrane| -> f64 {
@@ -580,14 +594,31 @@ fn visited_frequencies_are_boltzmann_weights_with_voronoi_areas() {
     }
 }
 
+/// Energies against a reference in which each vertex has its place: the shape at rest goes along with the flips.
+#[test]
+fn visited_frequencies_are_boltzmann_weights_with_a_reference() {
+    for count in [5, 6] {
+        let (triangles, positions) = tiny(count, 5 + u64::from(count));
+        let terms = terms_of_vertices(&(positions, triangles), None);
+        for (n, term) in terms.iter().enumerate() {
+            visits_are_boltzmann(count, &[*term], 20_000, 100, 0.5, 90 + n as u32);
+        }
+        visits_are_boltzmann(count, &terms, 20_000, 100, 0.5, 89);
+    }
+    let (triangles, positions) = polygon(6, 1, 9);
+    let terms = terms_of_vertices(&(positions.clone(), triangles.clone()), None);
+    visits_are_boltzmann_on(&(triangles, positions), 84, &terms, 15_000, 300, 0.5, 88);
+}
+
 /// What a leapfrog wants to know: by how much flips have changed forces; and the evaluation that follows gets those
 /// that are remembered only where it would find the same.
 #[test]
 fn the_change_of_forces_is_that_of_two_evaluations() {
     let mut noise = random(31);
-    let (positions, triangles) = spheroid(6, 9, &mut noise);
+    let mesh = spheroid(6, 9, &mut noise);
+    let terms = terms_on(&mesh, true);
+    let (positions, triangles) = mesh;
     let count = positions.len() / 3;
-    let terms = all_terms(true);
     let hot = FlipRules { temperature: 1e6, ..ANY };
     let forces_of = |membrane: &mut Membrane, terms: &[Term], positions: &[f64]| {
         let mut forces = vec![0.0; positions.len()];

@@ -8,11 +8,11 @@ use openmm_helfrich::evaluator::{BorderEvaluator, ReferenceEvaluator};
 use openmm_helfrich::membrane::{Configuration, Membrane};
 use openmm_helfrich::mesh::{Cell, Topology, Unfolding};
 use openmm_helfrich::moves::{FlipRules, FlipState, Round};
-use openmm_helfrich::potentials::{Contribution, Term};
+use openmm_helfrich::potentials::{Contribution, Term, VertexNumbers};
 use proptest::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
-use support::{Mesh, all_terms, border_terms, open_terms, random, spheroid, without};
+use support::{Mesh, border_terms, equipped, open, random, spheroid, terms_in, terms_on, without};
 
 /// A triclinic box, and one that is none, nm; on a grid of dyadic fractions, as positions are here, so that wrapping is
 /// exact.
@@ -119,8 +119,8 @@ fn spanning(cell: &Cell, seed: u64) -> Vec<Mesh> {
 }
 
 /// Terms that make sense on them.
-fn spanning_terms() -> Vec<Term<'static>> {
-    [open_terms(false), border_terms()].concat()
+fn spanning_terms(mesh: &Mesh, cell: &Cell) -> Vec<Term<'static>> {
+    [open(terms_in(mesh, Some(*cell), false)), border_terms()].concat()
 }
 
 /// Box vectors at random added to all positions.
@@ -163,6 +163,9 @@ fn reference(
     let mut mesh = membrane.mesh().clone();
     let mut unfolding = Unfolding::default();
     let unfolded = unfolding.unfold(&mut mesh, positions, cell).unwrap().positions;
+    let triangles: Vec<_> =
+        (0..mesh.triangles().len()).map(|t| mesh.particles_of(t).map(i64::from)).collect();
+    let terms = &equipped(&triangles, positions.len() / 3, terms);
     let mut evaluator = ReferenceEvaluator::new(Arc::new(Topology::of(&mesh)));
     evaluator.set_images(mesh.images(), cell);
     let mut energies = vec![Contribution::default(); terms.len()];
@@ -195,8 +198,12 @@ proptest! {
             let cell = Cell::new(vectors).unwrap();
             let mut closed = spheroid(5, 7, &mut random(seed));
             closed.0.iter_mut().for_each(|x| *x = dyadic(*x + 30.0));
-            let cases = spanning(&cell, seed).into_iter().map(|mesh| (mesh, spanning_terms()));
-            for (mesh, terms) in cases.chain([(closed, all_terms(false))]) {
+            let closed_terms = terms_on(&closed, false);
+            let cases = spanning(&cell, seed).into_iter().map(|mesh| {
+                let terms = spanning_terms(&mesh, &cell);
+                (mesh, terms)
+            });
+            for (mesh, terms) in cases.chain([(closed, closed_terms)]) {
                 let expected = evaluated(&mut membrane(&mesh), &terms, &mesh.0, Some(&cell));
                 let mut here = membrane(&mesh);
                 for seed in [seed, !seed] {
@@ -213,7 +220,7 @@ fn what_crosses_faces_is_as_without_a_box() {
     for vectors in BOXES {
         let cell = Cell::new(vectors).unwrap();
         let mesh = spheroid(6, 9, &mut random(5));
-        let terms = all_terms(false);
+        let terms = terms_on(&mesh, false);
         let (energies, forces) = evaluated(&mut membrane(&mesh), &terms, &mesh.0, None);
         let moved: Vec<_> = wrapped(&mesh.0, &cell, 3.0, 8);
         let (found, pushes) = evaluated(&mut membrane(&mesh), &terms, &moved, Some(&cell));
@@ -227,7 +234,7 @@ fn lanes_and_reference_agree_on_what_spans_the_box() {
     for vectors in BOXES {
         let cell = Cell::new(vectors).unwrap();
         for mesh in spanning(&cell, 11) {
-            for term in spanning_terms() {
+            for term in spanning_terms(&mesh, &cell) {
                 let mut membrane = membrane(&mesh);
                 let moved = wrapped(&mesh.0, &cell, 2.0, 3);
                 let (energies, forces) = evaluated(&mut membrane, &[term], &moved, Some(&cell));
@@ -246,7 +253,7 @@ fn forces_are_gradients_and_sum_to_zero() {
     let cell = Cell::new(BOXES[0]).unwrap();
     for mesh in spanning(&cell, 23) {
         let mut membrane = membrane(&mesh);
-        for term in spanning_terms() {
+        for term in spanning_terms(&mesh, &cell) {
             let terms = [term];
             let (_, forces) = evaluated(&mut membrane, &terms, &mesh.0, Some(&cell));
             let scale = largest(&forces);
@@ -280,7 +287,7 @@ fn a_flip_changes_the_energy_by_what_it_says() {
     for vectors in BOXES {
         let cell = Cell::new(vectors).unwrap();
         for mesh in spanning(&cell, 31) {
-            for term in spanning_terms() {
+            for term in spanning_terms(&mesh, &cell) {
                 let terms = [term];
                 let mut membrane = membrane(&mesh);
                 let positions = wrapped(&mesh.0, &cell, 2.0, 4);
@@ -330,7 +337,7 @@ fn the_way_to_some_positions_leaves_no_trace() {
     let cell = Cell::new(BOXES[0]).unwrap();
     let wide = Cell::new(BOXES[0].map(|row| row.map(|x| 1.25 * x))).unwrap();
     for mesh in spanning(&cell, 41) {
-        let terms = spanning_terms();
+        let terms = spanning_terms(&mesh, &cell);
         let mut walker = membrane(&mesh);
         let mut noise = random(6);
         let mut positions = mesh.0.clone();
@@ -390,6 +397,47 @@ fn long_edges_and_lost_particles_are_named() {
             .evaluate(&[term], Configuration::new(&narrow.0, Some(&cell)), &mut [], None)
             .is_ok()
     );
+}
+
+/// All triangles are stretched alike, whatever their images: only the box of the reference counts, and how it is wrapped
+/// does not.
+#[test]
+fn a_reference_is_in_a_box_of_its_own() {
+    let cell = Cell::new(BOXES[0]).unwrap();
+    let wide = Cell::new(BOXES[0].map(|row| row.map(|x| 1.25 * x))).unwrap();
+    for mesh in spanning(&cell, 61) {
+        let stretched: Vec<_> = mesh.0.iter().map(|x| 1.25 * x).collect();
+        let area = Term::new("SurfaceAreaForce", 0, &[2.0, 1.0]).unwrap();
+        let at_rest = evaluated(&mut membrane(&mesh), &[area], &mesh.0, Some(&cell)).0[0];
+        let at_rest = at_rest.sqrt() + 1.0;
+        // I₁ = 2 (λ² − 1), I₂ = λ⁴ − 1.
+        let (first, second) = (2.0 * (1.5625 - 1.0), 1.5625 * 1.5625 - 1.0);
+        let density = 0.5 * (0.5 * first * first + first - second) + 0.375 * second * second;
+        let used: Vec<_> =
+            (0..mesh.0.len() as i64 / 3).filter(|v| mesh.1.as_flattened().contains(v)).collect();
+        let rows = |positions: &[f64]| -> Vec<f64> {
+            used.iter().flat_map(|v| positions[3 * *v as usize..][..3].to_vec()).collect()
+        };
+        let evaluate = |values: &[f64], cell_of_reference, positions: &[f64], cell| {
+            let numbers = VertexNumbers::new(values, cell_of_reference);
+            let term = Term { numbers, ..Term::new("SkalakForce", 0, &[2.0, 3.0]).unwrap() };
+            let mut energies = [Contribution::default()];
+            membrane(&mesh)
+                .evaluate(&[term], Configuration::new(positions, cell), &mut energies, None)
+                .map(|()| energies[0].energy)
+        };
+        for values in [rows(&mesh.0), rows(&wrapped(&mesh.0, &cell, 3.0, 5))] {
+            let found = evaluate(&values, Some(cell), &stretched, Some(&wide)).unwrap();
+            assert!((found / (at_rest * density) - 1.0).abs() < 1e-11, "{found}");
+            assert!(evaluate(&values, Some(cell), &mesh.0, Some(&cell)).unwrap() < 1e-24 * found);
+        }
+        let values = rows(&mesh.0);
+        let refused = evaluate(&values, None, &mesh.0, Some(&cell)).unwrap_err();
+        assert!(matches!(refused, Error::NoReferenceBox { force: "SkalakForce", .. }));
+        let narrow = Cell::new(BOXES[0].map(|row| row.map(|x| 0.125 * x))).unwrap();
+        let refused = evaluate(&values, Some(narrow), &mesh.0, Some(&cell)).unwrap_err();
+        assert!(matches!(refused, Error::LongReference { force: "SkalakForce", .. }));
+    }
 }
 
 #[test]
@@ -459,12 +507,12 @@ fn the_virial_is_the_slope_along_a_strain() {
     for vectors in BOXES {
         let cell = Cell::new(vectors).unwrap();
         for mesh in spanning(&cell, 53) {
-            check_virial(&mesh, &spanning_terms(), Some(vectors));
+            check_virial(&mesh, &spanning_terms(&mesh, &cell), Some(vectors));
         }
         let closed = spheroid(5, 7, &mut random(2));
         let crossing = (wrapped(&closed.0, &cell, 2.0, 7), closed.1.clone());
-        check_virial(&crossing, &all_terms(false), Some(vectors));
-        check_virial(&closed, &all_terms(false), None);
+        check_virial(&crossing, &terms_on(&closed, false), Some(vectors));
+        check_virial(&closed, &terms_on(&closed, false), None);
     }
 }
 
@@ -472,7 +520,7 @@ fn the_virial_is_the_slope_along_a_strain() {
 fn without_a_box_the_virial_is_that_of_the_forces() {
     let mesh = spheroid(5, 7, &mut random(2));
     let mut here = membrane(&mesh);
-    for term in all_terms(false) {
+    for term in terms_on(&mesh, false) {
         let (_, forces) = evaluated(&mut here, &[term], &mesh.0, None);
         let virial = here.virial(&[term], Configuration::new(&mesh.0, None)).unwrap();
         let scale = virial.abs().max();
@@ -491,7 +539,7 @@ fn without_a_box_the_virial_is_that_of_the_forces() {
 fn threads_do_not_change_bits_of_what_spans_the_box() {
     let cell = Cell::new(BOXES[0]).unwrap();
     let mesh = sheet(&cell, 32, 32, &mut random(9));
-    let terms = spanning_terms();
+    let terms = spanning_terms(&mesh, &cell);
     let results = [1, 2, 4].map(|threads| {
         let mut here = membrane(&mesh);
         here.set_threads(threads);

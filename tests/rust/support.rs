@@ -1,6 +1,8 @@
 //! Meshes and terms for the tests of the evaluators.
 
-use openmm_helfrich::potentials::Term;
+use openmm_helfrich::membrane::Membrane;
+use openmm_helfrich::mesh::Cell;
+use openmm_helfrich::potentials::{Term, VertexNumbers};
 
 /// Positions of all particles, x y z of one after the other, and triangles.
 pub type Mesh = (Vec<f64>, Vec<[i64; 3]>);
@@ -101,10 +103,72 @@ pub fn border_terms() -> Vec<Term<'static>> {
 }
 
 /// Terms of elements that make sense on a surface with borders.
-pub fn open_terms(wants_derivatives: bool) -> Vec<Term<'static>> {
-    let mut terms = all_terms(wants_derivatives);
+pub fn open_terms(mesh: &Mesh, wants_derivatives: bool) -> Vec<Term<'static>> {
+    open(terms_on(mesh, wants_derivatives))
+}
+
+/// The terms that make sense on a surface with borders.
+pub fn open(mut terms: Vec<Term<'static>>) -> Vec<Term<'static>> {
     terms.retain(|term| !term.potential.needs_outside());
     terms
+}
+
+/// All terms of elements, those that know each vertex of a mesh, too.
+pub fn terms_on(mesh: &Mesh, wants_derivatives: bool) -> Vec<Term<'static>> {
+    terms_in(mesh, None, wants_derivatives)
+}
+
+/// The same where the mesh is in a periodic box.
+pub fn terms_in(mesh: &Mesh, cell: Option<Cell>, wants_derivatives: bool) -> Vec<Term<'static>> {
+    let mut terms = all_terms(wants_derivatives);
+    terms.extend(
+        terms_of_vertices(mesh, cell).into_iter().map(|term| Term { wants_derivatives, ..term }),
+    );
+    equipped(&mesh.1, mesh.0.len() / 3, &terms)
+}
+
+/// Terms with numbers for each vertex: a reference that the mesh is strained against, and domains.
+pub fn terms_of_vertices(mesh: &Mesh, cell: Option<Cell>) -> Vec<Term<'static>> {
+    let mut vertices: Vec<_> = mesh.1.as_flattened().to_vec();
+    vertices.sort_unstable();
+    vertices.dedup();
+    let position =
+        |vertex: i64| nalgebra::Vector3::from_column_slice(&mesh.0[3 * vertex as usize..][..3]);
+    // By some share of its shortest edge.
+    let mut least = vec![f64::INFINITY; mesh.0.len() / 3];
+    for [a, b] in mesh.1.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]) {
+        let length = (position(a) - position(b)).norm();
+        for vertex in [a, b] {
+            least[vertex as usize] = length.min(least[vertex as usize]);
+        }
+    }
+    let mut noise = random(77);
+    let at_rest = |vertex: &i64| {
+        let (place, share) = (position(*vertex), 0.15 * least[*vertex as usize]);
+        [0, 1, 2].map(|k| place[k] + share * noise())
+    };
+    let at_rest: Vec<f64> = vertices.iter().flat_map(at_rest).collect();
+    let reference = VertexNumbers::new(at_rest.leak(), cell);
+    let domains: Vec<f64> = vertices.iter().map(|vertex| (vertex * 7 % 4 - 1) as f64).collect();
+    let domains = VertexNumbers::new(domains.leak(), None);
+    let with = |numbers, name, form, values: &[f64]| Term {
+        numbers,
+        ..Term::new(name, form, values).unwrap()
+    };
+    vec![
+        with(reference, "SkalakForce", 0, &[2.0, 3.0]),
+        with(reference, "NeoHookeanForce", 0, &[2.0, 3.0]),
+        with(reference, "LinearElasticForce", 0, &[2.0, 3.0]),
+        with(reference, "SpringForce", 0, &[1.5, 0.5]),
+        with(reference, "SpringForce", 1, &[1.5, 0.4]),
+        with(domains, "LineTensionForce", 0, &[2.5]),
+    ]
+}
+
+/// The same terms with their constants of triangles on some mesh.
+pub fn equipped<'a>(triangles: &[[i64; 3]], particles: usize, terms: &[Term<'a>]) -> Vec<Term<'a>> {
+    let membrane = Box::leak(Box::new(Membrane::new(triangles, particles).unwrap()));
+    membrane.equip(terms).unwrap().0.to_vec()
 }
 
 /// Numbers in [−1, 1) from a seed.

@@ -10,13 +10,17 @@
 #include "openmm-helfrich/EnclosedVolumeForce.h"
 #include "openmm-helfrich/GaussianCurvatureForce.h"
 #include "openmm-helfrich/LimForce.h"
+#include "openmm-helfrich/LineTensionForce.h"
+#include "openmm-helfrich/LinearElasticForce.h"
 #include "openmm-helfrich/MonteCarloBondFlip.h"
 #include "openmm-helfrich/MonteCarloMembraneTension.h"
+#include "openmm-helfrich/NeoHookeanForce.h"
 #include "openmm-helfrich/OsmoticPressureForce.h"
 #include "openmm-helfrich/ParticleSurfaceForce.h"
 #include "openmm-helfrich/PlaquetteAreaForce.h"
 #include "openmm-helfrich/PressureForce.h"
 #include "openmm-helfrich/SkalakForce.h"
+#include "openmm-helfrich/SpringForce.h"
 #include "openmm-helfrich/SurfaceAreaForce.h"
 #include "openmm-helfrich/SurfaceRepulsionForce.h"
 #include "openmm-helfrich/SurfaceTensionForce.h"
@@ -44,7 +48,11 @@
     apply(PressureForce) \
     apply(SurfaceTensionForce) \
     apply(OsmoticPressureForce) \
-    apply(AreaDifferenceForce)
+    apply(AreaDifferenceForce) \
+    apply(NeoHookeanForce) \
+    apply(LinearElasticForce) \
+    apply(SpringForce) \
+    apply(LineTensionForce)
 // clang-format on
 
 #endif /*OPENMM_HELFRICH_H_*/

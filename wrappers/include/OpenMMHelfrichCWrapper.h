@@ -43,12 +43,13 @@ extern int Helfrich_MembraneForce_setParameterValue(OpenMM_Force* force, const c
 extern int Helfrich_MembraneForce_setElementValues(OpenMM_Force* force, const char* parameter, const double* values,
                                                    int count);
 /**
- * Set where the vertices are at rest: three numbers for each, nm, in ascending order of particle index. `boxVectors`
- * are the nine numbers of the periodic box in which that is, nm, or null. SkalakForce needs it after its creation.
+ * Set where the vertices are at rest: three numbers for each, nm, in ascending order of particle index. `boxVectors` are
+ * the nine numbers of the periodic box in which that is, nm, or null. Forces with a
+ * reference need it after their creation.
  */
 extern int Helfrich_MembraneForce_setReference(OpenMM_Force* force, const double* positions, int numVertices,
                                                const double* boxVectors);
-/** Choose a bending scheme or a form of the dihedral potential. */
+/** Choose a bending scheme or a form of the dihedral potential or of springs. */
 extern int Helfrich_MembraneForce_setForm(OpenMM_Force* force, int form);
 /** Switch something on or off: "unsignedSpontaneousCurvature" of a BendingForce. */
 extern int Helfrich_MembraneForce_setSwitch(OpenMM_Force* force, const char* name, int on);
@@ -91,6 +92,8 @@ typedef enum {
 
 /** The coefficients of LimForce. */
 typedef enum { Helfrich_LimForce_Lim2002 = 0, Helfrich_LimForce_Amoudruz2023 = 1 } Helfrich_LimForce_Coefficients;
+/** The forms of SpringForce. */
+typedef enum { Helfrich_SpringForce_Harmonic = 0, Helfrich_SpringForce_WLCPower = 1 } Helfrich_SpringForce_Form;
 
 /** The attractions of ParticleSurfaceForce. */
 typedef enum {
@@ -185,9 +188,9 @@ extern OpenMM_Force* Helfrich_GaussianCurvatureForce_create(const int* triangles
 extern double Helfrich_GaussianCurvatureForce_getModulus(OpenMM_Force* force);
 extern int Helfrich_GaussianCurvatureForce_setModulus(OpenMM_Force* force, double modulus);
 
-/* Helfrich_MembraneForce_setReference() gives it its shape at rest. */
-extern OpenMM_Force* Helfrich_SkalakForce_create(const int* triangles, int numTriangles, double shearModulus,
-                                                 double areaModulus);
+/* Helfrich_MembraneForce_setReference() gives these four their shape at rest. */
+
+extern OpenMM_Force* Helfrich_SkalakForce_create(const int* triangles, int numTriangles, double shearModulus, double areaModulus);
 extern double Helfrich_SkalakForce_getShearModulus(OpenMM_Force* force);
 extern int Helfrich_SkalakForce_setShearModulus(OpenMM_Force* force, double shearModulus);
 extern double Helfrich_SkalakForce_getAreaModulus(OpenMM_Force* force);
@@ -222,6 +225,30 @@ extern double Helfrich_AreaDifferenceForce_getModulus(OpenMM_Force* force);
 extern int Helfrich_AreaDifferenceForce_setModulus(OpenMM_Force* force, double modulus);
 extern double Helfrich_AreaDifferenceForce_getTarget(OpenMM_Force* force);
 extern int Helfrich_AreaDifferenceForce_setTarget(OpenMM_Force* force, double target);
+
+extern OpenMM_Force* Helfrich_NeoHookeanForce_create(const int* triangles, int numTriangles, double shearModulus, double areaModulus);
+extern double Helfrich_NeoHookeanForce_getShearModulus(OpenMM_Force* force);
+extern int Helfrich_NeoHookeanForce_setShearModulus(OpenMM_Force* force, double shearModulus);
+extern double Helfrich_NeoHookeanForce_getAreaModulus(OpenMM_Force* force);
+extern int Helfrich_NeoHookeanForce_setAreaModulus(OpenMM_Force* force, double areaModulus);
+
+extern OpenMM_Force* Helfrich_LinearElasticForce_create(const int* triangles, int numTriangles, double shearModulus, double areaModulus);
+extern double Helfrich_LinearElasticForce_getShearModulus(OpenMM_Force* force);
+extern int Helfrich_LinearElasticForce_setShearModulus(OpenMM_Force* force, double shearModulus);
+extern double Helfrich_LinearElasticForce_getAreaModulus(OpenMM_Force* force);
+extern int Helfrich_LinearElasticForce_setAreaModulus(OpenMM_Force* force, double areaModulus);
+
+extern OpenMM_Force* Helfrich_SpringForce_create(const int* triangles, int numTriangles, double stiffness, double ratio, int form);
+extern double Helfrich_SpringForce_getStiffness(OpenMM_Force* force);
+extern int Helfrich_SpringForce_setStiffness(OpenMM_Force* force, double stiffness);
+extern double Helfrich_SpringForce_getRatio(OpenMM_Force* force);
+extern int Helfrich_SpringForce_setRatio(OpenMM_Force* force, double ratio);
+
+extern OpenMM_Force* Helfrich_LineTensionForce_create(const int* triangles, int numTriangles, double tension);
+extern double Helfrich_LineTensionForce_getTension(OpenMM_Force* force);
+extern int Helfrich_LineTensionForce_setTension(OpenMM_Force* force, double tension);
+/** Say to which domain each vertex belongs, in ascending order of particle index; needed after the creation. */
+extern int Helfrich_LineTensionForce_setDomains(OpenMM_Force* force, const int* domains, int numVertices);
 
 /** Who pays for the flips of a MonteCarloBondFlip. */
 typedef enum {

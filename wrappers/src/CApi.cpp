@@ -148,6 +148,15 @@ int helfrich_shim_setReference(void* force, const double* positions, int numVert
     });
 }
 
+int helfrich_shim_setDomains(void* force, const int* domains, int numVertices) {
+    return guarded([&] {
+        auto& owner = as<LineTensionForce>("LineTensionForce", force);
+        if (numVertices < 0)
+            throw OpenMMException(owner.getTypeName() + ": the number of vertices is negative");
+        owner.setDomains(vector<int>(domains, domains + numVertices));
+    });
+}
+
 int helfrich_shim_setForm(void* force, int form) {
     return guarded([&] { asForce(force).setForm(form); });
 }

@@ -14,6 +14,10 @@ MembraneForce* makeForce() {
     std::vector<int> none;
     if constexpr (std::is_constructible_v<ForceClass, std::vector<int>, double, double, Reference>)
         return new ForceClass(none, 1.0, 1.0, Reference());
+    else if constexpr (std::is_constructible_v<ForceClass, std::vector<int>, double, Reference>)
+        return new ForceClass(none, 1.0, Reference());
+    else if constexpr (std::is_constructible_v<ForceClass, std::vector<int>, double, std::vector<int>>)
+        return new ForceClass(none, 1.0, none);
     else if constexpr (std::is_constructible_v<ForceClass, std::vector<int>, double, double>)
         return new ForceClass(none, 1.0, 1.0);
     else if constexpr (std::is_constructible_v<ForceClass, std::vector<int>, std::vector<int>, double, double>)

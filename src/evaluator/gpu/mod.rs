@@ -111,10 +111,7 @@ mod tests {
     #[test]
     fn every_potential_has_a_shader_and_every_shader_a_potential() {
         let is_for_device = |potential: &&dyn Potential| {
-            let name = potential.name();
-            let values = vec![1.0; potential.parameters().len()];
-            let needs = potential.needs(&Term::new(name, 0, &values).unwrap());
-            !needs.contains(Needs::CONTACTS)
+            !potential.needs(&Term::of(*potential)).contains(Needs::CONTACTS)
         };
         let potentials: Vec<_> = REGISTRY.into_iter().filter(is_for_device).collect();
         assert_eq!(shaders::POTENTIALS.len(), potentials.len());

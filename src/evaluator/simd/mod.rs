@@ -218,6 +218,8 @@ impl SimdEvaluator {
                 }
             }
             check_energies(terms, contributions)?;
+        } else {
+            check_limits(terms, &self.contributions)?;
         }
         if let Some(forces) = forces {
             let (layout, arrays, level) = (&self.layout, &self.arrays, self.level);
@@ -286,6 +288,19 @@ impl SimdEvaluator {
         let tiles = layout.triangle_tiles() + layout.vertex_tiles();
         self.contributions.resize(tiles * terms, Contribution::default());
     }
+}
+
+/// Refuse what has no finite energy where a step would go on with forces that are no numbers, since nobody wants to know
+/// the energy; `contributions` has tile by tile one for each term.
+fn check_limits(terms: &[&Term], contributions: &[Contribution]) -> Result<()> {
+    for (k, term) in terms.iter().enumerate() {
+        if term.potential.limits_sides(term) {
+            let mut sum = Contribution::default();
+            contributions.chunks(terms.len()).for_each(|tile| sum += tile[k]);
+            check_energies([term], &[sum])?;
+        }
+    }
+    Ok(())
 }
 
 /// Area and volume, and whether no potential of triangles acts; unless the mesh has no geometry.
