@@ -5,16 +5,17 @@ from __future__ import annotations
 import numpy as np
 from openmm import unit
 
-from .forces import MembraneForce, MonteCarloBondFlip
+from .forces import MembraneForce, MonteCarloBondFlip, MonteCarloDomainSwap
 
 __all__ = ["is_periodic", "present_box", "present_triangles", "surfaces_of"]
 
-_CLASSES = [MonteCarloBondFlip, *MembraneForce.__subclasses__()]
+_MOVERS = (MonteCarloBondFlip, MonteCarloDomainSwap)
+_CLASSES = [*_MOVERS, *MembraneForce.__subclasses__()]
 
 
 def is_periodic(context, force) -> bool:
     """Whether the surface of a membrane force or mover lives in the periodic box of the Context."""
-    if not isinstance(force, MonteCarloBondFlip):
+    if not isinstance(force, _MOVERS):
         return force.usesPeriodicBoundaryConditions()
     corners = force._triangleBuffer()
     for plain in context.getSystem().getForces():

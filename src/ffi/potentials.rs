@@ -121,6 +121,17 @@ pub unsafe extern "C" fn Helfrich_Potential_numbers(
     made_of.map_or(0, |made_of| made_of.width() as c_int)
 }
 
+/// Whether these numbers say of what kind a vertex is, so that neighbours can exchange them: 1 or 0.
+///
+/// # Safety
+/// `potential` must end with a NUL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Potential_hasKinds(potential: *const c_char) -> c_int {
+    let found = potentials::find(unsafe { text(potential) }).ok();
+    let made_of = found.and_then(|potential| potential.constants());
+    made_of.is_some_and(|made_of| made_of.is_of_kinds()).into()
+}
+
 /// Refuse numbers that vertices cannot have. `box_vectors` has those of the periodic box that positions among them are in,
 /// or is null.
 ///

@@ -86,6 +86,11 @@ impl MadeOf {
         }
     }
 
+    /// Whether the numbers say of what kind a vertex is, so that neighbours can exchange them.
+    pub fn is_of_kinds(self) -> bool {
+        matches!(self, Self::Domains(_))
+    }
+
     /// Refuse numbers that no vertex can have, or too few for the last one.
     ///
     /// # Errors

@@ -14,8 +14,8 @@ using std::string;
 using std::vector;
 
 MembraneForceImpl::MembraneForceImpl(const MembraneForce& owner)
-    : CustomCPPForceImpl(owner), owner(owner), term(), inPlace(false), native(false), group(owner.getForceGroup()),
-      periodic(owner.usesPeriodicBoundaryConditions()) {
+    : CustomCPPForceImpl(owner), owner(owner), term(), hasKinds(false), inPlace(false), native(false),
+      group(owner.getForceGroup()), periodic(owner.usesPeriodicBoundaryConditions()) {
     // OpenMM asks for the default parameters before it initialises the force.
     for (int i = 0; i < owner.getNumParameters(); i++)
         contextParameters.push_back(owner.getContextParameter(owner.getParameterName(i)));
@@ -36,6 +36,12 @@ void MembraneForceImpl::initialize(ContextImpl& context) {
     const char* name;
     if (Helfrich_Potential_numbers(owner.getTypeName().c_str(), &name) != 0)
         term.numbersOwner = ++lastOwner;
+    hasKinds = Helfrich_Potential_hasKinds(owner.getTypeName().c_str()) != 0;
+    for (int i = 0; i < owner.getNumParameters(); i++) {
+        HelfrichParameterInfo info;
+        check(Helfrich_Potential_parameter(owner.getTypeName().c_str(), i, &info));
+        isOfVertices.push_back(info.per == 1);
+    }
     term.wantsDerivatives = !derivatives.empty();
     membrane = SharedMembrane::acquire(owner.getTypeName(), context, owner.getTriangles());
     try {
@@ -72,6 +78,8 @@ void MembraneForceImpl::copyValues() {
         if (!copies.back().empty() && !contextParameters[i].empty())
             throw OpenMMException(owner.getTypeName() + ": " + name + " has both values for single elements and the " +
                                   "Context parameter \"" + contextParameters[i] + "\"; choose one of them");
+        if (isOfVertices[i])
+            membrane->arrange(copies.back());
         updated.fields[i] = copies.back().data();
         updated.fieldLengths[i] = (int64_t) copies.back().size();
     }
@@ -79,12 +87,13 @@ void MembraneForceImpl::copyValues() {
     updated.particles = indices.data();
     updated.numParticles = (int64_t) indices.size();
     vector<double> rows = owner.getVertexNumbers(), vectors = owner.getReferenceBox();
+    if (hasKinds)
+        membrane->arrange(rows);
     updated.numbers = rows.data();
     updated.numNumbers = (int64_t) rows.size();
     updated.numbersBox = vectors.empty() ? nullptr : vectors.data();
-    static std::atomic<uint64_t> lastVersion(0);
     if (rows != numbers || vectors != numbersBox)
-        updated.numbersVersion = ++lastVersion;
+        updated.numbersVersion = takeVersion();
     membrane->checkTerm(owner.getTypeName(), updated);
     membrane->checkParticles(owner.getTypeName(), updated);
     // Moving the vectors leaves their contents where the term points.
@@ -93,6 +102,35 @@ void MembraneForceImpl::copyValues() {
     numbers = std::move(rows);
     numbersBox = std::move(vectors);
     term = updated;
+    membrane->forgetKinds();
+}
+
+uint64_t MembraneForceImpl::takeVersion() {
+    static std::atomic<uint64_t> last(0);
+    return ++last;
+}
+
+void MembraneForceImpl::visitKinds(const std::function<void(const vector<double>& values)>& visit) const {
+    for (size_t i = 0; i < fields.size(); i++)
+        if (isOfVertices[i] && !fields[i].empty())
+            visit(fields[i]);
+    if (hasKinds)
+        visit(numbers);
+}
+
+void MembraneForceImpl::rearrange(const vector<uint32_t>& sources, uint64_t version) {
+    auto move = [&](vector<double>& values) {
+        const vector<double> before(values);
+        for (size_t i = 0; i < sources.size(); i++)
+            values[i] = before[sources[i]];
+    };
+    for (size_t i = 0; i < fields.size(); i++)
+        if (isOfVertices[i] && !fields[i].empty())
+            move(fields[i]);
+    if (hasKinds) {
+        move(numbers);
+        term.numbersVersion = version;
+    }
 }
 
 vector<string> MembraneForceImpl::getKernelNames() {

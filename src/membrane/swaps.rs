@@ -1,0 +1,73 @@
+//! Exchanges between neighbours of a membrane.
+
+use super::{Configuration, Membrane};
+use crate::error::Result;
+use crate::moves::{SwapRound, swaps};
+use crate::potentials::{MAX_PARAMETERS, Term};
+use smallvec::SmallVec;
+
+impl Membrane {
+    /// Make a round of exchanges at the present positions, with the energy of some terms. Returns how many were made;
+    /// the round's sources say whose values each vertex has then, and the caller puts them in order. If `force_change`
+    /// (kJ/mol/nm, in the layout of the positions) is wanted, it gets by how much they have changed the forces; it is left
+    /// alone if there were none. `version` is what the numbers of vertices will have for their version.
+    ///
+    /// # Errors
+    /// A term as [`Self::evaluate`] refuses it, a mesh without geometry: the sources are to be forgotten then.
+    pub fn swap(
+        &mut self,
+        terms: &[Term],
+        at: Configuration,
+        round: SwapRound,
+        version: u64,
+        force_change: Option<&mut [f64]>,
+    ) -> Result<u64> {
+        self.look_around(terms, at, force_change.is_some())?;
+        let SwapRound { rules, attempts, state, kinds, sources } = round;
+        let round = SwapRound { rules, attempts, state, kinds, sources: &mut *sources };
+        let made = swaps::attempt(&self.surface.mesh, &self.local, terms, round);
+        if let (true, Some(change)) = (made > 0, force_change) {
+            let moved: Vec<_> = terms.iter().map(|term| Moved::new(term, sources)).collect();
+            let pairs = terms.iter().zip(&moved);
+            let terms: SmallVec<[Term; 8]> =
+                pairs.map(|(term, moved)| moved.apply(term, version)).collect();
+            self.compare_forces(&terms, at, change)?;
+        }
+        Ok(made)
+    }
+}
+
+/// What a term has of each vertex, in another order; empty where it has nothing.
+struct Moved {
+    fields: [Vec<f64>; MAX_PARAMETERS],
+    numbers: Vec<f64>,
+}
+
+impl Moved {
+    fn new(term: &Term, sources: &[u32]) -> Self {
+        let moved =
+            |values: &[f64]| sources.iter().map(|source| values[*source as usize]).collect();
+        let is_of_kinds = term.potential.constants().is_some_and(|made_of| made_of.is_of_kinds());
+        Self {
+            fields: std::array::from_fn(|k| match term.is_of_vertices(k) {
+                true => moved(term.fields[k]),
+                false => Vec::new(),
+            }),
+            numbers: if is_of_kinds { moved(term.numbers.values) } else { Vec::new() },
+        }
+    }
+
+    fn apply<'a>(&'a self, term: &Term<'a>, version: u64) -> Term<'a> {
+        let mut term = *term;
+        for (field, moved) in term.fields.iter_mut().zip(&self.fields) {
+            if !moved.is_empty() {
+                *field = moved;
+            }
+        }
+        if !self.numbers.is_empty() {
+            term.numbers.values = &self.numbers;
+            term.numbers.version = version;
+        }
+        term
+    }
+}
