@@ -5,8 +5,8 @@
 use crate::codes::{
     Attraction, Coefficients, Contribution, Form, MAX_PARAMETERS, Scheme, SpringForm,
 };
-use crate::move_records::{FlipRules, FlipState, SwapRules, SwapState};
 use crate::interface::{Binding, NUMBERS};
+use crate::move_records::{FlipRules, FlipState, SwapRules, SwapState};
 use crate::records::{
     FollowerInput, NativeBuffer, NativePass, NativePlan, ParameterInfo, ParticleArrays, TermInput,
 };

@@ -52,8 +52,10 @@ def accept_units(force: type) -> None:
     numbers = vertex_numbers_of(name)
     if numbers is not None:
         # After all that must be given.
-        given = [p for p in parameters if p.default is p.empty]
-        parameters.insert(len(given), inspect.Parameter(numbers, keyword))
+        first = next((n for n, p in enumerate(parameters) if p.default is not p.empty), None)
+        parameters.insert(
+            len(parameters) if first is None else first, inspect.Parameter(numbers, keyword)
+        )
     if form is not None:
         parameters.append(inspect.Parameter(form, keyword, default=0))
     parameters += last

@@ -1,4 +1,4 @@
-"""What some forces have for each vertex: its position in a reference, or the number of its domain."""
+"""What some forces have for each vertex: a position in a reference, or the number of a domain."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ def _accept_reference(force: type, give_method) -> None:
         return np.frombuffer(self._vertexBuffer()).reshape(-1, 3).copy()
 
     def set_reference_box(self, box):
-        """Say in which periodic box the reference is. Its sides are nearest images in this box then.
+        """Say in which periodic box the reference is: its sides are nearest images in this box.
 
         A surface that spans the box of its Context needs one; the sides must be shorter than half
         of its least width. Without a box the reference is taken as it is, in one piece.
@@ -143,7 +143,9 @@ def _domains(force: str, given) -> np.ndarray:
     try:
         array = np.asarray(given)
     except ValueError:
-        raise ValueError(f"{force}: domains must be one list, got lists of unequal length") from None
+        raise ValueError(
+            f"{force}: domains must be one list, got lists of unequal length"
+        ) from None
     if array.size and array.dtype.kind not in "iu":
         raise TypeError(f"{force}: domains must be integers, got dtype {array.dtype}")
     if array.ndim != 1:

@@ -3,7 +3,9 @@
 use super::membrane::cell;
 use super::{ParameterInfo, guarded, slice, text};
 use crate::error::Error;
-use crate::potentials::{self, Element, REGISTRY, particle_surface, surface_repulsion};
+use crate::potentials::{
+    self, Element, MadeOf, REGISTRY, Term, particle_surface, surface_repulsion,
+};
 use std::ffi::{c_char, c_int};
 
 /// Describe the parameter `index` of a potential; fails if there is none.
@@ -116,9 +118,10 @@ pub unsafe extern "C" fn Helfrich_Potential_numbers(
     name: *mut *const c_char,
 ) -> c_int {
     let found = potentials::find(unsafe { text(potential) }).ok();
-    let made_of = found.and_then(|potential| potential.constants());
-    unsafe { name.write(made_of.map_or(std::ptr::null(), |made_of| made_of.name().as_ptr())) };
-    made_of.map_or(0, |made_of| made_of.width() as c_int)
+    let made_of = found.and_then(|potential| potential.constants(&Term::of(potential)));
+    let numbers = made_of.and_then(MadeOf::numbers);
+    unsafe { name.write(numbers.map_or(std::ptr::null(), |(name, _)| name.as_ptr())) };
+    numbers.map_or(0, |(_, width)| width as c_int)
 }
 
 /// Whether these numbers say of what kind a vertex is, so that neighbours can exchange them: 1 or 0.
@@ -128,8 +131,8 @@ pub unsafe extern "C" fn Helfrich_Potential_numbers(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn Helfrich_Potential_hasKinds(potential: *const c_char) -> c_int {
     let found = potentials::find(unsafe { text(potential) }).ok();
-    let made_of = found.and_then(|potential| potential.constants());
-    made_of.is_some_and(|made_of| made_of.is_of_kinds()).into()
+    let made_of = found.and_then(|potential| potential.constants(&Term::of(potential)));
+    made_of.is_some_and(MadeOf::is_of_kinds).into()
 }
 
 /// Refuse numbers that vertices cannot have. `box_vectors` has those of the periodic box that positions among them are in,
@@ -146,7 +149,8 @@ pub unsafe extern "C" fn Helfrich_Potential_checkNumbers(
 ) -> c_int {
     let subject = unsafe { text(potential) };
     guarded(subject, || {
-        let made_of = potentials::find(subject)?.constants().ok_or_else(|| {
+        let potential = potentials::find(subject)?;
+        let made_of = potential.constants(&Term::of(potential)).ok_or_else(|| {
             Error::Contract("has no reference and no domains; it cannot be given any".to_owned())
         })?;
         unsafe { cell(box_vectors) }?;

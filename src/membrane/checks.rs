@@ -3,7 +3,7 @@
 use super::Membrane;
 use crate::contact::Contacts;
 use crate::error::{Error, Result};
-use crate::potentials::{Element, Parameter, Term};
+use crate::potentials::{Element, MadeOf, Parameter, Term};
 
 /// Values of single edges, where edges come and go.
 fn of_edges(term: &Term, parameter: &Parameter) -> Error {
@@ -69,14 +69,15 @@ impl Membrane {
                 )));
             }
         }
-        if let Some(made_of) = term.potential.constants() {
+        let made_of = term.potential.constants(term);
+        if let Some((name, width)) = made_of.and_then(MadeOf::numbers) {
             let (count, vertices) = (term.numbers.values.len(), self.mesh().num_vertices());
-            if count != made_of.width() * vertices {
+            if count != width * vertices {
                 return Err(Error::Contract(format!(
                     "{} is of {} vertices, but there are {vertices}; give one row for each, in ascending order of \
                      particle index",
-                    made_of.name().to_string_lossy(),
-                    count / made_of.width()
+                    name.to_string_lossy(),
+                    count / width
                 )));
             }
         }

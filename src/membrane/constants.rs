@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::mesh::{Cell, NONE, Triangulation};
-use crate::potentials::{CONSTANTS, Constants, Flaw, MadeOf, Term, TriangleConstants};
+use crate::potentials::{CONSTANTS, Constants, Corners, Flaw, MadeOf, Term, TriangleConstants};
 use smallvec::SmallVec;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -26,6 +26,7 @@ struct Made {
     /// The triangles that they are of; empty if they do not hold any more.
     triangles: Vec<[u32; 3]>,
     values: Vec<Constants>,
+    share: f64,
     /// No other constants have the same number.
     number: u64,
 }
@@ -33,7 +34,7 @@ struct Made {
 /// Whether terms have to be equipped: if none has constants, they are what they are.
 #[inline]
 pub fn need_constants(terms: &[Term]) -> bool {
-    terms.iter().any(|term| term.numbers.owner != 0)
+    terms.iter().any(|term| term.potential.constants(term).is_some())
 }
 
 impl Workshop {
@@ -48,7 +49,7 @@ impl Workshop {
         terms: &[Term<'a>],
     ) -> Result<Equipped<'a>> {
         for term in terms {
-            if let Some(made_of) = term.potential.constants() {
+            if let Some(made_of) = term.potential.constants(term) {
                 self.make(mesh, generation, term, made_of)?;
             }
         }
@@ -63,6 +64,7 @@ impl Workshop {
         made_of: MadeOf,
     ) -> Result<()> {
         let (potential, version) = (term.potential.name(), term.numbers.version);
+        debug_assert!(term.numbers.owner != 0, "{potential}: who has the numbers?");
         let place = self.all.iter().position(|made| made.is_of(term)).unwrap_or_else(|| {
             let owner = term.numbers.owner;
             self.all.push(Made { potential, owner, ..Made::default() });
@@ -81,7 +83,10 @@ impl Workshop {
 
     fn find(&self, term: &Term) -> TriangleConstants<'_> {
         match self.all.iter().find(|made| made.is_of(term)) {
-            Some(made) => TriangleConstants { values: &made.values, version: made.number },
+            Some(made) => {
+                let Made { values, share, number, .. } = made;
+                TriangleConstants { values, share: *share, version: *number }
+            }
             None => TriangleConstants::default(),
         }
     }
@@ -92,19 +97,25 @@ impl Made {
         self.owner == term.numbers.owner && self.potential == term.potential.name()
     }
 
-    /// Of other corners only, since the same ones have the same constants: no flip changes which edges are borders.
+    /// Of other corners only, since the same ones have the same constants: no flip changes which edges and vertices are
+    /// borders, nor what all triangles share.
     fn fill(&mut self, mesh: &Triangulation, term: &Term, made_of: MadeOf) -> Result<()> {
         static LAST: AtomicU64 = AtomicU64::new(0);
         // If this fails, nothing is known.
         let mut known = std::mem::take(&mut self.triangles);
         self.values.resize(mesh.triangles().len(), [0.0; CONSTANTS]);
-        for (triangle, corners) in mesh.triangles().iter().enumerate() {
-            if known.get(triangle) == Some(corners) {
+        self.share = made_of.share(term, mesh);
+        for (triangle, vertices) in mesh.triangles().iter().enumerate() {
+            if known.get(triangle) == Some(vertices) {
                 continue;
             }
-            let on_border = mesh.twins()[triangle].map(|twin| twin == NONE);
+            let corners = Corners {
+                vertices: *vertices,
+                are_outer: vertices.map(|vertex| mesh.is_border(vertex)),
+                on_border: mesh.twins()[triangle].map(|twin| twin == NONE),
+            };
             self.values[triangle] = made_of
-                .constants(&term.numbers, *corners, on_border)
+                .constants(term, &corners, self.share)
                 .map_err(|flaw| named(flaw, mesh, term, triangle))?;
         }
         known.clear();

@@ -40,7 +40,9 @@ impl Membrane {
         self.look_around(terms, at, force_change.is_some())?;
         let Configuration { positions, cell } = at;
         let mut before = force_change.is_some().then_some(self.before.as_mut_slice());
-        let mesh = &self.surface.mesh;
+        let surface = &mut self.surface;
+        let equipped = self.workshop.equip(&surface.mesh, surface.generation, terms)?;
+        let mesh = &surface.mesh;
         let mut touched: SmallVec<[Touched; 2]> = SmallVec::new();
         if terms.iter().any(is_contact) {
             let contacts = &mut self.contacts;
@@ -58,8 +60,8 @@ impl Membrane {
         }
 
         let mesh = &mut self.surface.mesh;
-        let made = flips::attempt(mesh, &mut self.local, terms, round, &mut touched);
-        drop(touched);
+        let made = flips::attempt(mesh, &mut self.local, &equipped, round, &mut touched);
+        drop((touched, equipped));
         if made > 0 {
             self.surface.note_flips(made);
             for follower in &mut *followers {

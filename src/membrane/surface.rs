@@ -204,7 +204,7 @@ impl Placed<'_> {
             return Ok(());
         };
         let has_no_box = |term: &&Term| {
-            let made_of = term.potential.constants();
+            let made_of = term.potential.constants(term);
             matches!(made_of, Some(MadeOf::Reference(_))) && term.numbers.cell.is_none()
         };
         terms.iter().find(has_no_box).map_or(Ok(()), |term| {

@@ -3,7 +3,7 @@
 use super::{Configuration, Membrane};
 use crate::error::Result;
 use crate::moves::{SwapRound, swaps};
-use crate::potentials::{MAX_PARAMETERS, Term};
+use crate::potentials::{MAX_PARAMETERS, MadeOf, Term};
 use smallvec::SmallVec;
 
 impl Membrane {
@@ -47,13 +47,14 @@ impl Moved {
     fn new(term: &Term, sources: &[u32]) -> Self {
         let moved =
             |values: &[f64]| sources.iter().map(|source| values[*source as usize]).collect();
-        let is_of_kinds = term.potential.constants().is_some_and(|made_of| made_of.is_of_kinds());
+        let made_of = term.potential.constants(term);
+        let has_kinds = matches!(made_of, Some(MadeOf::Domains(_)));
         Self {
             fields: std::array::from_fn(|k| match term.is_of_vertices(k) {
                 true => moved(term.fields[k]),
                 false => Vec::new(),
             }),
-            numbers: if is_of_kinds { moved(term.numbers.values) } else { Vec::new() },
+            numbers: if has_kinds { moved(term.numbers.values) } else { Vec::new() },
         }
     }
 
@@ -66,8 +67,8 @@ impl Moved {
         }
         if !self.numbers.is_empty() {
             term.numbers.values = &self.numbers;
-            term.numbers.version = version;
         }
+        term.numbers.version = version;
         term
     }
 }

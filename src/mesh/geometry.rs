@@ -140,6 +140,21 @@ pub fn small_bend(length_squared: f64, determinant: f64, cosine: f64, product: f
     (slope + slope) * arctan_over_argument(length_squared * (slope * slope))
 }
 
+/// The angle of (`adjacent`, `opposite`) in (0, π): eight times that of which the tangent is small enough for
+/// the polynomial, found by three times tan(α/2) = tan α / (1 + √(1 + tan² α)).
+#[inline(always)]
+pub fn corner_angle<R: Real>(opposite: R, adjacent: R) -> R {
+    let hypotenuse = opposite.mul_add(opposite, adjacent * adjacent).sqrt();
+    // tan(α/2) in the form that does not cancel, on either side of a right angle.
+    let one = opposite.of(1.0);
+    let obtuse = adjacent.zero().above(adjacent);
+    let half =
+        ((hypotenuse - adjacent) / opposite).or_else(obtuse, opposite / (hypotenuse + adjacent));
+    let quarter = half / (one + half.mul_add(half, one).sqrt());
+    let eighth = quarter / (one + quarter.mul_add(quarter, one).sqrt());
+    eighth * arctan_over_argument(eighth * eighth) * 8.0
+}
+
 /// Forward geometry of one vertex.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct VertexGeometry {
@@ -300,6 +315,19 @@ mod tests {
             let t = z.sqrt();
             let error = (arctan_over_argument(z) / (t.atan() / t) - 1.0).abs();
             assert!(error < 5e-16, "{z}: {error}");
+        }
+    }
+
+    #[test]
+    fn angles_are_exact_to_rounding() {
+        for k in 1..=1000 {
+            let expected = std::f64::consts::PI * f64::from(k) / 1000.5;
+            for scale in [1e-3, 1.0, 1e5] {
+                let found = corner_angle(scale * expected.sin(), scale * expected.cos());
+                // The sine near π itself has lost digits.
+                let tolerance = 1e-15 * (1.0 + 1.0 / (std::f64::consts::PI - expected));
+                assert!((found - expected).abs() < tolerance, "{expected}: {found}");
+            }
         }
     }
 

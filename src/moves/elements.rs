@@ -9,7 +9,9 @@ use crate::mesh::geometry::{
 };
 use crate::mesh::triangulation::{Quad, Triangulation, next, previous};
 use crate::mesh::vertex_vectors::{VertexVectors, add_corner};
-use crate::potentials::{Constants, Edges, Flaw, MadeOf, Needs, Term, Triangles, Vertices};
+use crate::potentials::{
+    Constants, Corners, Edges, Flaw, MadeOf, Needs, Term, Triangles, Vertices,
+};
 use smallvec::SmallVec;
 
 /// The terms that act on each kind of element, by their places among all.
@@ -78,7 +80,7 @@ impl LocalEnergy {
         for term in at(terms, &self.acting.triangles) {
             let energies = &mut energies[..];
             let made;
-            let constants = match term.potential.constants() {
+            let constants = match term.potential.constants(term) {
                 None => &[][..],
                 Some(made_of) => match constants_of(mesh, quad, term, made_of) {
                     Ok(constants) => {
@@ -290,7 +292,11 @@ fn constants_of(
 ) -> Result<[Constants; 2], Flaw> {
     let ([i, j, k, l], [a, b]) = (quad.vertices, quad.halves);
     let is_border = |half| mesh.twin(half) == NONE;
-    let make = |corners, on_border| made_of.constants(&term.numbers, corners, on_border);
+    let make = |vertices: [u32; 3], on_border| {
+        let are_outer = vertices.map(|vertex| mesh.is_border(vertex));
+        let corners = Corners { vertices, are_outer, on_border };
+        made_of.constants(term, &corners, term.constants.share)
+    };
     Ok([
         // The sides of I are il, lk and ki, those of J are jk, kl and lj.
         make([i, l, k], [is_border(next(b)), false, is_border(previous(a))])?,

@@ -17,7 +17,7 @@ use super::records::{SwapRules, SwapState};
 use crate::mesh::geometry::TriangleGeometry;
 use crate::mesh::triangulation::next;
 use crate::mesh::{NONE, Triangulation};
-use crate::potentials::{Constants, MadeOf, Term, Triangles, Vertices};
+use crate::potentials::{Constants, Corners, MadeOf, Needs, Term, Triangles, Vertices};
 use smallvec::SmallVec;
 
 /// So many attempts one after the other, by some rules.
@@ -53,10 +53,13 @@ struct Kinds<'a, 't> {
 
 impl<'a, 't> Kinds<'a, 't> {
     fn new(mesh: &'a Triangulation, local: &'a LocalEnergy, terms: &'a [Term<'t>]) -> Self {
-        let has_values =
-            |term: &&Term| (0..term.fields.len()).any(|parameter| term.is_of_vertices(parameter));
+        let has_values = |term: &&Term| {
+            term.potential.needs(term).contains(Needs::VERTICES)
+                && (0..term.fields.len()).any(|parameter| term.is_of_vertices(parameter))
+        };
         let made_of = |term: &'a Term<'t>| {
-            term.potential.constants().filter(|made_of| made_of.is_of_kinds()).map(|it| (term, it))
+            let made_of = term.potential.constants(term).filter(|it| it.is_of_kinds())?;
+            Some((term, made_of))
         };
         Self {
             mesh,
@@ -121,7 +124,12 @@ impl<'a, 't> Kinds<'a, 't> {
             };
             term.potential.vertices(term, run);
         }
-        energies[0]
+        // What triangles share of the whole surface is counted here, and not there.
+        let shared = self.of_triangles.iter().map(|(term, made_of)| {
+            let source = sources[place] as usize;
+            if self.mesh.is_border(vertex) { 0.0 } else { made_of.part(term, source) }
+        });
+        energies[0] + shared.sum::<f64>()
     }
 
     /// The energy of the triangles that have been gathered; not a number where one cannot have any.
@@ -131,9 +139,13 @@ impl<'a, 't> Kinds<'a, 't> {
         for (term, made_of) in &self.of_triangles {
             self.constants.clear();
             for triangle in self.ids.iter().map(|id| *id as usize) {
-                let corners = self.mesh.triangles()[triangle].map(|v| sources[v as usize]);
-                let on_border = self.mesh.twins()[triangle].map(|twin| twin == NONE);
-                match made_of.constants(&term.numbers, corners, on_border) {
+                let vertices = self.mesh.triangles()[triangle];
+                let corners = Corners {
+                    vertices: vertices.map(|vertex| sources[vertex as usize]),
+                    are_outer: vertices.map(|vertex| self.mesh.is_border(vertex)),
+                    on_border: self.mesh.twins()[triangle].map(|twin| twin == NONE),
+                };
+                match made_of.constants(term, &corners, 0.0) {
                     Ok(constants) => self.constants.push(constants),
                     Err(_) => return f64::NAN,
                 }

@@ -1,10 +1,12 @@
 //! Constants of triangles: what a potential makes of numbers that the user gives for each vertex, and of which vertices
 //! are connected. They are made when either changes, and read in every step.
 
-use super::CONSTANTS;
+use super::{CONSTANTS, Term};
 use crate::error::{Error, Result};
+use crate::mesh::Triangulation;
 use crate::mesh::cell::Cell;
 use crate::mesh::geometry::{TriangleGeometry, Vec3};
+use std::f64::consts::TAU;
 use std::ffi::CStr;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -19,6 +21,20 @@ pub enum MadeOf {
     Reference(fn(&TriangleGeometry, [bool; 3]) -> Constants),
     /// The number of a domain.
     Domains(fn([f64; 3], [bool; 3]) -> Constants),
+    /// The value of the first parameter, zero on borders; and an energy that each triangle has for itself, the same for
+    /// all, which is 2π times the sum of these values, by triangle.
+    Values(fn([f64; 3], f64) -> Constants),
+}
+
+/// Where the constants of a triangle come from.
+#[derive(Debug, Clone, Copy)]
+pub struct Corners {
+    /// Its vertices.
+    pub vertices: [u32; 3],
+    /// Whether they are on borders.
+    pub are_outer: [bool; 3],
+    /// Whether its sides are borders.
+    pub on_border: [bool; 3],
 }
 
 /// The numbers of vertices that a term has.
@@ -48,6 +64,8 @@ impl<'a> VertexNumbers<'a> {
 pub struct TriangleConstants<'a> {
     /// In the order of the mesh; empty until they have been made.
     pub values: &'a [Constants],
+    /// What [`MadeOf::share`] is for the mesh.
+    pub share: f64,
     /// No other constants have the same number.
     pub version: u64,
 }
@@ -70,25 +88,19 @@ pub enum Flaw {
 const LEAST_AREA: f64 = 1e-12;
 
 impl MadeOf {
-    /// What the numbers are called, in XML and as an argument.
-    pub fn name(self) -> &'static CStr {
+    /// What the numbers of vertices are called, in XML and as an argument, and how many of them a vertex has; `None` if the
+    /// values of a parameter take their place.
+    pub fn numbers(self) -> Option<(&'static CStr, usize)> {
         match self {
-            Self::Reference(_) => c"reference",
-            Self::Domains(_) => c"domains",
+            Self::Reference(_) => Some((c"reference", 3)),
+            Self::Domains(_) => Some((c"domains", 1)),
+            Self::Values(_) => None,
         }
     }
 
-    /// How many of them a vertex has.
-    pub fn width(self) -> usize {
-        match self {
-            Self::Reference(_) => 3,
-            Self::Domains(_) => 1,
-        }
-    }
-
-    /// Whether the numbers say of what kind a vertex is, so that neighbours can exchange them.
+    /// Whether they come of what kind the vertices are, which neighbours can exchange.
     pub fn is_of_kinds(self) -> bool {
-        matches!(self, Self::Domains(_))
+        matches!(self, Self::Domains(_) | Self::Values(_))
     }
 
     /// Refuse numbers that no vertex can have, or too few for the last one.
@@ -96,24 +108,23 @@ impl MadeOf {
     /// # Errors
     /// Names the vertex, by its place among all.
     pub fn check(self, values: &[f64]) -> Result<()> {
-        let name = self.name().to_string_lossy();
+        let Some((name, width)) = self.numbers() else { return Ok(()) };
+        let name = name.to_string_lossy();
         let refuse = |message: String| Err(Error::Contract(message));
-        if !values.len().is_multiple_of(self.width()) {
+        if !values.len().is_multiple_of(width) {
+            let all = values.len();
             return refuse(format!(
-                "{name} needs {} numbers for each vertex, got {} in all",
-                self.width(),
-                values.len()
+                "{name} needs {width} numbers for each vertex, got {all} in all"
             ));
         }
-        for (vertex, row) in values.chunks(self.width()).enumerate() {
-            match (self, row) {
-                (Self::Reference(_), row) if !row.iter().all(|x| x.is_finite()) => {
+        for (vertex, row) in values.chunks(width).enumerate() {
+            match row {
+                [x, y, z] if !row.iter().all(|x| x.is_finite()) => {
                     return refuse(format!(
-                        "{name} has vertex {vertex} at ({}, {}, {}) nm, which is not finite",
-                        row[0], row[1], row[2]
+                        "{name} has vertex {vertex} at ({x}, {y}, {z}) nm, which is not finite"
                     ));
                 }
-                (Self::Domains(_), [domain]) if domain.trunc() != *domain => {
+                [domain] if domain.trunc() != *domain => {
                     return refuse(format!(
                         "{name} must be whole numbers, but vertex {vertex} has {domain}"
                     ));
@@ -124,21 +135,49 @@ impl MadeOf {
         Ok(())
     }
 
+    /// What the constants of all triangles have in common, however they are connected.
+    pub fn share(self, term: &Term, mesh: &Triangulation) -> f64 {
+        match self {
+            Self::Reference(_) | Self::Domains(_) => 0.0,
+            Self::Values(_) => {
+                let inner = (0..mesh.num_vertices()).filter(|v| !mesh.is_border(*v as u32));
+                let sum: f64 = inner.map(|vertex| self.part(term, vertex)).sum();
+                sum / mesh.triangles().len() as f64
+            }
+        }
+    }
+
+    /// What a vertex on no border, with the values of the one given, adds to that, times the number of triangles.
+    pub fn part(self, term: &Term, vertex: usize) -> f64 {
+        match self {
+            Self::Reference(_) | Self::Domains(_) => 0.0,
+            Self::Values(_) => TAU * term.value(0, vertex),
+        }
+    }
+
     /// The constants of a triangle.
     ///
     /// # Errors
     /// Its shape at rest is none.
     pub fn constants(
         self,
-        numbers: &VertexNumbers,
-        corners: [u32; 3],
-        on_border: [bool; 3],
+        term: &Term,
+        corners: &Corners,
+        share: f64,
     ) -> std::result::Result<Constants, Flaw> {
+        let &Corners { vertices, are_outer, on_border } = corners;
         match self {
+            Self::Reference(make) => Ok(make(&at_rest(&term.numbers, vertices)?, on_border)),
             Self::Domains(make) => {
-                Ok(make(corners.map(|vertex| numbers.values[vertex as usize]), on_border))
+                Ok(make(vertices.map(|vertex| term.numbers.values[vertex as usize]), on_border))
             }
-            Self::Reference(make) => Ok(make(&at_rest(numbers, corners)?, on_border)),
+            Self::Values(make) => {
+                let value = |k: usize| match are_outer[k] {
+                    true => 0.0,
+                    false => term.value(0, vertices[k] as usize),
+                };
+                Ok(make([value(0), value(1), value(2)], share))
+            }
         }
     }
 }

@@ -3,9 +3,18 @@
 //! Bonnet this is κ_G [2π χ − Σ (π − Σ θ)] with the second sum over the vertices of borders, which is what is
 //! computed: E depends on the shape of the borders' triangles only, and on a closed surface it is the constant 2π χ κ_G,
 //! 4π κ_G on a sphere, without forces.
+//!
+//! With a modulus for each vertex, E = Σ κ_i (2π − Σ θ) over the vertices on no border, and all triangles matter at
+//! whose corners moduli differ: where domains meet, E is that of the geodesic curvature of the line between them (F.
+//! Jülicher, R. Lipowsky, doi:10.1103/PhysRevLett.70.2964). A triangle has −Σ κ θ of its corners, and its share of 2π Σ κ_i.
 
-use super::{Contribution, Domain, Needs, Parameter, Potential, Sums, Term};
+use super::{
+    Constants, Contribution, Domain, Element, MadeOf, Needs, Parameter, Place, Potential, Sums,
+    Term, Triangle, TriangleFormula, TriangleSlopes, Triangles,
+};
 use crate::mesh::borders::{BorderPartials, BorderTotals};
+use crate::mesh::geometry::corner_angle;
+use crate::real::Real;
 use std::f64::consts::TAU;
 
 /// The second half of curvature elasticity, which matters where topology or borders can change.
@@ -17,11 +26,19 @@ impl Potential for GaussianCurvature {
     }
 
     fn parameters(&self) -> &'static [Parameter] {
-        const { &[Parameter::new(c"modulus", 1, 0, Domain::Real)] }
+        const { &[Parameter::new(c"modulus", 1, 0, Domain::Real).per(Element::Vertex)] }
     }
 
-    fn needs(&self, _: &Term) -> Needs {
-        Needs::BORDERS
+    fn needs(&self, term: &Term) -> Needs {
+        if term.is_scalar(0) { Needs::BORDERS } else { Needs::TRIANGLES }
+    }
+
+    fn constants(&self, term: &Term) -> Option<MadeOf> {
+        (!term.is_scalar(0)).then_some(MadeOf::Values(constants))
+    }
+
+    fn triangles(&self, term: &Term, run: Triangles) -> Contribution {
+        run.apply(term, &Angles)
     }
 
     fn borders(
@@ -33,6 +50,41 @@ impl Potential for GaussianCurvature {
         let curvature = TAU * totals.euler_characteristic - totals.turning;
         partials.turning -= modulus;
         Contribution::from(Sums { energy: modulus * curvature, by_parameter: [curvature, 0.0] })
+    }
+}
+
+/// The moduli at the corners, and the share of the whole.
+fn constants([a, b, c]: [f64; 3], share: f64) -> Constants {
+    [a, b, c, share, 0.0, 0.0, 0.0, 0.0]
+}
+
+struct Angles;
+
+impl TriangleFormula for Angles {
+    /// With θ = atan2(|N|, d), ∂θ/∂|N| = d / l² l'² and ∂θ/∂d = −|N| / l² l'², with the sides l and l' at the corner.
+    #[inline(always)]
+    fn apply<R: Real>(
+        &self,
+        place: Place,
+        triangle: &Triangle<R>,
+        slopes: &mut TriangleSlopes<R>,
+    ) -> Sums<R> {
+        let [k0, k1, k2, share, ..] = place.constants(triangle.twice_area);
+        let moduli = [k0, k1, k2];
+        let mut energy = share;
+        for k in 0..3 {
+            let (next, last) = ((k + 1) % 3, (k + 2) % 3);
+            energy = energy - moduli[k] * corner_angle(triangle.twice_area, triangle.dots[k]);
+            let product = triangle.length_squared(k) * triangle.length_squared(last);
+            let by_angle = moduli[k] / product;
+            slopes.area = slopes.area - by_angle * triangle.dots[k] * 2.0;
+            let by_length = by_angle * triangle.twice_area * 0.5;
+            let slopes = &mut slopes.length_squared;
+            slopes[k] = slopes[k] + by_length;
+            slopes[last] = slopes[last] + by_length;
+            slopes[next] = slopes[next] - by_length;
+        }
+        Sums { energy, by_parameter: [energy.zero(); 2] }
     }
 }
 

@@ -61,7 +61,7 @@ impl Potential for Lim {
         Needs::TRIANGLES
     }
 
-    fn constants(&self) -> Option<MadeOf> {
+    fn constants(&self, _: &Term) -> Option<MadeOf> {
         Some(OF_STRAIN)
     }
 

@@ -2,8 +2,8 @@
 //!
 //! Where two corners of a triangle are of one domain and one of another, the line joins the middles of the two mixed sides,
 //! half as long as the third. Where all three differ, it leads from the middles of all sides to the centroid, a third of
-//! each median. On a lattice such a line goes in zigzag, so that it is longer than the smooth one, by a factor that
-//! depends on the mesh and on the direction: 2/√3 = 1.155 along the edges of equilateral triangles, 1 across them.
+//! each median. Such a line goes in zigzag and is longer than a smooth one, however fine the mesh is: on equilateral
+//! triangles by 1 along their edges, 2/√3 at 30° to these and 2√3/π = 1.103 on average.
 //!
 //! The smooth counterpart is F. Jülicher, R. Lipowsky, Phys. Rev. Lett. 70, 2964 (1993),
 //! doi:10.1103/PhysRevLett.70.2964.
@@ -30,7 +30,7 @@ impl Potential for LineTension {
         Needs::TRIANGLES
     }
 
-    fn constants(&self) -> Option<MadeOf> {
+    fn constants(&self, _: &Term) -> Option<MadeOf> {
         Some(MadeOf::Domains(shares))
     }
 
@@ -102,7 +102,7 @@ mod tests {
         let triangle = TriangleGeometry::new(&a, &b, &c);
         let values = [shares(domains, [false; 3])];
         let mut term = Term::new("LineTensionForce", 0, &[2.0]).unwrap();
-        term.constants = TriangleConstants { values: &values, version: 1 };
+        term.constants = TriangleConstants { values: &values, ..TriangleConstants::default() };
         let mut partials = [TrianglePartials::default()];
         let run = Triangles::Plain { first: 0, geometry: &[triangle], partials: &mut partials };
         let found = LineTension.triangles(&term, run);

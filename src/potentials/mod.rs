@@ -37,7 +37,7 @@ use crate::mesh::borders::{BorderPartials, BorderTotals};
 use crate::mesh::geometry::{TotalPartials, Totals};
 use crate::real::Real;
 pub use codes::{Attraction, CONSTANTS, Contribution, MAX_PARAMETERS, Needs};
-pub use constants::{Constants, Flaw, MadeOf, TriangleConstants, VertexNumbers};
+pub use constants::{Constants, Corners, Flaw, MadeOf, TriangleConstants, VertexNumbers};
 pub use elements::*;
 pub use runs::*;
 use std::f64::consts::PI;
@@ -200,7 +200,7 @@ pub trait Potential: Sync {
     fn needs(&self, term: &Term) -> Needs;
 
     /// The constants that it has for each triangle, if any: what the user gives for each vertex, and what becomes of it.
-    fn constants(&self) -> Option<MadeOf> {
+    fn constants(&self, _: &Term) -> Option<MadeOf> {
         None
     }
 
@@ -284,7 +284,8 @@ pub struct Term<'a> {
     pub fields: [&'a [f64]; MAX_PARAMETERS],
     /// Particles beside the vertices that the term acts on, by their indices in the System.
     pub particles: &'a [u32],
-    /// What the user has given for each vertex, if the potential has constants of triangles.
+    /// What the user has given for each vertex, if the potential has constants of triangles. They have an owner where only
+    /// fields are given, too.
     pub numbers: VertexNumbers<'a>,
     /// These constants; a [`Membrane`](crate::membrane::Membrane) makes them.
     pub constants: TriangleConstants<'a>,

@@ -28,7 +28,7 @@ impl Potential for NeoHookean {
         Needs::TRIANGLES
     }
 
-    fn constants(&self) -> Option<MadeOf> {
+    fn constants(&self, _: &Term) -> Option<MadeOf> {
         Some(OF_STRAIN)
     }
 

@@ -26,7 +26,7 @@ impl Potential for Skalak {
         Needs::TRIANGLES
     }
 
-    fn constants(&self) -> Option<MadeOf> {
+    fn constants(&self, _: &Term) -> Option<MadeOf> {
         Some(OF_STRAIN)
     }
 

@@ -52,7 +52,7 @@ impl Potential for Spring {
         Needs::TRIANGLES
     }
 
-    fn constants(&self) -> Option<MadeOf> {
+    fn constants(&self, _: &Term) -> Option<MadeOf> {
         Some(MadeOf::Reference(constants))
     }
 

@@ -126,7 +126,7 @@ mod tests {
         let geometry = |[a, b, c]: &[Vec3; 3]| TriangleGeometry::new(a, b, c);
         let values = [constants(&geometry(rest), [false; 3])];
         let mut term = Term::new(name, 0, &moduli).unwrap();
-        term.constants = TriangleConstants { values: &values, version: 1 };
+        term.constants = TriangleConstants { values: &values, ..TriangleConstants::default() };
         let triangle = geometry(corners);
         let mut partials = [TrianglePartials::default()];
         let run = Triangles::Plain { first: 0, geometry: &[triangle], partials: &mut partials };

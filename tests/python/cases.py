@@ -494,6 +494,136 @@ def _borders() -> list[Case]:
     ]
 
 
+def _gaussian_domains() -> Case:
+    def moduli(m: Membrane) -> np.ndarray:
+        return np.random.default_rng(31).uniform(-60, 30, len(m.members))
+
+    return Case(
+        name="Gaussian curvature, domains",
+        force="GaussianCurvatureForce",
+        arguments=lambda m: {"modulus": -45.0},
+        energy=lambda m, a: numpy_energies.gaussian_curvature(m.positions, m.triangles, moduli(m)),
+        strings=lambda m, a, style: oracle.evaluate(
+            string_forces.gaussian_curvature(m.triangles, moduli(m), style), m.positions
+        ),
+        settings=lambda m: {"setVertexModulus": moduli(m)},
+    )
+
+
+# --- against a reference, and between domains -----------------------------------------------------
+
+
+@cache
+def at_rest(m: Membrane) -> np.ndarray:
+    """Positions of the vertices near those of now, by a share of the shortest edge at each."""
+    shortest = np.full(m.num_particles, np.inf)
+    lengths = numpy_energies.edge_lengths(m.positions, m.triangles)
+    for column in numpy_energies.edges(m.triangles).T:
+        np.minimum.at(shortest, column, lengths)
+    moves = np.random.default_rng(23).uniform(-0.15, 0.15, (len(m.members), 3))
+    points = np.asarray(m.positions)[m.members] + shortest[m.members, None] * moves
+    points.flags.writeable = False
+    return points
+
+
+def _in_its_box(m: Membrane) -> dict[str, Any]:
+    """The reference is in the box that the membrane is in."""
+    box = getattr(m.positions, "box", None)
+    return {} if box is None else {"setReferenceBox": box}
+
+
+def _strains() -> list[Case]:
+    def placed(m: Membrane, a: Arguments) -> np.ndarray:
+        return numpy_energies.placed(m.positions, m.triangles, a["reference"])
+
+    return [
+        Case(
+            name=f"strains, {word}",
+            force=force,
+            arguments=lambda m: {
+                "shearModulus": 2.0,
+                "areaModulus": 3.0,
+                "reference": at_rest(m),
+            },
+            energy=lambda m, a, word=word: getattr(numpy_energies, word)(
+                m.positions, m.triangles, a["shearModulus"], a["areaModulus"], a["reference"]
+            ),
+            strings=lambda m, a, style, word=word: oracle.evaluate(
+                getattr(string_forces, word)(
+                    m.triangles, a["shearModulus"], a["areaModulus"], placed(m, a), style
+                ),
+                m.positions,
+            ),
+            settings=_in_its_box,
+            invalid=_never_below("shearModulus", zero=True)
+            + _never_below("areaModulus", zero=True),
+        )
+        for word, force in (
+            ("skalak", "SkalakForce"),
+            ("neo_hookean", "NeoHookeanForce"),
+            ("linear_elastic", "LinearElasticForce"),
+        )
+    ]
+
+
+def _springs() -> list[Case]:
+    def expected(m: Membrane, a: Arguments, style: str, form: str) -> Result:
+        placed = numpy_energies.placed(m.positions, m.triangles, a["reference"])
+        ratio = a.get("ratio", 1 / 2.2)
+        forces = string_forces.spring(m.triangles, a["stiffness"], placed, ratio, form, style)
+        return oracle.evaluate(forces, m.positions)
+
+    return [
+        Case(
+            name=f"springs, {form}",
+            force="SpringForce",
+            variant=("form", form),
+            arguments=lambda m, also=also: {"stiffness": 2.0, "reference": at_rest(m), **also},
+            energy=lambda m, a, form=form: numpy_energies.spring(
+                m.positions, m.triangles, **a, form=form
+            ),
+            strings=lambda m, a, style, form=form: expected(m, a, style, form),
+            settings=_in_its_box,
+            invalid=invalid,
+        )
+        for form, also, invalid in (
+            (
+                "Harmonic",
+                {},
+                _never_below("stiffness", zero=True)
+                + _never_below("ratio", zero=False)
+                + (Invalid("ratio", 1.0, "1"),),
+            ),
+            ("WLCPower", {"ratio": 0.4}, ()),
+        )
+    ]
+
+
+def _line_tension() -> list[Case]:
+    def domains(m: Membrane) -> np.ndarray:
+        """Three that are mixed, and a few vertices of others."""
+        rng = np.random.default_rng(29)
+        return np.where(rng.random(len(m.members)) < 0.8, m.members % 3, rng.integers(-9, 9))
+
+    def strings(m: Membrane, a: Arguments, style: str) -> Result:
+        kind = dict(zip(m.members.tolist(), np.asarray(a["domains"]).tolist(), strict=True))
+        forces = string_forces.line_tension(m.triangles, a["tension"], kind, style)
+        return oracle.evaluate(forces, m.positions)
+
+    return [
+        Case(
+            name="line tension",
+            force="LineTensionForce",
+            arguments=lambda m: {"tension": 3.0, "domains": domains(m)},
+            energy=lambda m, a: numpy_energies.line_tension(
+                m.positions, m.triangles, a["tension"], a["domains"]
+            ),
+            strings=strings,
+            invalid=_never_infinite("tension"),
+        )
+    ]
+
+
 # --- bending -----------------------------------------------------------------------------------
 
 
@@ -697,6 +827,10 @@ CASES = [
     *_triangle_area_repulsion(),
     *_plaquette_area(),
     *_borders(),
+    _gaussian_domains(),
+    *_strains(),
+    *_springs(),
+    *_line_tension(),
     *_surface_repulsion(),
     *_particle_surface(),
     *_pressures(),

@@ -23,7 +23,9 @@ def start() -> helfrich.Mesh:
 
 
 def forces_of(mesh: helfrich.Mesh, triangles=None) -> list[mm.Force]:
-    """Terms of all kinds: of totals, vertices, triangles and edges, with values for elements."""
+    """Terms of all kinds: of totals, vertices, triangles and edges, with values for elements, a
+    reference and domains.
+    """
     corners = mesh.triangles if triangles is None else triangles
     rigidity = np.linspace(30.0, 60.0, mesh.num_vertices)
     return [
@@ -32,6 +34,8 @@ def forces_of(mesh: helfrich.Mesh, triangles=None) -> list[mm.Force]:
         helfrich.EnclosedVolumeForce(corners, 0.01, 0.95 * mesh.volume),
         helfrich.TriangleHeightForce(corners, 4.0, 5.0),
         helfrich.DihedralForce(corners, 3.0),
+        helfrich.SkalakForce(corners, 0.01, 0.02, 1.02 * mesh.vertices),
+        helfrich.LineTensionForce(corners, 0.2, np.arange(mesh.num_vertices) % 3),
     ]
 
 

@@ -241,10 +241,115 @@ def edge_tension(vertices, triangles, tension: float) -> float:
     return float(tension * np.sum(g.lengths[g.border]))
 
 
-def gaussian_curvature(vertices, triangles, modulus: float) -> float:
-    """By its definition, with no theorem."""
+def gaussian_curvature(vertices, triangles, modulus) -> float:
+    """By its definition, with no theorem; of one modulus, or one for each vertex in use."""
     g = Geometry(vertices, triangles)
-    return float(modulus * np.sum((2 * np.pi - g.angle_sums)[g.inner]))
+    moduli = np.zeros(len(g.vertices))
+    moduli[np.unique(triangles)] = modulus
+    return float(np.sum((moduli * (2 * np.pi - g.angle_sums))[g.inner]))
+
+
+# --- against a reference -------------------------------------------------------------------------
+
+
+def placed(vertices, triangles, numbers) -> np.ndarray:
+    """Rows of vertices, in ascending order, at their places among all particles."""
+    used = np.unique(triangles)
+    everywhere = np.array(vertices, copy=True, subok=True)
+    everywhere[used] = numbers
+    return everywhere
+
+
+def _metric(vertices, triangles) -> np.ndarray:
+    """Products of the sides ab and ac of each triangle, shape (num_triangles, 2, 2)."""
+    a, b, c = (np.asanyarray(vertices)[column] for column in np.asarray(triangles).T)
+    sides = np.stack([np.asarray(b - a), np.asarray(c - a)], axis=1)
+    return np.einsum("tik,tjk->tij", sides, sides)
+
+
+def _stretches(vertices, triangles, reference) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The principal stretches of each triangle, and its area at rest."""
+    at_rest = _metric(placed(vertices, triangles, reference), triangles)
+    squares = np.linalg.eigvals(np.linalg.solve(at_rest, _metric(vertices, triangles))).real
+    one, other = np.sqrt(squares).T
+    return one, other, np.sqrt(np.linalg.det(at_rest)) / 2
+
+
+def skalak(vertices, triangles, shear_modulus: float, area_modulus: float, reference) -> float:
+    one, other, area = _stretches(vertices, triangles, reference)
+    first, second = one**2 + other**2 - 2, (one * other) ** 2 - 1
+    shear = shear_modulus / 4 * (first**2 / 2 + first - second)
+    return float(np.sum(area * (shear + area_modulus / 8 * second**2)))
+
+
+def neo_hookean(vertices, triangles, shear_modulus: float, area_modulus: float, reference) -> float:
+    one, other, area = _stretches(vertices, triangles, reference)
+    shear = shear_modulus / 2 * (one / other + other / one - 2)
+    return float(np.sum(area * (shear + area_modulus / 2 * (one * other - 1) ** 2)))
+
+
+def linear_elastic(
+    vertices, triangles, shear_modulus: float, area_modulus: float, reference
+) -> float:
+    one, other, area = _stretches(vertices, triangles, reference)
+    one, other = (one**2 - 1) / 2, (other**2 - 1) / 2
+    shear = shear_modulus / 2 * (one - other) ** 2
+    return float(np.sum(area * (shear + area_modulus / 2 * (one + other) ** 2)))
+
+
+def edges(triangles) -> np.ndarray:
+    """Both ends of each edge, shape (num_edges, 2)."""
+    t = np.asarray(triangles)
+    return np.unique(np.sort(t[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0)
+
+
+def edge_lengths(vertices, triangles) -> np.ndarray:
+    start, end = (np.asanyarray(vertices)[column] for column in edges(triangles).T)
+    return np.linalg.norm(np.asarray(end - start), axis=1)
+
+
+def chain(ratio: float) -> tuple[float, float]:
+    """Of a spring of stiffness and length 1 at rest: A of the worm-like chain, p of the power."""
+    slope = 1 / (1 - ratio) ** 2 - 1 + 4 * ratio
+    bend = 2 / (1 - ratio) ** 3 + 4
+    strength = 1 / ratio**2 / (bend + 2 * slope / ratio)
+    return strength, strength * slope * ratio
+
+
+def spring(
+    vertices, triangles, stiffness: float, reference, ratio: float = 1 / 2.2, form: str = "Harmonic"
+) -> float:
+    at_rest = edge_lengths(placed(vertices, triangles, reference), triangles)
+    stretch = edge_lengths(vertices, triangles) / at_rest
+    if form == "Harmonic":
+        energy = (stretch - 1) ** 2 / 2
+    else:
+        strength, power = chain(ratio)
+        x = np.stack([stretch, np.ones_like(stretch)]) * ratio
+        worm = (3 * x**2 - 2 * x**3) / (1 - x)
+        energy = strength * (worm[0] - worm[1]) + power * (1 / stretch - 1)
+    return float(stiffness * np.sum(energy * at_rest**2))
+
+
+def line_tension(vertices, triangles, tension: float, domains) -> float:
+    """The pieces of the line one by one."""
+    used = np.unique(triangles)
+    kind = dict(zip(used.tolist(), np.asarray(domains).tolist(), strict=True))
+    length = 0.0
+    for a, b, c in np.asarray(triangles).tolist():
+        origin = np.asanyarray(vertices)[a]
+        points = [np.asarray(np.asanyarray(vertices)[v] - origin) for v in (a, b, c)]
+        corners = [(kind[v], point) for v, point in zip((a, b, c), points, strict=True)]
+        middles = [
+            (p + q) / 2
+            for (k, p), (m, q) in zip(corners, corners[1:] + corners[:1], strict=True)
+            if k != m
+        ]
+        if len(middles) == 2:
+            length += np.linalg.norm(middles[0] - middles[1])
+        for middle in middles if len(middles) == 3 else []:
+            length += np.linalg.norm(middle - sum(points) / 3)
+    return float(tension * length)
 
 
 DIHEDRAL_FORMS = {

@@ -689,18 +689,110 @@ def edge_tension(triangles, tension: float, style: str) -> list[mm.Force]:
     return [_compound(stencil.expression(energy), bonds)] if bonds else []
 
 
-def gaussian_curvature(triangles, modulus: float, style: str) -> list[mm.Force]:
-    """κ_G Σ (2π − Σ θ) over the vertices on no border, where it is defined: a bond each corner."""
+def gaussian_curvature(triangles, modulus: Values, style: str) -> list[mm.Force]:
+    """κ_G Σ (2π − Σ θ) over the vertices on no border, where it is defined: a bond each corner.
+
+    The modulus may be one for each vertex, ascending.
+    """
     left_out, ring_of = on_borders(triangles), rings(triangles)
+    moduli = dict(zip(ring_of, np.broadcast_to(modulus, len(ring_of)).tolist(), strict=True))
     bonds, shares = [], []
     for a, b, c in _tuples(triangles):
         for corner in ((a, b, c), (b, c, a), (c, a, b)):
             if corner[0] not in left_out:
                 bonds.append(corner)
-                shares.append([2 * np.pi / len(ring_of[corner[0]])])
+                shares.append([moduli[corner[0]], 2 * np.pi / len(ring_of[corner[0]])])
     stencil = _stencil(style)
-    energy = f"{_number(modulus)}*(share-{stencil.corner(2, 1, 3)})"
-    return [_compound(stencil.expression(energy), bonds, ["share"], shares)] if bonds else []
+    energy = f"modulus*(share-{stencil.corner(2, 1, 3)})"
+    names = ["modulus", "share"]
+    return [_compound(stencil.expression(energy), bonds, names, shares)] if bonds else []
+
+
+# --- against a reference -------------------------------------------------------------------------
+
+
+def _strained(triangles, at_rest, style: str, density: str) -> list[mm.Force]:
+    """A density of energy in the reference, of I1, I2 and J; `at_rest` places each particle."""
+    a, b, c = (at_rest[column] for column in np.asarray(triangles).T)
+    ab, bc, ca = (np.asarray(side) for side in (b - a, c - b, a - c))
+    dots = [-np.sum(one * other, axis=1) for one, other in ((ca, ab), (ab, bc), (bc, ca))]
+    normal = np.linalg.norm(np.cross(ab, ca), axis=1)
+    weights = [dots[2] / normal**2, dots[0] / normal**2, dots[1] / normal**2]
+    stencil = _stencil(style)
+    squares = [stencil.length2(1, 2), stencil.length2(2, 3), stencil.length2(1, 3)]
+    double_area = stencil.double_area(1, 2, 3)
+    stencil.define("J", f"{double_area}/n0")
+    stencil.define("I2", "J^2-1")
+    products = [
+        f"{weight}*{square}" for weight, square in zip(("wa", "wb", "wc"), squares, strict=True)
+    ]
+    stencil.define("I1", f"{_sum(products)}-2")
+    rows = np.stack([*weights, normal], axis=1)
+    energy = stencil.expression(f"0.5*n0*({density})")
+    return [_compound(energy, _tuples(triangles), ["wa", "wb", "wc", "n0"], rows)]
+
+
+def skalak(triangles, shear: float, area: float, at_rest, style: str) -> list[mm.Force]:
+    """A0 [μ/4 (½ I1² + I1 − I2) + K/8 I2²] (doi:10.1016/S0006-3495(73)85983-1)."""
+    mu, k = _number(shear / 4), _number(area / 8)
+    return _strained(triangles, at_rest, style, f"{mu}*(0.5*I1^2+I1-I2)+{k}*I2^2")
+
+
+def neo_hookean(triangles, shear: float, area: float, at_rest, style: str) -> list[mm.Force]:
+    """A0 [μ/2 (l1/l2 + l2/l1 − 2) + ½ K (J − 1)²]."""
+    mu, k = _number(shear / 2), _number(area / 2)
+    return _strained(triangles, at_rest, style, f"{mu}*((I1+2)/J-2)+{k}*(J-1)^2")
+
+
+def linear_elastic(triangles, shear: float, area: float, at_rest, style: str) -> list[mm.Force]:
+    """A0 [½ K (tr e)² + ½ μ ((tr e)² − 4 det e)], with Green's strain e."""
+    mu, k = _number(shear / 2), _number(area / 8)
+    return _strained(triangles, at_rest, style, f"{k}*I1^2+{mu}*(0.25*I1^2+I1-I2)")
+
+
+def spring(
+    triangles, stiffness: float, at_rest, ratio: float, form: str, style: str
+) -> list[mm.Force]:
+    """Springs along the edges, with rest lengths by the positions of all particles at rest."""
+    rows = _tuples(triangles)
+    bonds = sorted({tuple(sorted(side)) for a, b, c in rows for side in ((a, b), (b, c), (c, a))})
+    start, end = (at_rest[list(column)] for column in zip(*bonds, strict=True))
+    lengths = np.linalg.norm(np.asarray(end - start), axis=1)
+    stencil = _stencil(style)
+    length = stencil.length(1, 2)
+    if form == "Harmonic":
+        energy = f"{_number(stiffness / 2)}*({length}-l0)^2"
+    else:
+        slope = 1 / (1 - ratio) ** 2 - 1 + 4 * ratio
+        strength = 1 / ratio**2 / (2 / (1 - ratio) ** 3 + 4 + 2 * slope / ratio)
+        stencil.define("x", f"{_number(ratio)}*{length}/l0")
+        worm = f"{_number(strength)}*((3*x^2-2*x^3)/(1-x)-rest)"
+        power = f"{_number(strength * slope * ratio)}*(l0/{length}-1)"
+        rest = (3 * ratio**2 - 2 * ratio**3) / (1 - ratio)
+        energy = f"{_number(stiffness)}*l0^2*({worm}+{power})".replace("rest", _number(rest))
+    return [_compound(stencil.expression(energy), bonds, ["l0"], lengths[:, None])]
+
+
+def line_tension(triangles, tension: float, kind, style: str) -> list[mm.Force]:
+    """Half of the sides opposite odd corners, a third of the medians; `kind` of each particle."""
+    pairs, triples = [], []
+    for a, b, c in _tuples(triangles):
+        same = [(p, q) for p, q in ((a, b), (b, c), (c, a)) if kind[p] == kind[q]]
+        pairs += same if len(same) == 1 else []
+        triples += [] if same else [(a, b, c), (b, c, a), (c, a, b)]
+    forces = []
+    if pairs:
+        stencil = _stencil(style)
+        forces.append(
+            _compound(stencil.expression(f"{_number(tension / 2)}*{stencil.length(1, 2)}"), pairs)
+        )
+    if triples:
+        stencil = _stencil(style)
+        squares = f"2*{stencil.length2(1, 2)}+2*{stencil.length2(1, 3)}-{stencil.length2(2, 3)}"
+        forces.append(
+            _compound(stencil.expression(f"{_number(tension / 6)}*sqrt({squares})"), triples)
+        )
+    return forces
 
 
 # --- the whole vesicle, for races --------------------------------------------------------------

@@ -69,6 +69,7 @@ def test_every_variant_has_a_row():
     for keyword, force in (
         ("scheme", "BendingForce"),
         ("form", "DihedralForce"),
+        ("form", "SpringForce"),
         ("attraction", "ParticleSurfaceForce"),
     ):
         cls = getattr(helfrich, force, None)

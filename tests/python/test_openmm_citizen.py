@@ -250,7 +250,8 @@ class TestScalars:
         m = membrane("octahedron")
         force = case.make(m)
         for name, value in case.arguments(m).items():
-            assert plain_number(getattr(force, f"get{name[0].upper()}{name[1:]}")()) == value
+            found = plain_number(getattr(force, f"get{name[0].upper()}{name[1:]}")())
+            np.testing.assert_array_equal(found, value)
 
     @pytest.mark.parametrize(
         ("force", "arguments", "quantities"),

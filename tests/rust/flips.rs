@@ -67,6 +67,8 @@ fn walk(
         local.fill(mesh, terms, None, survey).unwrap();
     };
     fill(&mut local, &mesh);
+    // What they share holds on.
+    let equipped = equipped(&corners(&mesh), count, terms);
     let mut flipped = Flipped::default();
     let mut made = 0;
     while made < flips {
@@ -83,7 +85,7 @@ fn walk(
             continue;
         }
         let before = corners(&mesh);
-        let difference = local.flipped(&mesh, terms, &quad, turn, f64::INFINITY, &mut flipped);
+        let difference = local.flipped(&mesh, &equipped, &quad, turn, f64::INFINITY, &mut flipped);
         if !difference.is_finite() {
             continue;
         }

@@ -176,7 +176,7 @@ fn pairs_in_every_order_are_those_of_the_processor() {
     // Signs have passed their own test; they change no order.
     let differs = |term: &Term| term.values[1] >= 0.0 && term.switches == 0;
     let all: Vec<_> = terms.filter(differs).map(|term| alone(&mesh, term)).collect();
-    assert_eq!(all.len(), 54);
+    assert_eq!(all.len(), 56);
     for (adapter, precision) in targets() {
         let mut evaluator = GpuEvaluator::new(topology(&mesh), Some(adapter), precision).unwrap();
         for one in &all {

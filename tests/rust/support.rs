@@ -151,6 +151,10 @@ pub fn terms_of_vertices(mesh: &Mesh, cell: Option<Cell>) -> Vec<Term<'static>> 
     let reference = VertexNumbers::new(at_rest.leak(), cell);
     let domains: Vec<f64> = vertices.iter().map(|vertex| (vertex * 7 % 4 - 1) as f64).collect();
     let domains = VertexNumbers::new(domains.leak(), None);
+    let moduli: Vec<f64> = vertices.iter().map(|_| 2.0 * noise() - 1.0).collect();
+    let mut by_vertex = Term::new("GaussianCurvatureForce", 0, &[1.0]).unwrap();
+    by_vertex.fields[0] = moduli.leak();
+    by_vertex.numbers = VertexNumbers::new(&[], None);
     let with = |numbers, name, form, values: &[f64]| Term {
         numbers,
         ..Term::new(name, form, values).unwrap()
@@ -162,6 +166,7 @@ pub fn terms_of_vertices(mesh: &Mesh, cell: Option<Cell>) -> Vec<Term<'static>> 
         with(reference, "SpringForce", 0, &[1.5, 0.5]),
         with(reference, "SpringForce", 1, &[1.5, 0.4]),
         with(domains, "LineTensionForce", 0, &[2.5]),
+        by_vertex,
     ]
 }
 

@@ -18,13 +18,15 @@ use support::{Mesh, border_terms, equipped, open_meshes, open_terms, random, sph
 const RIGIDITIES: [f64; 3] = [1.0, 2.5, 4.0];
 const SPONTANEOUS: [f64; 3] = [0.0, 0.3, -0.2];
 const DOMAINS: [f64; 3] = [-3.0, 0.0, 7.0];
+const MODULI: [f64; 3] = [-1.0, 0.5, -2.0];
 
 /// Which terms depend on the kinds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Depends {
     Lines,
     Rigidity,
-    Both,
+    Modulus,
+    All,
 }
 
 /// The values of all vertices.
@@ -32,12 +34,18 @@ struct Values {
     rigidity: Vec<f64>,
     spontaneous: Vec<f64>,
     domains: Vec<f64>,
+    moduli: Vec<f64>,
 }
 
 impl Values {
     fn new(kinds: &[u32]) -> Self {
         let of = |values: [f64; 3]| kinds.iter().map(|kind| values[*kind as usize]).collect();
-        Self { rigidity: of(RIGIDITIES), spontaneous: of(SPONTANEOUS), domains: of(DOMAINS) }
+        Self {
+            rigidity: of(RIGIDITIES),
+            spontaneous: of(SPONTANEOUS),
+            domains: of(DOMAINS),
+            moduli: of(MODULI),
+        }
     }
 
     fn terms(&self, depends: Depends, scheme: usize) -> Vec<Term<'_>> {
@@ -46,10 +54,14 @@ impl Values {
         bending.fields[1] = &self.spontaneous;
         let mut line = Term::new("LineTensionForce", 0, &[1.7]).unwrap();
         line.numbers = VertexNumbers::new(&self.domains, None);
+        let mut gauss = Term::new("GaussianCurvatureForce", 0, &[0.0]).unwrap();
+        gauss.fields[0] = &self.moduli;
+        gauss.numbers = VertexNumbers::new(&[], None);
         match depends {
             Depends::Lines => vec![line],
             Depends::Rigidity => vec![bending],
-            Depends::Both => vec![bending, line],
+            Depends::Modulus => vec![gauss],
+            Depends::All => vec![bending, line, gauss],
         }
     }
 }
@@ -77,6 +89,14 @@ fn energy((positions, triangles): &Mesh, terms: &[Term]) -> f64 {
     ReferenceEvaluator::new(topology).evaluate(&borrowed, positions, &mut sums, None).unwrap();
     borders.add(&mesh, positions, None, on_borders, &mut sums, None);
     sums.iter().map(|sum| sum.energy).sum()
+}
+
+/// Those terms that do not depend on values of vertices.
+fn without_kinds(mut terms: Vec<Term<'static>>) -> Vec<Term<'static>> {
+    terms.retain(|term| {
+        term.potential.name() != "LineTensionForce" && !(0..4).any(|k| term.is_of_vertices(k))
+    });
+    terms
 }
 
 /// A membrane whose vertices have kinds.
@@ -133,16 +153,16 @@ fn the_energy_of_an_exchange_is_that_of_two_evaluations() {
     let closed = spheroid(6, 9, &mut random(1));
     for (n, mesh) in [vec![closed], open_meshes(5)].concat().into_iter().enumerate() {
         let vertices: BTreeSet<i64> = mesh.1.as_flattened().iter().copied().collect();
-        // Those without domains of their own.
-        let mut others = [open_terms(&mesh, true), border_terms()].concat();
-        others.retain(|term| term.potential.name() != "LineTensionForce");
+        let others = without_kinds([open_terms(&mesh, true), border_terms()].concat());
         for (depends, scheme) in
-            [(Depends::Lines, 0), (Depends::Both, 0), (Depends::Both, 4)].into_iter().chain(
-                // Voronoi areas can vanish at borders, where energies have poles.
-                (1..if n == 0 { 4 } else { 1 }).map(|scheme| (Depends::Rigidity, scheme)),
-            )
+            [(Depends::Lines, 0), (Depends::Modulus, 0), (Depends::All, 0), (Depends::All, 4)]
+                .into_iter()
+                .chain(
+                    // Voronoi areas can vanish at borders, where energies have poles.
+                    (1..if n == 0 { 4 } else { 1 }).map(|scheme| (Depends::Rigidity, scheme)),
+                )
         {
-            let more = if depends == Depends::Both { &others[..] } else { &[] };
+            let more = if depends == Depends::All { &others[..] } else { &[] };
             let kinds = kinds_of(vertices.len(), 3 + n as u64);
             let mut mixture = Mixture::new(mesh.clone(), kinds, n as u32);
             let mut composition = mixture.kinds.clone();
@@ -168,7 +188,7 @@ fn the_energy_of_an_exchange_is_that_of_two_evaluations() {
 fn a_demon_keeps_the_energy() {
     let mesh = spheroid(6, 9, &mut random(3));
     let mut mixture = Mixture::new(mesh, kinds_of(56, 4), 2);
-    let what = (Depends::Both, 0);
+    let what = (Depends::All, 0);
     mixture.state.demon_energy = 3.0;
     let before = mixture.energy(what, &[]) + 3.0;
     for _ in 0..20 {
@@ -264,9 +284,9 @@ fn octahedron() -> Mesh {
 #[test]
 fn visited_frequencies_are_boltzmann_weights() {
     let kinds = [0, 1, 0, 2, 1, 0];
-    let ways = [Depends::Lines, Depends::Rigidity, Depends::Both];
+    let ways = [Depends::Lines, Depends::Rigidity, Depends::Modulus, Depends::All];
     for (n, (depends, temperatures)) in
-        ways.into_iter().zip([[3.0, 2.0], [5.0, 0.8], [10.0, 3.0]]).enumerate()
+        ways.into_iter().zip([[3.0, 2.0], [5.0, 0.8], [1.0, 0.6], [10.0, 3.0]]).enumerate()
     {
         let seed = 5 + n as u32;
         let [three, two] = temperatures.map(|temperature| SwapRules { temperature, demon: 0 });
@@ -280,8 +300,9 @@ fn visited_frequencies_are_boltzmann_weights() {
 fn visited_frequencies_are_boltzmann_weights_on_an_open_surface() {
     let (positions, mut triangles) = octahedron();
     triangles.truncate(6);
-    let rules = SwapRules { temperature: 12.0, demon: 0 };
-    for depends in [Depends::Lines, Depends::Both] {
+    let ways = [(Depends::Lines, 12.0), (Depends::Modulus, 5.0), (Depends::All, 12.0)];
+    for (depends, temperature) in ways {
+        let rules = SwapRules { temperature, demon: 0 };
         let mesh = (positions.clone(), triangles.clone());
         visits_are_boltzmann(&mesh, &[0, 1, 0, 2, 1, 0], 60, (depends, 0), rules, 8);
     }
@@ -292,12 +313,9 @@ fn visited_frequencies_are_boltzmann_weights_on_an_open_surface() {
 #[test]
 fn the_change_of_forces_is_that_of_two_evaluations() {
     let mesh = spheroid(6, 9, &mut random(31));
-    let all = terms_on(&mesh, true);
-    // Its numbers have an owner of their own.
-    let more: Vec<_> =
-        all.into_iter().filter(|term| term.potential.name() != "LineTensionForce").collect();
+    let more = without_kinds(terms_on(&mesh, true));
     let at = Configuration::new(&mesh.0, None);
-    for depends in [Depends::Rigidity, Depends::Both] {
+    for depends in [Depends::Rigidity, Depends::All] {
         let mut mixture = Mixture::new(mesh.clone(), kinds_of(56, 4), 3);
         let forces = |kinds: &[u32]| {
             let values = Values::new(kinds);
@@ -331,7 +349,7 @@ fn evaluations_after_exchanges_have_the_new_values() {
     for round in 0..5 {
         let evaluate = |membrane: &mut Membrane, kinds: &[u32], owner: u64| {
             let values = Values::new(kinds);
-            let mut terms = values.terms(Depends::Both, 0);
+            let mut terms = values.terms(Depends::All, 0);
             let owner = if owner == 0 { terms[1].numbers.owner } else { owner };
             (terms[1].numbers.owner, terms[1].numbers.version) = (owner, round);
             let mut forces = vec![0.0; mesh.0.len()];
@@ -341,7 +359,7 @@ fn evaluations_after_exchanges_have_the_new_values() {
         let found = evaluate(&mut membrane, &kinds, 77);
         assert_eq!(found, evaluate(&mut Membrane::new(&mesh.1, 56).unwrap(), &kinds, 0));
         let values = Values::new(&kinds);
-        let mut terms = values.terms(Depends::Both, 0);
+        let mut terms = values.terms(Depends::All, 0);
         (terms[1].numbers.owner, terms[1].numbers.version) = (77, round);
         let mut sources: Vec<u32> = (0..56).collect();
         let rules = SwapRules { temperature: 1e6, demon: 0 };

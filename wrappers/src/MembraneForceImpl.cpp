@@ -33,9 +33,7 @@ void MembraneForceImpl::initialize(ContextImpl& context) {
     inPlace = dynamic_cast<const ReferencePlatform*>(&context.getPlatform()) != nullptr;
     check(Helfrich_Potential_find(owner.getTypeName().c_str(), &term.potential));
     static std::atomic<uint64_t> lastOwner(0);
-    const char* name;
-    if (Helfrich_Potential_numbers(owner.getTypeName().c_str(), &name) != 0)
-        term.numbersOwner = ++lastOwner;
+    term.numbersOwner = ++lastOwner;
     hasKinds = Helfrich_Potential_hasKinds(owner.getTypeName().c_str()) != 0;
     for (int i = 0; i < owner.getNumParameters(); i++) {
         HelfrichParameterInfo info;
@@ -92,7 +90,7 @@ void MembraneForceImpl::copyValues() {
     updated.numbers = rows.data();
     updated.numNumbers = (int64_t) rows.size();
     updated.numbersBox = vectors.empty() ? nullptr : vectors.data();
-    if (rows != numbers || vectors != numbersBox)
+    if (rows != numbers || vectors != numbersBox || copies != fields)
         updated.numbersVersion = takeVersion();
     membrane->checkTerm(owner.getTypeName(), updated);
     membrane->checkParticles(owner.getTypeName(), updated);
@@ -127,10 +125,9 @@ void MembraneForceImpl::rearrange(const vector<uint32_t>& sources, uint64_t vers
     for (size_t i = 0; i < fields.size(); i++)
         if (isOfVertices[i] && !fields[i].empty())
             move(fields[i]);
-    if (hasKinds) {
+    if (hasKinds)
         move(numbers);
-        term.numbersVersion = version;
-    }
+    term.numbersVersion = version;
 }
 
 vector<string> MembraneForceImpl::getKernelNames() {

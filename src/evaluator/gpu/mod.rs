@@ -110,7 +110,7 @@ mod tests {
     /// But for those of pairs, which evaluators never see: the processor computes them beside any of them.
     #[test]
     fn every_potential_has_a_shader_and_every_shader_a_potential() {
-        let is_for_device = |potential: &&dyn Potential| {
+        let is_for_device = |potential: &&'static dyn Potential| {
             !potential.needs(&Term::of(*potential)).contains(Needs::CONTACTS)
         };
         let potentials: Vec<_> = REGISTRY.into_iter().filter(is_for_device).collect();

@@ -6,7 +6,7 @@ use super::lanes::Lane;
 use super::layout::{Layout, TILE};
 use super::records::{BLOCK, Records};
 use super::tiles::{TriangleTile, load3};
-use crate::mesh::geometry::arctan_over_argument;
+use crate::mesh::geometry::corner_angle;
 use crate::real::{Real, cross, dot, minus, plus, plus_scaled, scaled};
 use std::ops::AddAssign;
 
@@ -103,9 +103,9 @@ impl<const POTENTIALS: bool, const ANGLES: bool> WithLanes for Forward<'_, POTEN
             if ANGLES {
                 let bc = minus(c, b);
                 let angles = [
-                    angle(twice, zero - dot(ca, ab)),
-                    angle(twice, zero - dot(ab, bc)),
-                    angle(twice, zero - dot(bc, ca)),
+                    corner_angle(twice, zero - dot(ca, ab)),
+                    corner_angle(twice, zero - dot(ab, bc)),
+                    corner_angle(twice, zero - dot(bc, ca)),
                 ];
                 // SAFETY: there is a record of angles for each normal.
                 unsafe {
@@ -137,21 +137,6 @@ impl<const POTENTIALS: bool, const ANGLES: bool> WithLanes for Forward<'_, POTEN
     }
 }
 
-/// The angle of (`adjacent`, `opposite`) in (0, π): eight times that of which the tangent is small enough for
-/// the polynomial, found by three times tan(α/2) = tan α / (1 + √(1 + tan² α)).
-#[inline(always)]
-fn angle<R: Real>(opposite: R, adjacent: R) -> R {
-    let hypotenuse = opposite.mul_add(opposite, adjacent * adjacent).sqrt();
-    // tan(α/2) in the form that does not cancel, on either side of a right angle.
-    let one = opposite.of(1.0);
-    let obtuse = adjacent.zero().above(adjacent);
-    let half =
-        ((hypotenuse - adjacent) / opposite).or_else(obtuse, opposite / (hypotenuse + adjacent));
-    let quarter = half / (one + half.mul_add(half, one).sqrt());
-    let eighth = quarter / (one + quarter.mul_add(quarter, one).sqrt());
-    eighth * arctan_over_argument(eighth * eighth) * 8.0
-}
-
 /// The tensions along the sides of a tile of triangles, from the slopes that its potentials found.
 ///
 /// Writes the tile's tensions, under the same condition as [`Forward`] its normals.
@@ -179,24 +164,6 @@ impl WithLanes for Tensions<'_> {
                 plus_scaled(plus(by_length, by_length), stress, [dots[2], dots[0], dots[1]]);
             // SAFETY: the tensions have whole blocks.
             unsafe { Lane::store4(self.arrays.tensions.at(4 * first), [t2, t0, t1, t2]) };
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn angles_are_exact_to_rounding() {
-        for k in 1..=1000 {
-            let expected = std::f64::consts::PI * f64::from(k) / 1000.5;
-            for scale in [1e-3, 1.0, 1e5] {
-                let found = angle(scale * expected.sin(), scale * expected.cos());
-                // The sine near π itself has lost digits.
-                let tolerance = 1e-15 * (1.0 + 1.0 / (std::f64::consts::PI - expected));
-                assert!((found - expected).abs() < tolerance, "{expected}: {found}");
-            }
         }
     }
 }

@@ -17,6 +17,14 @@ namespace HelfrichPlugin {
  * borders; forces act on the triangles at borders only. On a closed surface E is the constant 2 pi chi kappa_G, 4 pi
  * kappa_G on a sphere, and there are no forces.
  *
+ * The modulus can have a value for each vertex, so that domains may differ. Then
+ *
+ *     E = sum over vertices on no border of kappa_G,i (2 pi - sum of theta)
+ *
+ * has forces on closed surfaces, too: those of the line between domains, by its geodesic curvature (F. Juelicher and
+ * R. Lipowsky, Phys. Rev. Lett. 70, 2964 (1993), doi:10.1103/PhysRevLett.70.2964; LineTensionForce is the line's
+ * tension).
+ *
  * With kappa_G below zero and bond flips, meshes with borders may crumple: where the dihedral angles at a vertex
  * cancel, BendingForce's scheme Julicher sees no curvature however the surface zigzags, and folds at a border gain
  * energy. A DihedralForce of the stiffness of the membrane's rigidity prevents that for kappa_G down to minus the
@@ -43,6 +51,20 @@ public:
      */
     void setModulus(double modulus) {
         setParameterValue("modulus", modulus);
+    }
+    /**
+     * Get the modulus of each vertex, kJ/mol; empty if all have the same.
+     */
+    const std::vector<double>& getVertexModulus() const {
+        return getElementValues("modulus");
+    }
+    /**
+     * Give each vertex its own modulus, which replaces the scalar.
+     *
+     * @param values  one for each vertex, in ascending order of particle index, kJ/mol; empty to go back to the scalar
+     */
+    void setVertexModulus(const std::vector<double>& values) {
+        setElementValues("modulus", values);
     }
 };
 

@@ -16,10 +16,9 @@ namespace HelfrichPlugin {
  * a spontaneous curvature for each vertex, and so for each domain.
  *
  * The smooth counterpart is F. Juelicher and R. Lipowsky, Phys. Rev. Lett. 70, 2964 (1993),
- * doi:10.1103/PhysRevLett.70.2964. A line through a mesh goes in zigzag and is longer than a smooth one, by a factor that
- * does not depend on how fine the mesh is: 2/sqrt(3) along the edges of equilateral triangles and 1 across them, and
- * about 1.1 on average; docs/energies.md has what was measured. So gamma is the energy of the smooth line divided by this
- * factor.
+ * doi:10.1103/PhysRevLett.70.2964. A line through a mesh goes in zigzag and is longer than a smooth one, however fine the
+ * mesh is: on equilateral triangles by 1 along their edges, 2/sqrt(3) at 30 degrees to these and 2 sqrt(3)/pi = 1.103 on
+ * average, on random meshes by 1.107. So gamma is to be the energy of a smooth line by length, divided by this.
  *
  * Domains belong to the vertices: bond flips take a vertex along with its domain, so that domains mix and sort on a
  * membrane that flows. With a MonteCarloDomainSwap neighbours exchange them.
