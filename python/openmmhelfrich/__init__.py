@@ -22,6 +22,7 @@ _plugin.load()
 from . import analysis, backend, config, platforms, vcm  # noqa: E402
 from ._paths import cmake_path, include_path, library_path  # noqa: E402
 from .backend import adapters, get_backend, set_backend  # noqa: E402
+from .domains import values_of_domains  # noqa: E402
 from .errors import MeshError  # noqa: E402
 from .forces import *  # noqa: E402, F403
 from .forces import __all__ as _force_names  # noqa: E402
@@ -60,6 +61,7 @@ __all__ = [
     "platforms",
     "save_state",
     "set_backend",
+    "values_of_domains",
     "vcm",
     "virial",
     *_force_names,

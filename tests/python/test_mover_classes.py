@@ -1,4 +1,4 @@
-"""Both Monte Carlo movers as any OpenMM Force: arguments, what is refused, copies, XML."""
+"""The Monte Carlo movers as any OpenMM Force: arguments, what is refused, copies, XML."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import openmm as mm
 import pytest
 from flowing import start
 from openmm import unit
-from openmmhelfrich import MonteCarloBondFlip, MonteCarloMembraneTension
+from openmmhelfrich import MonteCarloBondFlip, MonteCarloDomainSwap, MonteCarloMembraneTension
 
 
 class Mover(NamedTuple):
@@ -68,7 +68,7 @@ def getter(argument: str) -> str:
     return "Default" + name if is_parameter else name
 
 
-# Of both.
+# Of all.
 REFUSED = [
     ({"temperature": 0}, mm.OpenMMException, "temperature.*above zero"),
     ({"temperature": float("nan")}, mm.OpenMMException, "temperature.*nan"),
@@ -148,6 +148,48 @@ MOVERS = [
             (' p1="', ' p4="', "p4"),
         ],
         optional_xml=['frequency="10"', 'maxDegree="10"', 'ensemble="Canonical"'],
+    ),
+    Mover(
+        MonteCarloDomainSwap,
+        (start(),),
+        given={"temperature": 310.0, "frequency": 7, "attemptsPerEdge": 0.25},
+        further={
+            "RandomNumberSeed": -17,
+            "Ensemble": MonteCarloDomainSwap.Microcanonical,
+            "ForceGroup": 3,
+            "Name": "mixing",
+        },
+        defaults={
+            "temperature": 300,
+            "frequency": 10,
+            "attemptsPerEdge": 0.1,
+            "RandomNumberSeed": 0,
+            "Ensemble": MonteCarloDomainSwap.Canonical,
+            "ForceGroup": 0,
+            "Name": "MonteCarloDomainSwap",
+        },
+        refused=[
+            *REFUSED,
+            ({"attemptsPerEdge": -0.1}, mm.OpenMMException, "attemptsPerEdge.*-0.1"),
+            ({"attemptsPerEdge": 1001}, mm.OpenMMException, "attemptsPerEdge.*1001"),
+            ({"minDegree": 3}, TypeError, "minDegree"),
+        ],
+        refused_by_setters=[
+            *REFUSED_BY_SETTERS,
+            ("setAttemptsPerEdge", float("nan")),
+            ("setEnsemble", -1),
+        ],
+        wrong_xml=[
+            *WRONG_XML,
+            (
+                'ensemble="Microcanonical"',
+                'ensemble="x"',
+                'ensemble="x".*Canonical or Microcanonical',
+            ),
+            ("Triangles>", "Triangels>", "Triangels"),
+            (' p1="', ' p4="', "p4"),
+        ],
+        optional_xml=['frequency="10"', 'attemptsPerEdge=".1"', 'ensemble="Canonical"'],
     ),
     Mover(
         MonteCarloMembraneTension,
