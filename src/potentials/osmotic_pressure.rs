@@ -76,9 +76,34 @@ fn less_logarithm(d: f64) -> f64 {
 mod tests {
     use super::*;
 
+    fn at(values: [f64; 3], volume: f64) -> (Contribution, f64) {
+        let term = Term::new("OsmoticPressureForce", 0, &values).unwrap();
+        let (totals, mut partials) =
+            (Totals { volume, ..Totals::default() }, TotalPartials::default());
+        (OsmoticPressure.totals(&term, &totals, &mut partials), partials.volume)
+    }
+
+    #[test]
+    fn derivatives_are_exact() {
+        let (values, volume) = ([1e4, 0.1, 2.5], 1.3e5);
+        let (found, slope) = at(values, volume);
+        let central = |f: &dyn Fn(f64) -> f64| (f(1e-5) - f(-1e-5)) / 2e-5;
+        let by_volume = central(&|h| at(values, volume * (1.0 + h)).0.energy) / volume;
+        assert!((slope / by_volume - 1.0).abs() < 1e-8);
+        for k in 0..3 {
+            let energy = |h: f64| {
+                let mut moved = values;
+                moved[k] *= 1.0 + h;
+                at(moved, volume).0.energy
+            };
+            let expected = central(&energy) / values[k];
+            assert!((found.by_parameter[k] / expected - 1.0).abs() < 1e-8, "{k}");
+        }
+    }
+
     #[test]
     fn small_differences_keep_their_digits() {
-        for d in [1e-12, -1e-9, 1e-5, -1e-3] {
+        for d in [1e-12_f64, -1e-9, 1e-5, -1e-4] {
             let expected = d * d * (0.5 - d / 3.0 + d * d / 4.0 - d.powi(3) / 5.0);
             assert!((less_logarithm(d) / expected - 1.0).abs() < 1e-14, "{d}");
         }
@@ -89,11 +114,9 @@ mod tests {
 
     #[test]
     fn a_surface_without_volume_has_no_energy() {
-        let term = Term::new("OsmoticPressureForce", 0, &[1e4, 0.1, 2.5]).unwrap();
         for volume in [0.0, -1e5] {
-            let (totals, mut partials) = (Totals { area: 1.0, volume }, TotalPartials::default());
-            let found = OsmoticPressure.totals(&term, &totals, &mut partials);
-            assert!(!found.energy.is_finite() && !partials.volume.is_finite(), "{volume}");
+            let (found, slope) = at([1e4, 0.1, 2.5], volume);
+            assert!(!found.energy.is_finite() && !slope.is_finite(), "{volume}");
         }
     }
 }
