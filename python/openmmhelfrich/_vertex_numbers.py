@@ -57,6 +57,7 @@ def _accept_domains(force: type, give_method) -> None:
         return np.frombuffer(self._vertexBuffer()).astype(np.int64)
 
     give_method(force, "setDomains", set_domains)
+
     def get_domains_in_context(self, context):
         """The domain of each vertex as it is in a Context now, where neighbours may exchange them.
 

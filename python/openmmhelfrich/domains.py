@@ -53,8 +53,8 @@ def values_of_domains(domains, table: Mapping) -> dict:
     absent = np.flatnonzero(~np.isin(numbers, kinds))
     if absent.size:
         raise ValueError(
-            f"values_of_domains: vertex {absent[0]} is of domain {numbers[absent[0]]}, which is not "
-            f"in the table; it has {', '.join(map(str, sorted(rows)))}"
+            f"values_of_domains: vertex {absent[0]} is of domain {numbers[absent[0]]}, which is "
+            f"not in the table; it has {', '.join(map(str, sorted(rows)))}"
         )
     names = list(dict.fromkeys(name for values in rows.values() for name in values))
     places = np.searchsorted(np.sort(kinds), numbers)
@@ -70,7 +70,9 @@ def _of_all(name: str, rows: dict) -> tuple[dict[int, float], unit.Unit | None]:
     """The values of one name by their domains, and their unit, if they have one."""
     for domain, values in rows.items():
         if name not in values:
-            raise ValueError(f"values_of_domains: domain {domain} has no {name!r}, which others have")
+            raise ValueError(
+                f"values_of_domains: domain {domain} has no {name!r}, which others have"
+            )
     first = next(iter(rows.values()))[name]
     dimension = first.unit if unit.is_quantity(first) else None
     plain = {}

@@ -1,7 +1,8 @@
 """The whole state of a Context in a file: what OpenMM's State holds, and the connectivity.
 
-Bond flips change which particles are neighbours, and exchanges what they are. OpenMM's State, and its checkpoints on other
-platforms than Helfrich, do not know that; these files do, and they can be read on any platform.
+Bond flips change which particles are neighbours, and exchanges what they are. OpenMM's State, and
+its checkpoints on other platforms than Helfrich, do not know that; these files do, and they can be
+read on any platform.
 """
 
 from __future__ import annotations
@@ -37,9 +38,9 @@ def save_state(context, path) -> None:
     `load_state` restores them to the last bit of what OpenMM hands out: of all digits on the
     platforms Reference, CPU and Helfrich, and elsewhere in the precision of the platform. What
     bond flips, a `MonteCarloDomainSwap` and a `MonteCarloMembraneTension` have come to, with their
-    random numbers and their statistics, is among it; the random numbers of integrators are not, so a run under
-    LangevinMiddle goes on along another path of the same ensemble, where one from a checkpoint of
-    platform Helfrich goes on with the same bits.
+    random numbers and their statistics, is among it; the random numbers of integrators are not, so
+    a run under LangevinMiddle goes on along another path of the same ensemble, where one from a
+    checkpoint of platform Helfrich goes on with the same bits.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A small vesicle of three components whose vertices exchange places, for the tests of MonteCarloDomainSwap."""
+"""A small vesicle of three components, for the tests of MonteCarloDomainSwap."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""MonteCarloDomainSwap in a Context: what is exchanged and how often, what evaluations see, what is refused."""
+"""MonteCarloDomainSwap in a Context: what is exchanged, what evaluations see, what is refused."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ COUNT = start().num_vertices
 
 
 def assert_as_fresh(context: mm.Context, target: Target, tolerance: float) -> None:
-    """Energy and forces are those of a Context that was made with the present triangles and values."""
+    """Energy and forces are those of a Context that was made with the present values."""
     line = force_in(context, helfrich.LineTensionForce)
     permutation = line.getPermutationInContext(context)
     domains = line.getDomainsInContext(context)
@@ -123,21 +123,22 @@ class TestDriven:
 def octahedron() -> helfrich.Mesh:
     corners = 3 * np.concatenate([np.eye(3), -np.eye(3)])[[0, 3, 1, 4, 2, 5]]
     noise = np.random.default_rng(3).normal(0, 0.4, corners.shape)
-    triangles = [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]]
-    return helfrich.Mesh(corners + noise, triangles)
+    rows = [(0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4), (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5)]
+    return helfrich.Mesh(corners + noise, np.array(rows))
+
+
+#: In its units, kJ/mol and nm.
+KINDS = {
+    1: {"rigidity": 1.0, "spontaneousCurvature": 0.0, "modulus": 0.0},
+    2: {"rigidity": 2.5, "spontaneousCurvature": 0.3, "modulus": -1.5},
+}
 
 
 class TestDistribution:
     """Frozen vertices, whose arrangements are all enumerated."""
 
-    # kJ/mol and nm, for the octahedron.
-    KINDS = {
-        1: {"rigidity": 1.0, "spontaneousCurvature": 0.0, "modulus": 0.0},
-        2: {"rigidity": 2.5, "spontaneousCurvature": 0.3, "modulus": -1.5},
-    }
-
     def forces(self, mesh, which, domains):
-        values = helfrich.values_of_domains(domains, self.KINDS)
+        values = helfrich.values_of_domains(domains, KINDS)
         moduli = values.pop("modulus")
         forces = {
             "lines": helfrich.LineTensionForce(mesh, 1.0, domains),

@@ -25,12 +25,11 @@ std::mutex registryMutex;
 std::multimap<const ContextImpl*, std::weak_ptr<SharedMembrane>> registry;
 
 [[noreturn]] void refuseShared(const string& subject, const string& mover, int particle) {
-    throw OpenMMException(subject + ": particle " + std::to_string(particle) +
-                          " belongs to two different triangulations, and a " + mover +
-                          " would change one of them only; give all membrane forces on these particles and the " +
-                          mover +
-                          " the same triangles in the same order (SurfaceRepulsionForce and ParticleSurfaceForce may "
-                          "have those of several such membranes, one after another)");
+    throw OpenMMException(
+        subject + ": particle " + std::to_string(particle) + " belongs to two different triangulations, and a " +
+        mover + " would change one of them only; give all membrane forces on these particles and the " + mover +
+        " the same triangles in the same order (SurfaceRepulsionForce and ParticleSurfaceForce may "
+        "have those of several such membranes, one after another)");
 }
 
 } // namespace

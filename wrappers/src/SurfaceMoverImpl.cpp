@@ -69,9 +69,10 @@ void refuseContained(const MonteCarloSurfaceMover& owner, ContextImpl& context) 
 /** Refuse an integrator of many copies of the System, which have their own positions but would share the surface. */
 void refuseCopies(const MonteCarloSurfaceMover& owner, const Integrator& integrator) {
     if (isOfCopies(integrator))
-        throw OpenMMException(owner.getTypeName() +
-                              ": the beads of an RPMDIntegrator would change the surface that they share, each by its own "
-                              "energy, which is no ensemble; choose another integrator, or leave this mover out");
+        throw OpenMMException(
+            owner.getTypeName() +
+            ": the beads of an RPMDIntegrator would change the surface that they share, each by its own "
+            "energy, which is no ensemble; choose another integrator, or leave this mover out");
 }
 
 /** Whether an integrator keeps velocities of half a step ago and gives them the kick of a whole step at once. */

@@ -22,8 +22,8 @@ struct MoverSchedule {
 static_assert(sizeof(MoverSchedule) == 24, "the schedule of a mover has no gaps");
 
 /**
- * What the implementations of movers of a surface have in common: when they act, and that the Context's State belongs to
- * what the membrane has come to, which it does not hold. A fingerprint of that is a parameter of the Context.
+ * What the implementations of movers of a surface have in common: when they act, and that the Context's State belongs
+ * to what the membrane has come to, which it does not hold. A fingerprint of that is a parameter of the Context.
  */
 class SurfaceMoverImpl : public OpenMM::ForceImpl,
                          public UpdatableImpl,

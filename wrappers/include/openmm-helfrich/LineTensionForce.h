@@ -11,14 +11,15 @@ namespace HelfrichPlugin {
  *     E = gamma L
  *
  * with the length L of the line that separates vertices of different domains. In a triangle with two corners in one
- * domain and the third in another it joins the middles of the two mixed sides, and in a triangle of three domains it leads
- * from the middles of all sides to the centroid. There may be any number of domains. BendingForce can have a rigidity and
- * a spontaneous curvature for each vertex, and so for each domain.
+ * domain and the third in another it joins the middles of the two mixed sides, and in a triangle of three domains it
+ * leads from the middles of all sides to the centroid. There may be any number of domains. BendingForce can have a
+ * rigidity and a spontaneous curvature for each vertex, and so for each domain.
  *
  * The smooth counterpart is F. Juelicher and R. Lipowsky, Phys. Rev. Lett. 70, 2964 (1993),
- * doi:10.1103/PhysRevLett.70.2964. A line through a mesh goes in zigzag and is longer than a smooth one, however fine the
- * mesh is: on equilateral triangles by 1 along their edges, 2/sqrt(3) at 30 degrees to these and 2 sqrt(3)/pi = 1.103 on
- * average, on random meshes by 1.107. So gamma is to be the energy of a smooth line by length, divided by this.
+ * doi:10.1103/PhysRevLett.70.2964. A line through a mesh goes in zigzag and is longer than a smooth one, however fine
+ * the mesh is: on equilateral triangles by 1 along their edges, 2/sqrt(3) at 30 degrees to these and 2 sqrt(3)/pi
+ * = 1.103 on average, on random meshes by 1.107. So gamma is to be the energy of a smooth line by length, divided by
+ * this.
  *
  * Domains belong to the vertices: bond flips take a vertex along with its domain, so that domains mix and sort on a
  * membrane that flows. With a MonteCarloDomainSwap neighbours exchange them.

@@ -68,10 +68,10 @@ public:
         dynamic_cast<UpdatableImpl&>(getImplInContext(context)).updateParametersInContext(getContextImpl(context));
     }
     /**
-     * Get what has come of the moves that were tried in a Context since it was made: "attempts"; those "accepted"; those
-     * refused, by the first reason, as the class tells; "acceptance", accepted over attempts; "time", the time that has
-     * been simulated, ps; "rate", accepted for each edge and ps; and "demonEnergy", kJ/mol. Ratios are NaN as long as
-     * there is nothing to divide by.
+     * Get what has come of the moves that were tried in a Context since it was made: "attempts"; those "accepted";
+     * those refused, by the first reason, as the class tells; "acceptance", accepted over attempts; "time", the time
+     * that has been simulated, ps; "rate", accepted for each edge and ps; and "demonEnergy", kJ/mol. Ratios are NaN as
+     * long as there is nothing to divide by.
      *
      * @param context  the Context
      */

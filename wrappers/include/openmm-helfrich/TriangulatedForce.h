@@ -86,9 +86,9 @@ public:
      */
     std::vector<int> getPermutationInContext(OpenMM::Context& context) const;
     /**
-     * Let the vertices of a surface in a Context have each other's values, in all forces on the same triangles: rigidity
-     * and the like, and the number of the domain. What holds of setTrianglesInContext() without a MonteCarloBondFlip
-     * holds here without a MonteCarloDomainSwap.
+     * Let the vertices of a surface in a Context have each other's values, in all forces on the same triangles:
+     * rigidity and the like, and the number of the domain. What holds of setTrianglesInContext() without a
+     * MonteCarloBondFlip holds here without a MonteCarloDomainSwap.
      *
      * @param context      the Context
      * @param permutation  for each vertex the one whose values it shall have, as they were given; each comes once
