@@ -217,6 +217,40 @@ class TestDistribution:
             assert measure(context)[0] + demon == pytest.approx(first, rel=1e-12)
         assert mover.getStatistics(context)["accepted"] > 20
 
+    @pytest.mark.parametrize("target", [HELFRICH, NATIVE[2]], ids=str)
+    def test_a_demon_keeps_the_energy_of_a_sheet_that_spans_the_box(self, target):
+        mesh = helfrich.Mesh.sheet(10, 10, 8.0, periodic=True)
+        rough = mesh.vertices + np.random.default_rng(2).normal(0, 0.8, mesh.vertices.shape)
+        domains = domains_of(mesh.num_vertices)
+        mover = swap_of(mesh, frequency=1)
+        mover.setEnsemble("Microcanonical")
+        forces = self.forces_of_sheet(mesh, domains)
+        for force in forces:
+            force.setBackend(target.backend)
+        system = mm.System()
+        system.setDefaultPeriodicBoxVectors(*mesh.box)
+        for _ in range(mesh.num_vertices):
+            system.addParticle(0.0)
+        for force in [*forces, mover]:
+            system.addForce(force)
+        context = target.context(system, mm.VerletIntegrator(0.1))
+        # Positions are wrapped into the box, so that neighbours are images here and there.
+        context.setPositions(rough % np.diag(mesh.box))
+        first, _ = measure(context)
+        context.getIntegrator().step(20)
+        found = mover.getStatistics(context)
+        assert found["accepted"] > 20
+        assert measure(context)[0] + found["demonEnergy"] == pytest.approx(first, rel=1e-9)
+
+    def forces_of_sheet(self, mesh, domains):
+        values = helfrich.values_of_domains(domains, TABLE)
+        moduli = values.pop("modulus")
+        return [
+            helfrich.BendingForce(mesh, **values),
+            helfrich.LineTensionForce(mesh, 0.5, domains),
+            helfrich.GaussianCurvatureForce(mesh, moduli),
+        ]
+
 
 class TestRules:
     def test_statistics_add_up(self):
