@@ -77,7 +77,7 @@ pub unsafe extern "C" fn Helfrich_Membrane_flip(
 
 /// Let the ends of so many edges exchange what they are at the present positions, with the energy of some terms. `kinds`
 /// has the same number for vertices that are alike; `sources` gets the vertex whose values each one has then, and `made`
-/// how many exchanges there were. `version` is what numbers of vertices will have for theirs; the rest is as of
+/// how many exchanges there were. `version` is what terms will have for theirs that have been changed; the rest is as of
 /// [`Helfrich_Membrane_flip`].
 ///
 /// # Safety

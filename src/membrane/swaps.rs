@@ -10,7 +10,7 @@ impl Membrane {
     /// Make a round of exchanges at the present positions, with the energy of some terms. Returns how many were made;
     /// the round's sources say whose values each vertex has then, and the caller puts them in order. If `force_change`
     /// (kJ/mol/nm, in the layout of the positions) is wanted, it gets by how much they have changed the forces; it is left
-    /// alone if there were none. `version` is what the numbers of vertices will have for their version.
+    /// alone if there were none. `version` is what terms will have for theirs that have been changed.
     ///
     /// # Errors
     /// A term as [`Self::evaluate`] refuses it, a mesh without geometry: the sources are to be forgotten then.
@@ -63,12 +63,13 @@ impl Moved {
         for (field, moved) in term.fields.iter_mut().zip(&self.fields) {
             if !moved.is_empty() {
                 *field = moved;
+                term.numbers.version = version;
             }
         }
         if !self.numbers.is_empty() {
             term.numbers.values = &self.numbers;
+            term.numbers.version = version;
         }
-        term.numbers.version = version;
         term
     }
 }

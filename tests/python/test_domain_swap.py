@@ -518,8 +518,10 @@ class TestRefused:
         context.getIntegrator().step(10)
         assert mover.getStatistics(context)["accepted"] > 20
         measure(context)
-        with pytest.raises(mm.OpenMMException, match=r"^SurfaceRepulsionForce: .*set them there"):
+        with pytest.raises(mm.OpenMMException, match=r"^SurfaceRepulsionForce: .*set their perm"):
             contact.setPermutationInContext(context, np.arange(2 * COUNT))
+        with pytest.raises(mm.OpenMMException, match=r"^SurfaceRepulsionForce: .*ask those"):
+            contact.getPermutationInContext(context)
         # Of all of them, no single surface moves.
         whole = helfrich.MonteCarloDomainSwap(both, 300)
         for order in (

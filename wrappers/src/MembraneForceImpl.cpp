@@ -118,6 +118,7 @@ void MembraneForceImpl::visitKinds(const std::function<void(const vector<double>
 
 void MembraneForceImpl::rearrange(const vector<uint32_t>& sources, uint64_t version) {
     auto move = [&](vector<double>& values) {
+        term.numbersVersion = version;
         const vector<double> before(values);
         for (size_t i = 0; i < sources.size(); i++)
             values[i] = before[sources[i]];
@@ -127,7 +128,6 @@ void MembraneForceImpl::rearrange(const vector<uint32_t>& sources, uint64_t vers
             move(fields[i]);
     if (hasKinds)
         move(numbers);
-    term.numbersVersion = version;
 }
 
 vector<string> MembraneForceImpl::getKernelNames() {

@@ -83,7 +83,7 @@ public:
      * Let the vertices have each other's values.
      *
      * @param sources  for each vertex the one whose values it shall have
-     * @param version  of the numbers of vertices from then on
+     * @param version  of the numbers of vertices from then on, if that makes a difference to the force
      */
     void rearrange(const std::vector<uint32_t>& sources, uint64_t version);
     /** Whether the platform evaluates it, with NativeMembrane. */

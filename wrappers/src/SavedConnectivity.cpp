@@ -225,16 +225,15 @@ void SharedMembrane::arrange(vector<double>& values) const {
         values[i] = given[permutation[i]];
 }
 
-void SharedMembrane::refuseParts(const string& subject) const {
+void SharedMembrane::refuseParts(const string& subject, const string& advice) const {
     if (std::any_of(parts.begin(), parts.end(), [](const Link& link) { return !link.other.expired(); }))
-        throw OpenMMException(subject +
-                              ": these triangles follow those of other forces, which have some of them each; "
-                              "set them there");
+        throw OpenMMException(
+            subject + ": these triangles follow those of other forces, which have some of them each; " + advice);
 }
 
 vector<int> SharedMembrane::getPermutation(const string& subject, ContextImpl& context) {
     settle(context);
-    refuseParts(subject);
+    refuseParts(subject, "ask those for their permutations");
     vector<int> found(permutation.begin(), permutation.end());
     if (found.empty()) {
         found.resize(Helfrich_Membrane_numVertices(core));
@@ -245,7 +244,7 @@ vector<int> SharedMembrane::getPermutation(const string& subject, ContextImpl& c
 
 void SharedMembrane::setPermutation(const string& subject, ContextImpl& context, const vector<int>& given) {
     settle(context);
-    refuseParts(subject);
+    refuseParts(subject, "set their permutations");
     auto count = (size_t) Helfrich_Membrane_numVertices(core);
     if (given.size() != count)
         throw OpenMMException(subject + ": the permutation is of " + std::to_string(given.size()) +
@@ -309,7 +308,7 @@ void SharedMembrane::tellMovers(ContextImpl& context, const SavedConnectivity* s
 }
 
 void SharedMembrane::setTriangles(const string& subject, ContextImpl& context, const vector<int>& corners) {
-    refuseParts(subject);
+    refuseParts(subject, "set them there");
     Connectivity before = getConnectivity();
     check(Helfrich_Membrane_setTriangles(subject.c_str(), core, corners.data(), (int64_t) corners.size() / 3));
     checkMovers(subject, before);

@@ -250,8 +250,8 @@ private:
     const SurfaceMoverImpl* findMover() const;
     /** Refuse two triangulations of the same particles if one of them changes, unless it can follow the other. */
     static void refuseOthers(const std::string& subject, const SharedMembrane& one, const SharedMembrane& other);
-    /** Refuse to be asked or told of single vertices where these follow those of parts. */
-    void refuseParts(const std::string& subject) const;
+    /** Refuse what has to be asked or told of the parts. */
+    void refuseParts(const std::string& subject, const std::string& advice) const;
     /** Which members: those that the platform evaluates, all others, or both. */
     enum class Which { Native, Others, All };
     /** Note the members in some force groups, and their terms. */

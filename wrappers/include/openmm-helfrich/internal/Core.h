@@ -201,7 +201,7 @@ int Helfrich_Membrane_flip(const char* subject, HelfrichMembrane* membrane, cons
                            double* forceChange, const HelfrichFollower* followers, int64_t numFollowers);
 /**
  * Let neighbours exchange what they are. `kinds` has the same number for vertices that are alike, `sources` gets the
- * vertex whose values each one has then, and `version` is what numbers of vertices will have for theirs.
+ * vertex whose values each one has then, and `version` is what terms will have for theirs that have been changed.
  */
 int Helfrich_Membrane_swap(const char* subject, HelfrichMembrane* membrane, const HelfrichTerm* terms, int64_t numTerms,
                            int64_t numParticles, const double* positions, const double* box,
