@@ -20,7 +20,7 @@ mod interface;
 
 #[path = "src/moves/records.rs"]
 #[allow(dead_code, reason = "only the layouts matter here")]
-mod flip_records;
+mod move_records;
 #[path = "src/ffi/records.rs"]
 mod records;
 

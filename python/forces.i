@@ -49,7 +49,9 @@ using namespace HelfrichPlugin;
 %ignore HelfrichPlugin::TriangulatedForce::getVirial;
 %ignore HelfrichPlugin::TriangulatedForce::saveConnectivity;
 %ignore HelfrichPlugin::TriangulatedForce::restoreConnectivity;
-%ignore HelfrichPlugin::MonteCarloBondFlip::getStatistics;
+%ignore HelfrichPlugin::TriangulatedForce::getPermutationInContext;
+%ignore HelfrichPlugin::TriangulatedForce::setPermutationInContext;
+%ignore HelfrichPlugin::MonteCarloSurfaceMover::getStatistics;
 %ignore HelfrichPlugin::MonteCarloMembraneTension::getStatistics;
 %ignore HelfrichPlugin::MonteCarloMembraneTension::saveState;
 %ignore HelfrichPlugin::MonteCarloMembraneTension::restoreState;
@@ -64,13 +66,16 @@ using namespace HelfrichPlugin;
 %ignore *::setReference;
 %ignore *::getDomains;
 %ignore *::setDomains;
+%ignore *::getDomainsInContext;
 %ignore HelfrichPlugin::ParticleSurfaceForce::setParticles;
 %ignore HelfrichPlugin::MembraneForce::setParameterValue;
 %ignore HelfrichPlugin::VariableMassIntegrator::getMasses;
 %rename(_setElementValues) HelfrichPlugin::MembraneForce::setElementValues;
 %rename(_HelfrichForce) HelfrichPlugin::HelfrichForce;
+%rename(_SurfaceMover) HelfrichPlugin::MonteCarloSurfaceMover;
 %nodefaultctor HelfrichPlugin::HelfrichForce;
 %nodefaultctor HelfrichPlugin::MonteCarloMover;
+%nodefaultctor HelfrichPlugin::MonteCarloSurfaceMover;
 %nodefaultctor HelfrichPlugin::TriangulatedForce;
 %nodefaultctor HelfrichPlugin::MembraneForce;
 %nodefaultctor HelfrichPlugin::VariableMassIntegrator;
@@ -97,6 +102,14 @@ static PyObject* toBytes(const void* data, size_t size) {
     void _setTrianglesInContext(OpenMM::Context& context, const char* data, size_t size) {
         const int* corners = reinterpret_cast<const int*>(data);
         $self->setTrianglesInContext(context, std::vector<int>(corners, corners + size / sizeof(int)));
+    }
+    PyObject* _getPermutationInContext(OpenMM::Context& context) {
+        std::vector<int> permutation = $self->getPermutationInContext(context);
+        return toBytes(permutation.data(), permutation.size() * sizeof(int));
+    }
+    void _setPermutationInContext(OpenMM::Context& context, const char* data, size_t size) {
+        const int* vertices = reinterpret_cast<const int*>(data);
+        $self->setPermutationInContext(context, std::vector<int>(vertices, vertices + size / sizeof(int)));
     }
     PyObject* _getVirial(OpenMM::Context& context, int groups) {
         std::vector<double> virial = $self->getVirial(context, groups);
@@ -146,6 +159,13 @@ static std::vector<double> toDoubles(const char* data, size_t size) {
     }
 }
 
+%extend HelfrichPlugin::LineTensionForce {
+    PyObject* _getDomainsInContext(OpenMM::Context& context) {
+        std::vector<int> domains = $self->getDomainsInContext(context);
+        return toBytes(domains.data(), domains.size() * sizeof(int));
+    }
+}
+
 %extend HelfrichPlugin::ParticleSurfaceForce {
     void _setParticleBuffer(const char* data, size_t size) {
         const int* indices = reinterpret_cast<const int*>(data);
@@ -157,7 +177,7 @@ static std::vector<double> toDoubles(const char* data, size_t size) {
     }
 }
 
-%extend HelfrichPlugin::MonteCarloBondFlip {
+%extend HelfrichPlugin::MonteCarloSurfaceMover {
     PyObject* _getStatistics(OpenMM::Context& context) {
         return toDict(*$self, context);
     }
@@ -226,10 +246,12 @@ static std::vector<double> toDoubles(const char* data, size_t size) {
 %include "openmm-helfrich/MonteCarloMover.h"
 %template(_TriangulatedMover) HelfrichPlugin::MonteCarloMover<HelfrichPlugin::TriangulatedForce>;
 %template(_Mover) HelfrichPlugin::MonteCarloMover<HelfrichPlugin::HelfrichForce>;
+%include "openmm-helfrich/MonteCarloSurfaceMover.h"
 %include "openmm-helfrich/MembraneForce.h"
 %include "OpenMMHelfrich.h"
 HELFRICH_FORCES(MEMBRANE_FORCE)
 MEMBRANE_FORCE(MonteCarloBondFlip)
+MEMBRANE_FORCE(MonteCarloDomainSwap)
 MEMBRANE_FORCE(MonteCarloMembraneTension)
 MEMBRANE_FORCE(SurfaceViscosityThermostat)
 
@@ -251,11 +273,12 @@ std::string _why_not_helfrich(const OpenMM::System& system, const OpenMM::Integr
 %}
 
 %pythoncode %{
-from openmmhelfrich import _arguments, _bond_flips, _integrators, _tension, _viscosity
+from openmmhelfrich import _arguments, _bond_flips, _domain_swaps, _integrators, _tension, _viscosity
 for _class in MembraneForce.__subclasses__():
     _arguments.accept_units(_class)
 _arguments.accept_arrays(TriangulatedForce)
 _bond_flips.accept_arguments(MonteCarloBondFlip)
+_domain_swaps.accept_arguments(MonteCarloDomainSwap)
 _tension.accept_arguments(MonteCarloMembraneTension)
 _viscosity.accept_arguments(SurfaceViscosityThermostat)
 for _class in VariableMassIntegrator.__subclasses__():
@@ -263,6 +286,7 @@ for _class in VariableMassIntegrator.__subclasses__():
 __all__ = [
     "MembraneForce",
     "MonteCarloBondFlip",
+    "MonteCarloDomainSwap",
     "MonteCarloMembraneTension",
     "SurfaceViscosityThermostat",
     "TriangulatedForce",

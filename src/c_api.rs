@@ -102,6 +102,9 @@ forward! {
     /// Say to which domain each vertex belongs, in ascending order of particle index.
     Helfrich_LineTensionForce_setDomains =>
         helfrich_shim_setDomains(force: *mut Force, domains: *const c_int, num_vertices: c_int) -> c_int;
+    /// Write the domain of each vertex as it is in a Context (an `OpenMM_Context`) now.
+    Helfrich_LineTensionForce_getDomainsInContext =>
+        helfrich_shim_getDomainsInContext(force: *mut Force, context: *mut c_void, domains: *mut c_int) -> c_int;
     /// Choose the variant of the potential.
     Helfrich_MembraneForce_setForm => helfrich_shim_setForm(force: *mut Force, form: c_int) -> c_int;
     /// Switch something on or off.
@@ -134,6 +137,12 @@ forward! {
     /// Connect the particles of a Context in another way.
     Helfrich_MembraneForce_setTrianglesInContext =>
         helfrich_shim_setTrianglesInContext(force: *mut Force, context: *mut c_void, corners: *const c_int, num_triangles: c_int) -> c_int;
+    /// Write for each vertex of a Context the one whose values it has now.
+    Helfrich_MembraneForce_getPermutationInContext =>
+        helfrich_shim_getPermutationInContext(force: *mut Force, context: *mut c_void, permutation: *mut c_int) -> c_int;
+    /// Let the vertices of a Context have each other's values.
+    Helfrich_MembraneForce_setPermutationInContext =>
+        helfrich_shim_setPermutationInContext(force: *mut Force, context: *mut c_void, permutation: *const c_int, num_vertices: c_int) -> c_int;
     /// Make a MonteCarloBondFlip; null if an argument is refused.
     Helfrich_MonteCarloBondFlip_create =>
         helfrich_shim_createMover(triangles: *const c_int, num_triangles: c_int, temperature: c_double, frequency: c_int, attempts_per_edge: c_double, min_degree: c_int, max_degree: c_int, max_edge_length: c_double) -> *mut Force;
@@ -143,6 +152,15 @@ forward! {
     /// Read one of the statistics of a MonteCarloBondFlip in a Context by its name.
     Helfrich_MonteCarloBondFlip_getStatistic =>
         helfrich_shim_getStatistic(force: *mut Force, context: *mut c_void, name: *const c_char, value: *mut c_double) -> c_int;
+    /// Make a MonteCarloDomainSwap; null if an argument is refused.
+    Helfrich_MonteCarloDomainSwap_create =>
+        helfrich_shim_createSwap(triangles: *const c_int, num_triangles: c_int, temperature: c_double, frequency: c_int, attempts_per_edge: c_double) -> *mut Force;
+    /// Copy frequency, attempts and ensemble to a Context.
+    Helfrich_MonteCarloDomainSwap_updateParametersInContext =>
+        helfrich_shim_updateSwap(force: *mut Force, context: *mut c_void) -> c_int;
+    /// Read one of the statistics of a MonteCarloDomainSwap in a Context by its name.
+    Helfrich_MonteCarloDomainSwap_getStatistic =>
+        helfrich_shim_getSwapStatistic(force: *mut Force, context: *mut c_void, name: *const c_char, value: *mut c_double) -> c_int;
     /// Make a MonteCarloMembraneTension; null if an argument is refused.
     Helfrich_MonteCarloMembraneTension_create =>
         helfrich_shim_createTension(temperature: c_double, tension: c_double, frequency: c_int, axes: c_int, pulling_force: c_double) -> *mut Force;
@@ -177,6 +195,11 @@ mover_values! {
     MonteCarloBondFlip as Mover,
     DefaultTemperature: c_double, Frequency: c_int, AttemptsPerEdge: c_double, MinDegree: c_int, MaxDegree: c_int,
     MaxEdgeLength: c_double, Ensemble: c_int, RandomNumberSeed: c_int
+}
+
+mover_values! {
+    MonteCarloDomainSwap as Swap,
+    DefaultTemperature: c_double, Frequency: c_int, AttemptsPerEdge: c_double, Ensemble: c_int, RandomNumberSeed: c_int
 }
 
 mover_values! {

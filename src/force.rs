@@ -8,10 +8,12 @@ use crate::potentials;
 use std::ffi::{CString, c_int};
 
 mod bond_flip;
+mod domain_swap;
 mod membrane_tension;
 mod owned;
 mod surface_viscosity;
 pub use bond_flip::MonteCarloBondFlip;
+pub use domain_swap::MonteCarloDomainSwap;
 pub use membrane_tension::{Axes, MonteCarloMembraneTension};
 use owned::Owned;
 pub use surface_viscosity::SurfaceViscosityThermostat;

@@ -14,7 +14,9 @@ mod checks;
 mod connectivity;
 mod constants;
 mod flips;
+mod moves;
 mod surface;
+mod swaps;
 
 pub use connectivity::Connectivity;
 use constants::{Equipped, Workshop, need_constants};

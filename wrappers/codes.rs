@@ -5,8 +5,8 @@
 use crate::codes::{
     Attraction, Coefficients, Contribution, Form, MAX_PARAMETERS, Scheme, SpringForm,
 };
-use crate::flip_records::{FlipRules, FlipState};
 use crate::interface::{Binding, NUMBERS};
+use crate::move_records::{FlipRules, FlipState, SwapRules, SwapState};
 use crate::records::{
     EdgeBath, FollowerInput, NativeBuffer, NativePass, NativePlan, ParameterInfo, ParticleArrays,
     SheetInput, TermInput,
@@ -64,6 +64,12 @@ pub fn comparison() -> String {
             FlipState,
             "HelfrichFlipState",
             key attempts accepted by_border by_degree by_length by_shape by_energy by_edge demon_energy
+        );
+        text += &structure!(SwapRules, "HelfrichSwapRules", temperature demon);
+        text += &structure!(
+            SwapState,
+            "HelfrichSwapState",
+            key attempts accepted by_kind by_energy demon_energy
         );
         text += &structure!(
             TermInput,

@@ -23,6 +23,7 @@ from . import analysis, backend, config, platforms, vcm  # noqa: E402
 from ._paths import cmake_path, include_path, library_path  # noqa: E402
 from .area_difference import area_difference_parameters  # noqa: E402
 from .backend import adapters, get_backend, set_backend  # noqa: E402
+from .domains import values_of_domains  # noqa: E402
 from .errors import MeshError  # noqa: E402
 from .forces import *  # noqa: E402, F403
 from .forces import __all__ as _force_names  # noqa: E402
@@ -67,6 +68,7 @@ __all__ = [
     "platforms",
     "save_state",
     "set_backend",
+    "values_of_domains",
     "vcm",
     "virial",
     *_force_names,

@@ -17,11 +17,11 @@ from ._values import (
     element_values,
     form_name,
     form_number,
-    particles,
     plain_value,
     scalar,
     scalars_of,
     triangles,
+    whole_numbers,
 )
 from ._vertex_numbers import accept_vertex_numbers, vertex_numbers_of
 
@@ -167,7 +167,8 @@ def _accept_particles(force: type) -> None:
         TypeError, ValueError
             If they are not integers in one list.
         """
-        self._setParticleBuffer(particles(force.__name__, given).tobytes())
+        indices = whole_numbers(force.__name__, "particles", "particle", given)
+        self._setParticleBuffer(indices.tobytes())
 
     def get_particles(self):
         """The indices of the particles that the surface acts on, shape (num_particles,)."""
@@ -277,6 +278,50 @@ def accept_arrays(force: type) -> None:
         corners = triangles(type(self).__name__, given, offset)
         self._setTrianglesInContext(context, corners.tobytes())
 
+    def get_permutation_in_context(self, context):
+        """Whose values the vertices of the surface have in a Context now.
+
+        A `MonteCarloDomainSwap` lets neighbours exchange them. What a force was given for vertices,
+        such as `values`, is in the Context ``values[permutation]``.
+
+        Parameters
+        ----------
+        context : openmm.Context
+
+        Returns
+        -------
+        ndarray of int, shape (num_vertices,)
+            For each vertex, in ascending order of particle index, the number of the vertex whose
+            values it has.
+        """
+        vertices = np.frombuffer(self._getPermutationInContext(context), dtype=np.intc)
+        return vertices.astype(np.int64)
+
+    def set_permutation_in_context(self, context, permutation):
+        """Let the vertices of a surface have each other's values, in all forces on its triangles.
+
+        What holds of `setTrianglesInContext` without a MonteCarloBondFlip holds here without a
+        MonteCarloDomainSwap.
+
+        Parameters
+        ----------
+        context : openmm.Context
+        permutation : array_like of int, shape (num_vertices,)
+            As `getPermutationInContext` returns it; each vertex comes once.
+
+        Raises
+        ------
+        openmm.OpenMMException
+            If it is no permutation of the vertices. Nothing has changed then.
+        TypeError, ValueError
+            If it is not integers in one list.
+        """
+        name = type(self).__name__
+        vertices = whole_numbers(name, "permutation", "vertex", permutation)
+        self._setPermutationInContext(context, vertices.tobytes())
+
+    give_method(force, "getPermutationInContext", get_permutation_in_context)
+    give_method(force, "setPermutationInContext", set_permutation_in_context)
     give_method(force, "getTrianglesInContext", get_triangles_in_context)
     give_method(force, "setTrianglesInContext", set_triangles_in_context)
     accept_copies(force)

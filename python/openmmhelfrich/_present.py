@@ -5,11 +5,17 @@ from __future__ import annotations
 import numpy as np
 from openmm import unit
 
-from .forces import MembraneForce, MonteCarloBondFlip, SurfaceViscosityThermostat
+from .forces import (
+    MembraneForce,
+    MonteCarloBondFlip,
+    MonteCarloDomainSwap,
+    SurfaceViscosityThermostat,
+)
 
 __all__ = ["is_periodic", "present_box", "present_triangles", "surfaces_of"]
 
-_CLASSES = [MonteCarloBondFlip, *MembraneForce.__subclasses__(), SurfaceViscosityThermostat]
+_MOVERS = (MonteCarloBondFlip, MonteCarloDomainSwap)
+_CLASSES = [*_MOVERS, *MembraneForce.__subclasses__(), SurfaceViscosityThermostat]
 
 
 def is_periodic(context, force) -> bool:

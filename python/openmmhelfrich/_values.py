@@ -23,11 +23,11 @@ __all__ = [
     "element_values",
     "form_name",
     "form_number",
-    "particles",
     "plain_value",
     "scalar",
     "scalars_of",
     "triangles",
+    "whole_numbers",
 ]
 
 
@@ -212,15 +212,19 @@ def scalar(force: str, parameter: Scalar, value) -> float:
         raise TypeError(f"{where} must be one number, got {value!r}") from None
 
 
-def particles(force: str, given) -> np.ndarray:
-    """Particle indices as a contiguous array of C integers, shape (num_particles,).
+def whole_numbers(force: str, argument: str, one: str, given) -> np.ndarray:
+    """Indices as a contiguous array of C integers, one list.
 
     Parameters
     ----------
     force : str
         The name of the class, for messages.
+    argument : str
+        What they are called there.
+    one : str
+        What one of them is the index of.
     given : array_like of int
-        Particle indices.
+        The indices.
 
     Raises
     ------
@@ -231,16 +235,16 @@ def particles(force: str, given) -> np.ndarray:
     """
     array = np.asarray(given)
     if array.ndim != 1:
-        raise ValueError(f"{force}: particles must be one list of indices, got {array.shape}")
+        raise ValueError(f"{force}: {argument} must be one list of indices, got {array.shape}")
     if array.size and array.dtype.kind not in "iu":
         raise TypeError(
-            f"{force}: particles must be integers (particle indices), got dtype {array.dtype}"
+            f"{force}: {argument} must be integers ({one} indices), got dtype {array.dtype}"
         )
     limits = np.iinfo(np.intc)
     for index in (int(array.min()), int(array.max())) if array.size else ():
         if not limits.min <= index <= limits.max:
             raise ValueError(
-                f"{force}: particle {index} is beyond what OpenMM can number; indices are C ints"
+                f"{force}: {one} {index} is beyond what OpenMM can number; indices are C ints"
             )
     return np.ascontiguousarray(array, dtype=np.intc)
 

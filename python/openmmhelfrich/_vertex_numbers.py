@@ -57,7 +57,24 @@ def _accept_domains(force: type, give_method) -> None:
         return np.frombuffer(self._vertexBuffer()).astype(np.int64)
 
     give_method(force, "setDomains", set_domains)
+
+    def get_domains_in_context(self, context):
+        """The domain of each vertex as it is in a Context now, where neighbours may exchange them.
+
+        Parameters
+        ----------
+        context : openmm.Context
+
+        Returns
+        -------
+        ndarray of int, shape (num_vertices,)
+            In ascending order of particle index.
+        """
+        domains = np.frombuffer(self._getDomainsInContext(context), dtype=np.intc)
+        return domains.astype(np.int64)
+
     give_method(force, "getDomains", get_domains)
+    give_method(force, "getDomainsInContext", get_domains_in_context)
 
 
 def _accept_reference(force: type, give_method) -> None:

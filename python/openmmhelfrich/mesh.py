@@ -179,7 +179,7 @@ class Mesh(Generators, Measures, Transformations):
         Parameters
         ----------
         context : openmm.Context
-        force : MembraneForce or MonteCarloBondFlip
+        force : MembraneForce, MonteCarloBondFlip or MonteCarloDomainSwap
             Of the System of the Context. Vertex i is the i-th of its particles, in ascending order.
 
         Returns

@@ -13,7 +13,7 @@ from ._numbers import whole_number
 from ._surface_reporters import SurfaceReporter, TableReporter
 from .analysis import mode_amplitudes, shape
 from .analysis.surface_series import SurfaceFrame, SurfaceSeries
-from .forces import MonteCarloBondFlip, MonteCarloMembraneTension
+from .forces import MonteCarloBondFlip, MonteCarloDomainSwap, MonteCarloMembraneTension
 from .virials import virial
 
 __all__ = ["MembraneReporter", "ModeReporter", "VTKHDFReporter", "VirialReporter"]
@@ -315,6 +315,7 @@ def _group_names(system):
         if not (
             isinstance(force, openmm.CMMotionRemover)
             or MonteCarloBondFlip.isinstance(force)
+            or MonteCarloDomainSwap.isinstance(force)
             or MonteCarloMembraneTension.isinstance(force)
         ):
             names.setdefault(force.getForceGroup(), []).append(force.getName())

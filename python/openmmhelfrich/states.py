@@ -1,7 +1,8 @@
 """The whole state of a Context in a file: what OpenMM's State holds, and the connectivity.
 
-Bond flips change which particles are neighbours. OpenMM's State, and its checkpoints on other
-platforms than Helfrich, do not know that; these files do, and they can be read on any platform.
+Bond flips change which particles are neighbours, and exchanges what they are. OpenMM's State, and
+its checkpoints on other platforms than Helfrich, do not know that; these files do, and they can be
+read on any platform.
 """
 
 from __future__ import annotations
@@ -37,10 +38,11 @@ def save_state(context, path) -> None:
 
     `load_state` restores them to the last bit of what OpenMM hands out: of all digits on the
     platforms Reference, CPU and Helfrich, and elsewhere in the precision of the platform. What
-    bond flips, a `MonteCarloMembraneTension` and a `SurfaceViscosityThermostat` have come to, with
-    their random numbers and their statistics, is among it; the random numbers of integrators are
-    not, so a run under LangevinMiddle goes on along another path of the same ensemble, where one
-    from a checkpoint of platform Helfrich goes on with the same bits.
+    bond flips, a `MonteCarloDomainSwap`, a `MonteCarloMembraneTension` and a
+    `SurfaceViscosityThermostat` have come to, with their random numbers and their statistics, is
+    among it; the random numbers of integrators are not, so a run under LangevinMiddle goes on along
+    another path of the same ensemble, where one from a checkpoint of platform Helfrich goes on with
+    the same bits.
 
     Parameters
     ----------
@@ -139,7 +141,8 @@ def load_state(context, path) -> None:
     present = context.getParameters()
     for key, value in parameters.items():
         # Connectivity has set its own.
-        if not key.startswith("BondFlipConnectivity") and present[key] != value:
+        own = key.startswith(("BondFlipConnectivity", "DomainSwapPermutation"))
+        if not own and present[key] != value:
             context.setParameter(key, value)
     context.setPeriodicBoxVectors(*values["box"])
     context.setPositions(values["positions"])

@@ -1,9 +1,9 @@
-//! The C interface to moves of a membrane's connectivity, and to the connectivity itself.
+//! The C interface to moves of a membrane, and to its connectivity.
 
 use super::membrane::{cell, read_terms};
 use super::{FollowerInput, TermInput, guarded, slice, text};
 use crate::membrane::{Configuration, Connectivity, Follower, Membrane};
-use crate::moves::{FlipRules, FlipState, Round};
+use crate::moves::{FlipRules, FlipState, Round, SwapRound, SwapRules, SwapState};
 use smallvec::SmallVec;
 use std::ffi::{c_char, c_int};
 use std::slice as slices;
@@ -70,6 +70,50 @@ pub unsafe extern "C" fn Helfrich_Membrane_flip(
             })
             .collect();
         let count = membrane.flip(&terms, at, round, change, &mut followers)?;
+        unsafe { made.write(count as i64) };
+        Ok(())
+    })
+}
+
+/// Let the ends of so many edges exchange what they are at the present positions, with the energy of some terms. `kinds`
+/// has the same number for vertices that are alike; `sources` gets the vertex whose values each one has then, and `made`
+/// how many exchanges there were. `version` is what terms will have for theirs that have been changed; the rest is as of
+/// [`Helfrich_Membrane_flip`].
+///
+/// # Safety
+/// As of [`Helfrich_Membrane_flip`]; `kinds` and `sources` must have a value for each vertex.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Membrane_swap(
+    subject: *const c_char,
+    membrane: *mut Membrane,
+    terms: *const TermInput,
+    num_terms: i64,
+    num_particles: i64,
+    positions: *const f64,
+    box_vectors: *const [[f64; 3]; 3],
+    rules: *const SwapRules,
+    attempts: i64,
+    state: *mut SwapState,
+    kinds: *const u32,
+    sources: *mut u32,
+    version: u64,
+    made: *mut i64,
+    force_change: *mut f64,
+) -> c_int {
+    guarded(unsafe { text(subject) }, || {
+        let terms = unsafe { read_terms(terms, num_terms) };
+        let positions = unsafe { slice(positions, 3 * num_particles as usize) };
+        let cell = unsafe { cell(box_vectors) }?;
+        let at = Configuration::new(positions, cell.as_ref());
+        let (membrane, rules, state) = unsafe { (&mut *membrane, &*rules, &mut *state) };
+        let count = membrane.mesh().num_vertices();
+        let kinds = unsafe { slice(kinds, count) };
+        let sources = unsafe { slices::from_raw_parts_mut(sources, count) };
+        sources.iter_mut().zip(0..).for_each(|(source, vertex)| *source = vertex);
+        let round = SwapRound { rules, attempts: attempts as u64, state, kinds, sources };
+        let change = (!force_change.is_null())
+            .then(|| unsafe { slices::from_raw_parts_mut(force_change, positions.len()) });
+        let count = membrane.swap(&terms, at, round, version, change)?;
         unsafe { made.write(count as i64) };
         Ok(())
     })

@@ -124,6 +124,17 @@ pub unsafe extern "C" fn Helfrich_Potential_numbers(
     numbers.map_or(0, |(_, width)| width as c_int)
 }
 
+/// Whether these numbers say of what kind a vertex is, so that neighbours can exchange them: 1 or 0.
+///
+/// # Safety
+/// `potential` must end with a NUL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Potential_hasKinds(potential: *const c_char) -> c_int {
+    let found = potentials::find(unsafe { text(potential) }).ok();
+    let made_of = found.and_then(|potential| potential.constants(&Term::of(potential)));
+    made_of.is_some_and(MadeOf::is_of_kinds).into()
+}
+
 /// Refuse numbers that vertices cannot have. `box_vectors` has those of the periodic box that positions among them are in,
 /// or is null.
 ///
@@ -164,6 +175,28 @@ pub unsafe extern "C" fn Helfrich_Numbers_create(
     let values = unsafe { slice(numbers, count as usize) }.to_vec();
     let vectors = unsafe { box_vectors.as_ref() }.copied();
     Box::into_raw(Box::new(VertexNumbers::new(values, vectors, owner)))
+}
+
+/// A version of such numbers that no others have.
+#[unsafe(no_mangle)]
+pub extern "C" fn Helfrich_Numbers_takeVersion() -> u64 {
+    VertexNumbers::take_version()
+}
+
+/// Let the vertices have each other's numbers, or values of their own that go with these: as many as before.
+///
+/// # Safety
+/// `numbers` must come from [`Helfrich_Numbers_create`] and be used by no other thread; `values` must hold `count` numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Numbers_rearrange(
+    numbers: *mut VertexNumbers,
+    values: *const f64,
+    count: i64,
+    version: u64,
+) {
+    let numbers = unsafe { &mut *numbers };
+    numbers.values.copy_from_slice(unsafe { slice(values, count as usize) });
+    numbers.version = version;
 }
 
 /// End their life; null is allowed.

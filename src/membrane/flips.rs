@@ -1,9 +1,8 @@
 //! Flips of a membrane, and of those that follow it.
 
-use super::surface::check_references;
 use super::{Configuration, Membrane};
 use crate::contact::is_contact;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::moves::{Round, Touched, flips};
 use crate::potentials::Term;
 use smallvec::SmallVec;
@@ -35,36 +34,18 @@ impl Membrane {
         force_change: Option<&mut [f64]>,
         followers: &mut [Follower],
     ) -> Result<u64> {
-        let Configuration { positions, cell } = at;
-        if positions.len() != 3 * self.num_particles {
-            return Err(Error::Contract(format!(
-                "needs positions of {} particles",
-                self.num_particles
-            )));
-        }
         for term in terms {
-            self.check(term)?;
             self.check_for_flips(term)?;
         }
-        self.remembered.clear();
-        self.before.clear();
-        let wants_forces = force_change.is_some();
-        if wants_forces {
-            self.before.resize(positions.len(), 0.0);
-        }
-        let mut before = wants_forces.then_some(self.before.as_mut_slice());
+        self.look_around(terms, at, force_change.is_some())?;
+        let Configuration { positions, cell } = at;
+        let mut before = force_change.is_some().then_some(self.before.as_mut_slice());
         let surface = &mut self.surface;
         let equipped = self.workshop.equip(&surface.mesh, surface.generation, terms)?;
-        let mut placed = surface.place(at)?;
-        check_references(placed.present.mesh, terms)?;
-        let (mesh, into) = (placed.present.mesh, before.as_deref_mut());
-        self.local.fill(mesh, terms, cell, |survey| placed.survey(&equipped, into, survey))?;
-
+        let mesh = &surface.mesh;
         let mut touched: SmallVec<[Touched; 2]> = SmallVec::new();
         if terms.iter().any(is_contact) {
             let contacts = &mut self.contacts;
-            let into = before.as_deref_mut();
-            contacts.evaluate(mesh, cell, terms, positions, &mut [], into)?;
             contacts.prepare_flips(mesh, cell, terms, positions)?;
             touched.push(Touched { contacts, terms, mesh: None, first_half: 0 });
         }
@@ -95,33 +76,5 @@ impl Membrane {
             }
         }
         Ok(made)
-    }
-
-    /// By how much forces differ from those before flips; what they are is remembered.
-    fn compare_forces(
-        &mut self,
-        terms: &[Term],
-        at: Configuration,
-        change: &mut [f64],
-    ) -> Result<()> {
-        let Configuration { positions, cell } = at;
-        let surface = &mut self.surface;
-        let equipped = self.workshop.equip(&surface.mesh, surface.generation, terms)?;
-        let mut placed = surface.place(at)?;
-        let after = self.remembered.fill(terms, positions, cell, |forces| {
-            placed.evaluate(&equipped, &mut [], Some(&mut *forces))?;
-            self.contacts.evaluate(
-                placed.present.mesh,
-                cell,
-                terms,
-                positions,
-                &mut [],
-                Some(forces),
-            )
-        })?;
-        for ((change, after), before) in change.iter_mut().zip(after).zip(&self.before) {
-            *change = after - before;
-        }
-        Ok(())
     }
 }

@@ -11,19 +11,15 @@
 //! distribution is sampled. See D. R. Nelson, T. Piran, S. Weinberg (eds.), Statistical Mechanics of Membranes and
 //! Surfaces, and G. Gompper, D. M. Kroll, doi:10.1088/0953-8984/9/42/001.
 
+use super::draws::{BLOCK, Draw, draw};
 use super::local::{Flipped, LocalEnergy};
 use super::records::{FlipRules, FlipState};
 use crate::contact::Contacts;
-use crate::dynamics::instructions::{Arithmetic, Kernel, run};
-use crate::dynamics::random;
 use crate::error::{Error, Result};
 use crate::mesh::triangulation::{Quad, Turn};
 use crate::mesh::{NONE, Triangulation};
 use crate::potentials::Term;
 use smallvec::SmallVec;
-
-/// Attempts whose random numbers are made together.
-const BLOCK: usize = 64;
 
 /// So many attempts one after the other, by some rules.
 pub struct Round<'a> {
@@ -33,35 +29,6 @@ pub struct Round<'a> {
     pub attempts: u64,
     /// What they go on from, and leave.
     pub state: &'a mut FlipState,
-}
-
-/// One attempt's random numbers.
-#[derive(Clone, Copy, Default)]
-pub struct Draw {
-    /// The half-edge.
-    half: u32,
-    /// Uniform in [0, 1).
-    uniform: f64,
-}
-
-impl FlipState {
-    /// The random numbers of the next attempts, for so many half-edges.
-    fn draw(&self, half_edges: usize, draws: &mut [Draw; BLOCK]) {
-        struct Fill<'a>(&'a FlipState, f64, &'a mut [Draw; BLOCK]);
-        impl Kernel for Fill<'_> {
-            #[inline(always)]
-            fn execute<A: Arithmetic>(self) {
-                let Self(state, half_edges, draws) = self;
-                for (place, draw) in draws.iter_mut().enumerate() {
-                    let [first, second] = random::bits(state.key, state.attempts + place as u64);
-                    // Uniform to one part in 2⁵² / (number of half-edges); the product stays below that number.
-                    draw.half = ((first >> 12) as f64 / (1u64 << 52) as f64 * half_edges) as u32;
-                    draw.uniform = (second >> 11) as f64 / (1u64 << 53) as f64;
-                }
-            }
-        }
-        run(Fill(self, half_edges as f64, draws));
-    }
 }
 
 impl FlipRules {
@@ -210,18 +177,18 @@ pub fn attempt(
     let mut left = attempts;
     while left > 0 {
         let count = left.min(BLOCK as u64) as usize;
-        state.draw(half_edges, &mut draws);
+        draw(state.key, state.attempts, half_edges, &mut draws);
         for (n, draw) in draws[..count].iter().enumerate() {
             // What later attempts will read is on its way meanwhile; wherever other flips have changed what they
             // will read, this is for nothing, but no more.
             if let Some(later) = draws[..count].get(n + 12) {
-                local.fetch_triangle(mesh, later.half);
+                local.fetch_triangle(mesh, later.place);
             }
             if let Some(later) = draws[..count].get(n + 8) {
-                local.fetch_quad(mesh, later.half);
+                local.fetch_quad(mesh, later.place);
             }
             if let Some(later) = draws[..count].get(n + 4) {
-                local.fetch_rest(mesh, later.half);
+                local.fetch_rest(mesh, later.place);
             }
             one(mesh, local, terms, rules, draw, state, &mut flipped, touched);
         }
@@ -243,14 +210,14 @@ fn one(
     touched: &mut [Touched],
 ) {
     state.attempts += 1;
-    if mesh.twin(draw.half) == NONE {
+    if mesh.twin(draw.place) == NONE {
         state.by_border += 1;
         return;
     }
-    let quad = mesh.quad(draw.half);
+    let quad = mesh.quad(draw.place);
     let [i, j, k, l] = quad.vertices;
     // Either half-edge of an edge stands for one of the two ways to turn it.
-    let turn = if draw.half < quad.halves[1] { Turn::Left } else { Turn::Right };
+    let turn = if draw.place < quad.halves[1] { Turn::Left } else { Turn::Right };
     let degree = |vertex: u32| mesh.degrees()[vertex as usize];
     let (least, most) = (rules.min_degree as u32, rules.max_degree as u32);
     let too_few = match mesh.is_closed() {
@@ -269,7 +236,7 @@ fn one(
     // exp(−ΔE / kT) is above the random number up to here; the logarithm of 0 sets no limit.
     let limit =
         if rules.demon != 0 { state.demon_energy } else { -rules.temperature * draw.uniform.ln() };
-    let gain: f64 = touched.iter_mut().map(|one| one.most(mesh, draw.half)).sum();
+    let gain: f64 = touched.iter_mut().map(|one| one.most(mesh, draw.place)).sum();
     let mut difference = local.flipped(mesh, terms, &quad, turn, limit + gain, flipped);
     if !difference.is_finite() {
         state.by_shape += 1;
@@ -285,7 +252,7 @@ fn one(
     }
     if touched.is_empty() {
         mesh.flip(&quad, turn);
-    } else if let Some(all) = flip_touched(mesh, touched, draw.half, turn, (difference, limit)) {
+    } else if let Some(all) = flip_touched(mesh, touched, draw.place, turn, (difference, limit)) {
         difference = all;
     } else {
         state.by_energy += 1;

@@ -1,4 +1,4 @@
-//! What C++ tells a mover of bonds, and what it keeps for it.
+//! What C++ tells movers, and what it keeps for them.
 //!
 //! build.rs includes this file, and has the C++ compiler compare the structures of `Core.h` with their layout.
 
@@ -43,6 +43,34 @@ pub struct FlipState {
     pub by_energy: u64,
     /// because the new edge was there already.
     pub by_edge: u64,
+    /// What the demon has, kJ/mol.
+    pub demon_energy: f64,
+}
+
+/// How neighbours exchange what they are. The C++ shim fills it in.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SwapRules {
+    /// kJ/mol; above zero.
+    pub temperature: f64,
+    /// Whether a demon pays and takes the energy, in place of a bath.
+    pub demon: i32,
+}
+
+/// What a mover of this kind has come to. C++ holds it and writes it into checkpoints.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct SwapState {
+    /// The seed, and a number that tells movers of the same seed apart.
+    pub key: [u32; 2],
+    /// How many edges have been chosen, which is also how many random numbers have been used.
+    pub attempts: u64,
+    /// How many exchanges were made.
+    pub accepted: u64,
+    /// How many were none, since both ends were alike,
+    pub by_kind: u64,
+    /// or were refused for the energy.
+    pub by_energy: u64,
     /// What the demon has, kJ/mol.
     pub demon_energy: f64,
 }

@@ -56,9 +56,14 @@ impl VertexNumbers {
 
     /// Numbers of a new object, or of one that has had others.
     pub fn new(values: Vec<f64>, vectors: Option<[[f64; 3]; 3]>, owner: Option<u64>) -> Self {
-        static LAST: AtomicU64 = AtomicU64::new(0);
-        let version = LAST.fetch_add(1, Ordering::Relaxed) + 1;
+        let version = Self::take_version();
         Self { values, vectors, owner: owner.unwrap_or(version), version }
+    }
+
+    /// A version that no others have.
+    pub fn take_version() -> u64 {
+        static LAST: AtomicU64 = AtomicU64::new(0);
+        LAST.fetch_add(1, Ordering::Relaxed) + 1
     }
 }
 
@@ -116,6 +121,11 @@ impl MadeOf {
         }
     }
 
+    /// Whether they come of what kind the vertices are, which neighbours can exchange.
+    pub fn is_of_kinds(self) -> bool {
+        matches!(self, Self::Domains(_) | Self::Values(_))
+    }
+
     /// Refuse numbers that no vertex can have, or too few for the last one.
     ///
     /// # Errors
@@ -161,11 +171,19 @@ impl MadeOf {
             Self::Domains(_) => {}
             Self::Values(_) => {
                 let inner = (0..mesh.num_vertices()).filter(|v| !mesh.is_border(*v as u32));
-                let sum: f64 = inner.map(|vertex| term.value(0, vertex)).sum();
-                common.share = TAU * sum / mesh.triangles().len() as f64;
+                let sum: f64 = inner.map(|vertex| self.part(term, vertex)).sum();
+                common.share = sum / mesh.triangles().len() as f64;
             }
         }
         Ok(common)
+    }
+
+    /// What a vertex on no border, with the values of the one given, adds to that, times the number of triangles.
+    pub fn part(self, term: &Term, vertex: usize) -> f64 {
+        match self {
+            Self::Reference(_) | Self::Domains(_) => 0.0,
+            Self::Values(_) => TAU * term.value(0, vertex),
+        }
     }
 
     /// The constants of a triangle.

@@ -354,6 +354,13 @@ impl<'a> Term<'a> {
         self.fields[parameter].is_empty() && self.values[parameter] == 0.0
     }
 
+    /// Whether a parameter has a value for each vertex.
+    pub fn is_of_vertices(&self, parameter: usize) -> bool {
+        let known = self.potential.parameters().get(parameter);
+        known.is_some_and(|known| known.per == Some(Element::Vertex))
+            && !self.fields[parameter].is_empty()
+    }
+
     /// Whether a derivative with respect to this parameter makes sense: a field hides the scalar.
     #[inline]
     pub fn is_scalar(&self, parameter: usize) -> bool {

@@ -12,6 +12,7 @@ from flowing import start
 from openmm import unit
 from openmmhelfrich import (
     MonteCarloBondFlip,
+    MonteCarloDomainSwap,
     MonteCarloMembraneTension,
     SurfaceViscosityThermostat,
 )
@@ -152,6 +153,48 @@ MOVERS = [
             (' p1="', ' p4="', "p4"),
         ],
         optional_xml=['frequency="10"', 'maxDegree="10"', 'ensemble="Canonical"'],
+    ),
+    Mover(
+        MonteCarloDomainSwap,
+        (start(),),
+        given={"temperature": 310.0, "frequency": 7, "attemptsPerEdge": 0.25},
+        further={
+            "RandomNumberSeed": -17,
+            "Ensemble": MonteCarloDomainSwap.Microcanonical,
+            "ForceGroup": 3,
+            "Name": "mixing",
+        },
+        defaults={
+            "temperature": 300,
+            "frequency": 10,
+            "attemptsPerEdge": 0.1,
+            "RandomNumberSeed": 0,
+            "Ensemble": MonteCarloDomainSwap.Canonical,
+            "ForceGroup": 0,
+            "Name": "MonteCarloDomainSwap",
+        },
+        refused=[
+            *REFUSED,
+            ({"attemptsPerEdge": -0.1}, mm.OpenMMException, "attemptsPerEdge.*-0.1"),
+            ({"attemptsPerEdge": 1001}, mm.OpenMMException, "attemptsPerEdge.*1001"),
+            ({"minDegree": 3}, TypeError, "minDegree"),
+        ],
+        refused_by_setters=[
+            *REFUSED_BY_SETTERS,
+            ("setAttemptsPerEdge", float("nan")),
+            ("setEnsemble", -1),
+        ],
+        wrong_xml=[
+            *WRONG_XML,
+            (
+                'ensemble="Microcanonical"',
+                'ensemble="x"',
+                'ensemble="x".*Canonical or Microcanonical',
+            ),
+            ("Triangles>", "Triangels>", "Triangels"),
+            (' p1="', ' p4="', "p4"),
+        ],
+        optional_xml=['frequency="10"', 'attemptsPerEdge=".1"', 'ensemble="Canonical"'],
     ),
     Mover(
         MonteCarloMembraneTension,

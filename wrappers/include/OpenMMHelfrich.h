@@ -13,6 +13,7 @@
 #include "openmm-helfrich/LineTensionForce.h"
 #include "openmm-helfrich/LinearElasticForce.h"
 #include "openmm-helfrich/MonteCarloBondFlip.h"
+#include "openmm-helfrich/MonteCarloDomainSwap.h"
 #include "openmm-helfrich/MonteCarloMembraneTension.h"
 #include "openmm-helfrich/NeoHookeanForce.h"
 #include "openmm-helfrich/OsmoticPressureForce.h"

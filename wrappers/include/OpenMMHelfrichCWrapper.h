@@ -71,6 +71,11 @@ extern int Helfrich_MembraneForce_getTrianglesInContext(OpenMM_Force* force, Ope
 extern int Helfrich_MembraneForce_getVirial(OpenMM_Force* force, OpenMM_Context* context, int groups, double* virial);
 extern int Helfrich_MembraneForce_setTrianglesInContext(OpenMM_Force* force, OpenMM_Context* context,
                                                         const int* corners, int numTriangles);
+/** Write for each vertex, in ascending order of particle index, the one whose values it has in the Context now. */
+extern int Helfrich_MembraneForce_getPermutationInContext(OpenMM_Force* force, OpenMM_Context* context,
+                                                          int* permutation);
+extern int Helfrich_MembraneForce_setPermutationInContext(OpenMM_Force* force, OpenMM_Context* context,
+                                                          const int* permutation, int numVertices);
 
 /** The schemes of BendingForce. */
 typedef enum {
@@ -252,6 +257,8 @@ extern double Helfrich_LineTensionForce_getTension(OpenMM_Force* force);
 extern int Helfrich_LineTensionForce_setTension(OpenMM_Force* force, double tension);
 /** Say to which domain each vertex belongs, in ascending order of particle index; needed after the creation. */
 extern int Helfrich_LineTensionForce_setDomains(OpenMM_Force* force, const int* domains, int numVertices);
+/** Write the domain of each vertex as it is in a Context now. */
+extern int Helfrich_LineTensionForce_getDomainsInContext(OpenMM_Force* force, OpenMM_Context* context, int* domains);
 
 /** Who pays for the flips of a MonteCarloBondFlip. */
 typedef enum {
@@ -286,6 +293,29 @@ extern int Helfrich_MonteCarloBondFlip_updateParametersInContext(OpenMM_Force* f
 /** `name` is "attempts", "accepted" or another that MonteCarloBondFlip.h tells. */
 extern int Helfrich_MonteCarloBondFlip_getStatistic(OpenMM_Force* force, OpenMM_Context* context, const char* name,
                                                     double* value);
+
+/** Who pays for the exchanges of a MonteCarloDomainSwap. */
+typedef enum {
+    Helfrich_MonteCarloDomainSwap_Canonical = 0,
+    Helfrich_MonteCarloDomainSwap_Microcanonical = 1
+} Helfrich_MonteCarloDomainSwap_Ensemble;
+
+extern OpenMM_Force* Helfrich_MonteCarloDomainSwap_create(const int* triangles, int numTriangles, double temperature,
+                                                          int frequency, double attemptsPerEdge);
+extern double Helfrich_MonteCarloDomainSwap_getDefaultTemperature(OpenMM_Force* force);
+extern int Helfrich_MonteCarloDomainSwap_setDefaultTemperature(OpenMM_Force* force, double defaultTemperature);
+extern int Helfrich_MonteCarloDomainSwap_getFrequency(OpenMM_Force* force);
+extern int Helfrich_MonteCarloDomainSwap_setFrequency(OpenMM_Force* force, int frequency);
+extern double Helfrich_MonteCarloDomainSwap_getAttemptsPerEdge(OpenMM_Force* force);
+extern int Helfrich_MonteCarloDomainSwap_setAttemptsPerEdge(OpenMM_Force* force, double attemptsPerEdge);
+extern int Helfrich_MonteCarloDomainSwap_getEnsemble(OpenMM_Force* force);
+extern int Helfrich_MonteCarloDomainSwap_setEnsemble(OpenMM_Force* force, int ensemble);
+extern int Helfrich_MonteCarloDomainSwap_getRandomNumberSeed(OpenMM_Force* force);
+extern int Helfrich_MonteCarloDomainSwap_setRandomNumberSeed(OpenMM_Force* force, int randomNumberSeed);
+extern int Helfrich_MonteCarloDomainSwap_updateParametersInContext(OpenMM_Force* force, OpenMM_Context* context);
+/** `name` is "attempts", "accepted" or another that MonteCarloDomainSwap.h tells. */
+extern int Helfrich_MonteCarloDomainSwap_getStatistic(OpenMM_Force* force, OpenMM_Context* context, const char* name,
+                                                      double* value);
 
 /** Which edges of the box a MonteCarloMembraneTension changes. */
 typedef enum {

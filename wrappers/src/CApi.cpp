@@ -38,6 +38,10 @@ MonteCarloBondFlip& asMover(void* force) {
     return as<MonteCarloBondFlip>("MonteCarloBondFlip", force);
 }
 
+MonteCarloDomainSwap& asSwap(void* force) {
+    return as<MonteCarloDomainSwap>("MonteCarloDomainSwap", force);
+}
+
 MonteCarloMembraneTension& asTension(void* force) {
     return as<MonteCarloMembraneTension>("MonteCarloMembraneTension", force);
 }
@@ -218,6 +222,30 @@ int helfrich_shim_setTrianglesInContext(void* force, void* context, const int* c
     });
 }
 
+int helfrich_shim_getPermutationInContext(void* force, void* context, int* permutation) {
+    return guarded([&] {
+        vector<int> found = asTriangulated(force).getPermutationInContext(asContext(context));
+        std::copy(found.begin(), found.end(), permutation);
+    });
+}
+
+int helfrich_shim_setPermutationInContext(void* force, void* context, const int* permutation, int numVertices) {
+    return guarded([&] {
+        TriangulatedForce& surface = asTriangulated(force);
+        if (numVertices < 0)
+            throw OpenMMException(surface.getTypeName() + ": the number of vertices is negative");
+        surface.setPermutationInContext(asContext(context), vector<int>(permutation, permutation + numVertices));
+    });
+}
+
+int helfrich_shim_getDomainsInContext(void* force, void* context, int* domains) {
+    return guarded([&] {
+        auto& owner = as<LineTensionForce>("LineTensionForce", force);
+        vector<int> found = owner.getDomainsInContext(asContext(context));
+        std::copy(found.begin(), found.end(), domains);
+    });
+}
+
 void* helfrich_shim_createMover(const int* triangles, int numTriangles, double temperature, int frequency,
                                 double attemptsPerEdge, int minDegree, int maxDegree, double maxEdgeLength) {
     OpenMM::Force* created = nullptr;
@@ -238,6 +266,27 @@ int helfrich_shim_updateMover(void* force, void* context) {
 int helfrich_shim_getStatistic(void* force, void* context, const char* name, double* value) {
     return guarded(
         [&] { *value = pick("MonteCarloBondFlip", asMover(force).getStatistics(asContext(context)), name); });
+}
+
+void* helfrich_shim_createSwap(const int* triangles, int numTriangles, double temperature, int frequency,
+                               double attemptsPerEdge) {
+    OpenMM::Force* created = nullptr;
+    guarded([&] {
+        if (numTriangles < 0)
+            throw OpenMMException("MonteCarloDomainSwap: the number of triangles is negative");
+        vector<int> corners(triangles, triangles + 3 * (size_t) numTriangles);
+        created = new MonteCarloDomainSwap(corners, temperature, frequency, attemptsPerEdge);
+    });
+    return created;
+}
+
+int helfrich_shim_updateSwap(void* force, void* context) {
+    return guarded([&] { asSwap(force).updateParametersInContext(asContext(context)); });
+}
+
+int helfrich_shim_getSwapStatistic(void* force, void* context, const char* name, double* value) {
+    return guarded(
+        [&] { *value = pick("MonteCarloDomainSwap", asSwap(force).getStatistics(asContext(context)), name); });
 }
 
 void* helfrich_shim_createTension(double temperature, double tension, int frequency, int axes, double pullingForce) {
@@ -296,6 +345,11 @@ MOVER_VALUE(Mover, int, MaxDegree, -1, int)
 MOVER_VALUE(Mover, double, MaxEdgeLength, std::nan(""), double)
 MOVER_VALUE(Mover, int, Ensemble, -1, MonteCarloBondFlip::Ensemble)
 MOVER_VALUE(Mover, int, RandomNumberSeed, -1, int)
+MOVER_VALUE(Swap, double, DefaultTemperature, std::nan(""), double)
+MOVER_VALUE(Swap, int, Frequency, -1, int)
+MOVER_VALUE(Swap, double, AttemptsPerEdge, std::nan(""), double)
+MOVER_VALUE(Swap, int, Ensemble, -1, MonteCarloDomainSwap::Ensemble)
+MOVER_VALUE(Swap, int, RandomNumberSeed, -1, int)
 MOVER_VALUE(Tension, double, DefaultTemperature, std::nan(""), double)
 MOVER_VALUE(Tension, double, DefaultTension, std::nan(""), double)
 MOVER_VALUE(Tension, double, DefaultPullingForce, std::nan(""), double)

@@ -13,8 +13,8 @@ using std::string;
 using std::vector;
 
 MembraneForceImpl::MembraneForceImpl(const MembraneForce& owner)
-    : CustomCPPForceImpl(owner), owner(owner), term(), inPlace(false), native(false), group(owner.getForceGroup()),
-      periodic(owner.usesPeriodicBoundaryConditions()) {
+    : CustomCPPForceImpl(owner), owner(owner), term(), hasKinds(false), inPlace(false), native(false),
+      group(owner.getForceGroup()), periodic(owner.usesPeriodicBoundaryConditions()) {
     // OpenMM asks for the default parameters before it initialises the force.
     for (int i = 0; i < owner.getNumParameters(); i++)
         contextParameters.push_back(owner.getContextParameter(owner.getParameterName(i)));
@@ -31,6 +31,12 @@ void MembraneForceImpl::initialize(ContextImpl& context) {
     PlatformChoice::end();
     inPlace = dynamic_cast<const ReferencePlatform*>(&context.getPlatform()) != nullptr;
     check(Helfrich_Potential_find(owner.getTypeName().c_str(), &term.potential));
+    hasKinds = Helfrich_Potential_hasKinds(owner.getTypeName().c_str()) != 0;
+    for (int i = 0; i < owner.getNumParameters(); i++) {
+        HelfrichParameterInfo info;
+        check(Helfrich_Potential_parameter(owner.getTypeName().c_str(), i, &info));
+        isOfVertices.push_back(info.per == 1);
+    }
     term.wantsDerivatives = !derivatives.empty();
     membrane = SharedMembrane::acquire(owner.getTypeName(), context, owner.getTriangles());
     try {
@@ -67,6 +73,8 @@ void MembraneForceImpl::copyValues() {
         if (!copies.back().empty() && !contextParameters[i].empty())
             throw OpenMMException(owner.getTypeName() + ": " + name + " has both values for single elements and the " +
                                   "Context parameter \"" + contextParameters[i] + "\"; choose one of them");
+        if (isOfVertices[i])
+            membrane->arrange(copies.back());
         updated.fields[i] = copies.back().data();
         updated.fieldLengths[i] = (int64_t) copies.back().size();
     }
@@ -74,6 +82,8 @@ void MembraneForceImpl::copyValues() {
     updated.particles = indices.data();
     updated.numParticles = (int64_t) indices.size();
     vector<double> rows = owner.getVertexNumbers(), vectors = owner.getReferenceBox();
+    if (hasKinds)
+        membrane->arrange(rows);
     std::unique_ptr<HelfrichNumbers, Destroy> changed;
     if (rows != vertexNumbers || vectors != referenceBox || copies != fields) {
         changed.reset(Helfrich_Numbers_create(numbers.get(), rows.data(), (int64_t) rows.size(),
@@ -90,6 +100,32 @@ void MembraneForceImpl::copyValues() {
     if (changed != nullptr)
         numbers = std::move(changed);
     term = updated;
+    membrane->forgetKinds();
+}
+
+void MembraneForceImpl::visitKinds(const std::function<void(const vector<double>& values)>& visit) const {
+    for (size_t i = 0; i < fields.size(); i++)
+        if (isOfVertices[i] && !fields[i].empty())
+            visit(fields[i]);
+    if (hasKinds)
+        visit(vertexNumbers);
+}
+
+void MembraneForceImpl::rearrange(const vector<uint32_t>& sources, uint64_t version) {
+    bool hasChanged = false;
+    auto move = [&](vector<double>& values) {
+        hasChanged = true;
+        const vector<double> before(values);
+        for (size_t i = 0; i < sources.size(); i++)
+            values[i] = before[sources[i]];
+    };
+    for (size_t i = 0; i < fields.size(); i++)
+        if (isOfVertices[i] && !fields[i].empty())
+            move(fields[i]);
+    if (hasKinds)
+        move(vertexNumbers);
+    if (hasChanged)
+        Helfrich_Numbers_rearrange(numbers.get(), vertexNumbers.data(), (int64_t) vertexNumbers.size(), version);
 }
 
 vector<string> MembraneForceImpl::getKernelNames() {

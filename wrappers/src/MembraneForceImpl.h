@@ -7,6 +7,7 @@
 
 #include <openmm/internal/CustomCPPForceImpl.h>
 
+#include <functional>
 #include <memory>
 
 namespace HelfrichPlugin {
@@ -18,7 +19,10 @@ namespace HelfrichPlugin {
  * most forces themselves; for all others, OpenMM's support for forces in plain C++ carries positions to the processor
  * and forces back.
  */
-class MembraneForceImpl : public OpenMM::CustomCPPForceImpl, public UpdatableImpl, public ConnectivityImpl {
+class MembraneForceImpl : public OpenMM::CustomCPPForceImpl,
+                          public UpdatableImpl,
+                          public ConnectivityImpl,
+                          public VertexNumbersImpl {
 public:
     explicit MembraneForceImpl(const MembraneForce& owner);
     ~MembraneForceImpl();
@@ -38,6 +42,16 @@ public:
     }
     void setTrianglesInContext(OpenMM::ContextImpl& context, const std::vector<int>& corners) {
         membrane->setTriangles(owner.getTypeName(), context, corners);
+    }
+    std::vector<int> getPermutationInContext(OpenMM::ContextImpl& context) const {
+        return membrane->getPermutation(owner.getTypeName(), context);
+    }
+    void setPermutationInContext(OpenMM::ContextImpl& context, const std::vector<int>& permutation) {
+        membrane->setPermutation(owner.getTypeName(), context, permutation);
+    }
+    std::vector<double> getVertexNumbersInContext(OpenMM::ContextImpl& context) const {
+        membrane->settle(context);
+        return vertexNumbers;
     }
     std::string saveConnectivity(OpenMM::ContextImpl& context) const {
         return membrane->save(context);
@@ -62,6 +76,15 @@ public:
     bool usesContextParameters() const;
     /** What to compute, with the present values of Context parameters. */
     HelfrichTerm getTerm(OpenMM::ContextImpl& context) const;
+    /** Do something with each list of what vertices are, in ascending order of particle index. */
+    void visitKinds(const std::function<void(const std::vector<double>& values)>& visit) const;
+    /**
+     * Let the vertices have each other's values.
+     *
+     * @param sources  for each vertex the one whose values it shall have
+     * @param version  of the numbers of vertices from then on, if that makes a difference to the force
+     */
+    void rearrange(const std::vector<uint32_t>& sources, uint64_t version);
     /** Whether the platform evaluates it, with NativeMembrane. */
     bool isNative() const {
         return native;
@@ -89,6 +112,9 @@ private:
         }
     };
     std::unique_ptr<HelfrichNumbers, Destroy> numbers;
+    /** Whether each scalar may have values of vertices, and whether the numbers say of what kind these are. */
+    std::vector<bool> isOfVertices;
+    bool hasKinds;
     /** For each scalar the Context parameter that stands in for it, or an empty text. */
     std::vector<std::string> contextParameters;
     std::vector<std::string> derivatives;

@@ -14,8 +14,6 @@ namespace {
 
 const int VERSION = 1;
 const string NAME = "MonteCarloBondFlip";
-/** The names of the ensembles, by their numbers. */
-const string ENSEMBLES[] = {"Canonical", "Microcanonical"};
 
 } // namespace
 
@@ -24,13 +22,10 @@ MonteCarloBondFlipProxy::MonteCarloBondFlipProxy() : SerializationProxy("Helfric
 
 void MonteCarloBondFlipProxy::serialize(const void* object, SerializationNode& node) const {
     const MonteCarloBondFlip& force = *static_cast<const MonteCarloBondFlip*>(object);
-    writeMover(force, node, VERSION);
-    node.setDoubleProperty("attemptsPerEdge", force.getAttemptsPerEdge())
-        .setIntProperty("minDegree", force.getMinDegree())
+    writeSurfaceMover(force, node, VERSION);
+    node.setIntProperty("minDegree", force.getMinDegree())
         .setIntProperty("maxDegree", force.getMaxDegree())
-        .setDoubleProperty("maxEdgeLength", force.getMaxEdgeLength())
-        .setStringProperty("ensemble", ENSEMBLES[force.getEnsemble()]);
-    writeTriangles(force, node);
+        .setDoubleProperty("maxEdgeLength", force.getMaxEdgeLength());
 }
 
 void* MonteCarloBondFlipProxy::deserialize(const SerializationNode& node) const {
@@ -43,13 +38,11 @@ void* MonteCarloBondFlipProxy::deserialize(const SerializationNode& node) const 
               {"Triangles"});
         const MonteCarloBondFlip defaults({}, 1.0);
         force.reset(new MonteCarloBondFlip({}, number(NAME, node, "temperature"), defaults.getFrequency(),
-                                           numberOr(NAME, node, "attemptsPerEdge", defaults.getAttemptsPerEdge()),
+                                           defaults.getAttemptsPerEdge(),
                                            integerOr(NAME, node, "minDegree", defaults.getMinDegree()),
                                            integerOr(NAME, node, "maxDegree", defaults.getMaxDegree()),
                                            numberOr(NAME, node, "maxEdgeLength", defaults.getMaxEdgeLength())));
-        readMover(node, *force);
-        force->setEnsemble(constantOr(NAME, node, "ensemble", ENSEMBLES, defaults.getEnsemble()));
-        readTriangles(NAME, node, *force);
+        readSurfaceMover(node, *force);
     });
     return static_cast<Force*>(force.release());
 }

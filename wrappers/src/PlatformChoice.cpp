@@ -134,7 +134,7 @@ string nameOf(const Force& force) {
 }
 
 string Tally::add(const Force& force) {
-    // What flips bonds costs less than the evaluations of the membrane.
+    // Movers cost less than the evaluations of the membrane.
     if (auto* membrane = dynamic_cast<const TriangulatedForce*>(&force)) {
         if (isForDevices(*membrane))
             return "the backend \"native\" is for platforms of GPUs";

@@ -4,6 +4,8 @@
 #include "MembraneForceProxy.h"
 #include "MonteCarloBondFlipImpl.h"
 #include "MonteCarloBondFlipProxy.h"
+#include "MonteCarloDomainSwapImpl.h"
+#include "MonteCarloDomainSwapProxy.h"
 #include "MonteCarloMembraneTensionImpl.h"
 #include "MonteCarloMembraneTensionProxy.h"
 #include "PlatformChoice.h"
@@ -54,6 +56,7 @@ int helfrich_shim_registerSerialization() {
     HELFRICH_FORCES(REGISTER)
 #undef REGISTER
     OpenMM::SerializationProxy::registerProxy(typeid(MonteCarloBondFlip), new MonteCarloBondFlipProxy());
+    OpenMM::SerializationProxy::registerProxy(typeid(MonteCarloDomainSwap), new MonteCarloDomainSwapProxy());
     OpenMM::SerializationProxy::registerProxy(typeid(MonteCarloMembraneTension), new MonteCarloMembraneTensionProxy());
     OpenMM::SerializationProxy::registerProxy(typeid(SurfaceViscosityThermostat),
                                               new SurfaceViscosityThermostatProxy());
@@ -108,8 +111,10 @@ void* helfrich_shim_createImpl(const void* force) {
     try {
         const auto& owner = *static_cast<const OpenMM::Force*>(force);
         OpenMM::ForceImpl* impl = nullptr;
-        if (auto* mover = dynamic_cast<const MonteCarloBondFlip*>(&owner))
-            impl = new MonteCarloBondFlipImpl(*mover);
+        if (auto* flips = dynamic_cast<const MonteCarloBondFlip*>(&owner))
+            impl = new MonteCarloBondFlipImpl(*flips);
+        else if (auto* swaps = dynamic_cast<const MonteCarloDomainSwap*>(&owner))
+            impl = new MonteCarloDomainSwapImpl(*swaps);
         else if (auto* tension = dynamic_cast<const MonteCarloMembraneTension*>(&owner))
             impl = new MonteCarloMembraneTensionImpl(*tension);
         else if (auto* thermostat = dynamic_cast<const SurfaceViscosityThermostat*>(&owner))

@@ -3,7 +3,7 @@
 #include "Barostats.h"
 #include "HelfrichPlatform.h"
 #include "MembraneForceImpl.h"
-#include "MonteCarloBondFlipImpl.h"
+#include "SurfaceMoverImpl.h"
 #include "SurfaceViscosityThermostatImpl.h"
 
 #include <openmm/System.h>
@@ -25,12 +25,12 @@ namespace {
 std::mutex registryMutex;
 std::multimap<const ContextImpl*, std::weak_ptr<SharedMembrane>> registry;
 
-[[noreturn]] void refuseShared(const string& subject, int particle) {
-    throw OpenMMException(subject + ": particle " + std::to_string(particle) +
-                          " belongs to two different triangulations, and a MonteCarloBondFlip would change one of them "
-                          "only; give all membrane forces on these particles and the MonteCarloBondFlip the same "
-                          "triangles in the same order (SurfaceRepulsionForce, ParticleSurfaceForce and "
-                          "SurfaceViscosityThermostat may have those of several such membranes, one after another)");
+[[noreturn]] void refuseShared(const string& subject, const string& mover, int particle) {
+    throw OpenMMException(
+        subject + ": particle " + std::to_string(particle) + " belongs to two different triangulations, and a " +
+        mover + " would change one of them only; give all membrane forces on these particles and the " + mover +
+        " the same triangles in the same order (SurfaceRepulsionForce, ParticleSurfaceForce and "
+        "SurfaceViscosityThermostat may have those of several such membranes, one after another)");
 }
 
 } // namespace
@@ -45,7 +45,7 @@ shared_ptr<SharedMembrane> SharedMembrane::acquire(const string& subject, Contex
     for (const auto& other : known) {
         link(membrane, other);
         link(other, membrane);
-        if (other->mover != nullptr)
+        if (other->findMover() != nullptr)
             refuseOthers(subject, *membrane, *other);
     }
     std::lock_guard<std::mutex> lock(registryMutex);
@@ -92,8 +92,8 @@ void SharedMembrane::checkJoining(const string& subject, int potential) const {
         return;
     for (const Link& link : parts)
         if (auto part = link.other.lock())
-            if (part->mover != nullptr)
-                refuseShared(subject, part->triangles[0]);
+            if (const SurfaceMoverImpl* mover = part->findMover())
+                refuseShared(subject, mover->getOwner().getTypeName(), part->triangles[0]);
 }
 
 void SharedMembrane::followParts(ContextImpl& context) {
@@ -119,16 +119,24 @@ void SharedMembrane::followParts(ContextImpl& context) {
 void SharedMembrane::refuseOthers(const string& subject, const SharedMembrane& one, const SharedMembrane& other) {
     for (const auto& [whole, part] : {std::make_pair(&one, &other), std::make_pair(&other, &one)})
         for (const Link& link : whole->parts)
-            if (link.other.lock().get() == part && whole->mover == nullptr && whole->hasOnlyContacts())
+            if (link.other.lock().get() == part && whole->findMover() == nullptr && whole->hasOnlyContacts())
                 return;
+    const SurfaceMoverImpl* mover = one.findMover() != nullptr ? one.findMover() : other.findMover();
     std::set<int> particles(one.triangles.begin(), one.triangles.end());
     for (int particle : other.triangles)
         if (particles.count(particle) != 0)
-            refuseShared(subject, particle);
+            refuseShared(subject, mover->getOwner().getTypeName(), particle);
+}
+
+const SurfaceMoverImpl* SharedMembrane::findMover() const {
+    for (const SurfaceMoverImpl* mover : movers)
+        if (mover != nullptr)
+            return mover;
+    return nullptr;
 }
 
 SharedMembrane::SharedMembrane(const string& subject, ContextImpl& context, const vector<int>& triangles)
-    : triangles(triangles), core(nullptr), mover(nullptr), spans(false) {
+    : triangles(triangles), core(nullptr), movers(), hasLeftBehind(false), permutationFingerprint(0), spans(false) {
     check(Helfrich_Membrane_create(subject.c_str(), triangles.data(), (int64_t) triangles.size() / 3,
                                    context.getSystem().getNumParticles(), &core));
     if (int threads = helfrichThreads(context))
@@ -157,14 +165,17 @@ SharedMembrane::~SharedMembrane() {
 bool SharedMembrane::belongsTo(ContextImpl& context) const {
     const vector<ForceImpl*>& impls = context.getForceImpls();
     auto isThere = [&](const ForceImpl* impl) { return std::find(impls.begin(), impls.end(), impl) != impls.end(); };
-    if (mover == nullptr && members.empty() && thermostats.empty())
+    if (findMover() == nullptr && members.empty() && thermostats.empty())
         return false;
-    return (mover == nullptr || isThere(mover)) && std::all_of(members.begin(), members.end(), isThere) &&
+    auto isThereIfAny = [&](const SurfaceMoverImpl* mover) { return mover == nullptr || isThere(mover); };
+    return std::all_of(std::begin(movers), std::end(movers), isThereIfAny) &&
+        std::all_of(members.begin(), members.end(), isThere) &&
         std::all_of(thermostats.begin(), thermostats.end(), isThere);
 }
 
 void SharedMembrane::join(MembraneForceImpl* member) {
     members.push_back(member);
+    forgetKinds();
 }
 
 void SharedMembrane::checkAgreement(const MembraneForceImpl& joining) const {
@@ -199,23 +210,35 @@ const double* SharedMembrane::findBox(ContextImpl& context) {
 
 void SharedMembrane::leave(MembraneForceImpl* member) {
     members.erase(std::remove(members.begin(), members.end(), member), members.end());
+    forgetKinds();
 }
 
-void SharedMembrane::join(MonteCarloBondFlipImpl* joining, ContextImpl& context) {
+void SharedMembrane::join(SurfaceMoverImpl* joining, ContextImpl& context) {
     const string& subject = joining->getOwner().getTypeName();
+    SurfaceMoverImpl*& mover = movers[(int) joining->getKind()];
     if (mover != nullptr)
         throw OpenMMException(subject + ": the same triangles have another " + subject +
                               "; one is enough, with more attemptsPerEdge if need be");
-    for (const auto& other : findAll(context))
-        if (other.get() != this)
-            refuseOthers(subject, *this, *other);
+    vector<shared_ptr<SharedMembrane>> known = findAll(context);
     mover = joining;
+    try {
+        for (const auto& other : known)
+            if (other.get() != this)
+                refuseOthers(subject, *this, *other);
+    } catch (...) {
+        mover = nullptr;
+        throw;
+    }
 }
 
-void SharedMembrane::leave(MonteCarloBondFlipImpl* leaving, ContextImpl& context) {
+void SharedMembrane::leave(SurfaceMoverImpl* leaving, ContextImpl& context) {
+    SurfaceMoverImpl*& mover = movers[(int) leaving->getKind()];
     if (mover != leaving)
         return;
-    leaveBehind(context);
+    // All that the first of them leaves behind is of all.
+    if (!hasLeftBehind)
+        leaveBehind(context);
+    hasLeftBehind = true;
     mover = nullptr;
 }
 
@@ -393,6 +416,39 @@ void SharedMembrane::sweep(const string& subject, ContextImpl& context, Helfrich
     check(Helfrich_Viscosity_sweep(subject.c_str(), &viscosity, core, (int64_t) positions.size(),
                                    reinterpret_cast<double*>(positions.data()),
                                    reinterpret_cast<double*>(velocities.data()), vectors, &bath, &random));
+}
+
+int64_t SharedMembrane::swap(const string& subject, ContextImpl& context, int groups, const vector<Vec3>& positions,
+                             const HelfrichSwapRules& rules, int64_t attempts, HelfrichSwapState& state,
+                             vector<Vec3>* forceChange) {
+    collect(context, groups);
+    if (kinds.empty())
+        findKinds();
+    double* change = nullptr;
+    if (forceChange != nullptr) {
+        forceChange->resize(positions.size());
+        change = reinterpret_cast<double*>(forceChange->data());
+    }
+    int64_t made = 0;
+    uint64_t version = Helfrich_Numbers_takeVersion();
+    vector<uint32_t> sources(kinds.size());
+    check(Helfrich_Membrane_swap(subject.c_str(), core, terms.data(), (int64_t) terms.size(),
+                                 (int64_t) positions.size(), reinterpret_cast<const double*>(positions.data()),
+                                 findBox(context), &rules, attempts, &state, kinds.data(), sources.data(), version,
+                                 &made, change));
+    if (made > 0)
+        rearrange(sources, version);
+    return made;
+}
+
+void SharedMembrane::findKinds() {
+    kinds.assign(Helfrich_Membrane_numVertices(core), 0);
+    for (const MembraneForceImpl* member : members)
+        member->visitKinds([this](const vector<double>& values) {
+            std::map<std::pair<uint32_t, double>, uint32_t> known;
+            for (size_t i = 0; i < kinds.size(); i++)
+                kinds[i] = known.emplace(std::make_pair(kinds[i], values[i]), (uint32_t) known.size()).first->second;
+        });
 }
 
 vector<std::pair<int, int>> SharedMembrane::getEdges() const {

@@ -9,6 +9,7 @@
 #include <openmm/internal/ContextImpl.h>
 
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -19,9 +20,15 @@ namespace HelfrichPlugin {
 
 class MembraneForce;
 class MembraneForceImpl;
-class MonteCarloBondFlipImpl;
+class SurfaceMoverImpl;
 class SurfaceViscosityThermostatImpl;
 struct SavedConnectivity;
+
+/** What moves of a surface change: its edges, or what the vertices are. */
+enum class MoverKind { Flips, Swaps };
+
+/** The number of these. */
+const int NUM_MOVER_KINDS = 2;
 
 /** What decides the bits of evaluations beside positions. */
 struct Connectivity {
@@ -31,12 +38,15 @@ struct Connectivity {
     std::vector<uint32_t> order;
     /** How many flips there have been since the order was made. */
     int64_t flips;
+    /** For each vertex the one whose values it has, as the user gave them; empty if every one has its own. */
+    std::vector<uint32_t> permutation;
 };
 
 /**
  * A mesh in one Context, shared by all forces on the same triangles, so that the geometry is computed
  * once per evaluation. The first of the forces that an evaluation asks for is its leader and computes
- * the sum of all that are asked for; the others add nothing. Its connectivity changes by bond flips.
+ * the sum of all that are asked for; the others add nothing. Its connectivity changes by bond flips, and whose values
+ * vertices have by exchanges.
  */
 class SharedMembrane {
 public:
@@ -61,9 +71,9 @@ public:
     void leave(MembraneForceImpl* member);
     /** Refuse a force that joins and would not follow flips of other membranes with the same particles. */
     void checkJoining(const std::string& subject, int potential) const;
-    /** Add what flips edges, of which there can be one. */
-    void join(MonteCarloBondFlipImpl* mover, OpenMM::ContextImpl& context);
-    void leave(MonteCarloBondFlipImpl* mover, OpenMM::ContextImpl& context);
+    /** Add what moves something, of which there can be one of each kind. */
+    void join(SurfaceMoverImpl* joining, OpenMM::ContextImpl& context);
+    void leave(SurfaceMoverImpl* leaving, OpenMM::ContextImpl& context);
     /** Add what lets friction act along edges. */
     void join(SurfaceViscosityThermostatImpl* thermostat) {
         thermostats.push_back(thermostat);
@@ -139,6 +149,23 @@ public:
     void sweep(const std::string& subject, OpenMM::ContextImpl& context, HelfrichViscosity& viscosity,
                const HelfrichEdgeBath& bath, std::vector<OpenMM::Vec3>& positions,
                std::vector<OpenMM::Vec3>& velocities, HelfrichStream& random);
+    /**
+     * Try to let neighbours exchange what they are, in all members.
+     *
+     * @param rules        how exchanges are accepted
+     * @param state        what has come of them so far, and the random numbers
+     * @param forceChange  as of flip(), and so is all else
+     * @return how many were made
+     */
+    int64_t swap(const std::string& subject, OpenMM::ContextImpl& context, int groups,
+                 const std::vector<OpenMM::Vec3>& positions, const HelfrichSwapRules& rules, int64_t attempts,
+                 HelfrichSwapState& state, std::vector<OpenMM::Vec3>* forceChange);
+    /** Bring what a member has of each vertex, as the user made it, into the order that there is now. */
+    void arrange(std::vector<double>& values) const;
+    /** Note that values of a member have changed. */
+    void forgetKinds() {
+        kinds.clear();
+    }
     /** Refuse rules that make no sense, or that the present triangles violate. */
     void checkRules(const std::string& subject, const HelfrichFlipRules& rules) const {
         check(Helfrich_Membrane_checkFlips(subject.c_str(), core, &rules));
@@ -156,9 +183,17 @@ public:
     }
     /** Go on with other triangles; if they are refused, everything stays as it was. */
     void setTriangles(const std::string& subject, OpenMM::ContextImpl& context, const std::vector<int>& corners);
+    /** For each vertex the one whose values it has, as the user gave them. */
+    std::vector<int> getPermutation(const std::string& subject, OpenMM::ContextImpl& context);
+    /** Go on with another one; if it is refused, everything stays as it was. */
+    void setPermutation(const std::string& subject, OpenMM::ContextImpl& context, const std::vector<int>& permutation);
     /** A number that tells the present triangles from others, 0 for those of the System. */
     double getFingerprint() const {
         return Helfrich_Membrane_fingerprint(core);
+    }
+    /** The same for the permutation, 0 where every vertex has its own values. */
+    double getPermutationFingerprint() const {
+        return permutationFingerprint;
     }
     /** Whether something has to be saved to go on with the same bits. */
     bool needsSaving() const;
@@ -197,11 +232,10 @@ private:
     /** What a membrane leaves to the next Context, and how to tell the State that it belongs to. */
     struct Left {
         std::vector<int> triangles;
-        /** The Context's parameter for the connectivity. */
-        std::string parameter;
-        double value;
+        /** The Context's parameters of its movers. */
+        std::map<std::string, double> parameters;
         long long step;
-        /** Of the positions, where an integrator has set the parameter back; otherwise 0. */
+        /** Of the positions, where an integrator has set a parameter back; otherwise 0. */
         uint64_t checksum;
         std::string saved;
     };
@@ -240,8 +274,12 @@ private:
     bool hasOnlyContacts() const;
     /** Have the present triangles of all parts. */
     void followParts(OpenMM::ContextImpl& context);
+    /** Any of its movers, or null. */
+    const SurfaceMoverImpl* findMover() const;
     /** Refuse two triangulations of the same particles if one of them changes, unless it can follow the other. */
     static void refuseOthers(const std::string& subject, const SharedMembrane& one, const SharedMembrane& other);
+    /** Refuse what has to be asked or told of the parts. */
+    void refuseParts(const std::string& subject, const std::string& advice) const;
     /** Which members: those that the platform evaluates, all others, or both. */
     enum class Which { Native, Others, All };
     /** Note the members in some force groups, and their terms. */
@@ -252,12 +290,20 @@ private:
     const double* findBox(OpenMM::ContextImpl& context);
     Connectivity getConnectivity() const;
     void setConnectivity(const std::string& subject, const Connectivity& connectivity);
-    /** Refuse the present triangles if the mover cannot go on from there, and go back to others. */
-    void checkMover(const std::string& subject, const Connectivity& before);
+    /** Refuse the present triangles if a mover cannot go on from there, and go back to others. */
+    void checkMovers(const std::string& subject, const Connectivity& before);
+    /** Let the vertices have each other's values, in all members. */
+    void rearrange(const std::vector<uint32_t>& sources, uint64_t version);
+    /** Go on with another permutation, empty for none. */
+    void setPermutation(const std::vector<uint32_t>& wanted);
+    /** Find which vertices are alike in all members. */
+    void findKinds();
     /** Take what has been saved of these triangles, or stay as before. The Context does not know yet. */
     void take(const std::string& subject, const SavedConnectivity& saved);
-    /** Tell the Context of other triangles, and let the mover go on from what has been saved, if anything. */
+    /** Tell the Context of another state, and let the movers go on from what has been saved, if anything. */
     void announce(OpenMM::ContextImpl& context, const SavedConnectivity* saved);
+    /** The same, where the Context is being evaluated. */
+    void tellMovers(OpenMM::ContextImpl& context, const SavedConnectivity* saved);
     /** Leave the connectivity to a Context that goes on with the same State. */
     void leaveBehind(OpenMM::ContextImpl& context);
     /** Let what has been left of this membrane wait for settle(). */
@@ -274,10 +320,17 @@ private:
     std::unique_ptr<NativeMembrane> native;
     /** For each scalar of each term the number of the derivative that it adds to. */
     std::vector<int> derivativeNumbers;
-    /** What flips edges, or null. */
-    MonteCarloBondFlipImpl* mover;
+    /** By their kinds, or null. */
+    SurfaceMoverImpl* movers[NUM_MOVER_KINDS];
     /** What lets friction act along edges. */
     std::vector<SurfaceViscosityThermostatImpl*> thermostats;
+    /** Whether one of them has left. */
+    bool hasLeftBehind;
+    /** As in Connectivity. */
+    std::vector<uint32_t> permutation;
+    double permutationFingerprint;
+    /** A number for each vertex, the same for those that are alike; empty until they are asked for. */
+    std::vector<uint32_t> kinds;
     /** Whether it has been found to span the box, and no barostat tears it. */
     bool spans;
     /** Membranes that this one is made up of, and those that it is part of. */

@@ -1,7 +1,7 @@
 #ifndef HELFRICH_XML_ELEMENTS_H_
 #define HELFRICH_XML_ELEMENTS_H_
 
-#include "openmm-helfrich/TriangulatedForce.h"
+#include "openmm-helfrich/MonteCarloSurfaceMover.h"
 
 #include <openmm/serialization/SerializationNode.h>
 
@@ -191,6 +191,25 @@ inline void readTriangles(const std::string& name, const OpenMM::SerializationNo
         allow(name, element, {"p1", "p2", "p3"}, {});
         force.addTriangle(integer(name, element, "p1"), integer(name, element, "p2"), integer(name, element, "p3"));
     }
+}
+
+/** The names of the ensembles of MonteCarloSurfaceMovers, by their numbers. */
+const std::string ENSEMBLES[] = {"Canonical", "Microcanonical"};
+
+/** What all MonteCarloSurfaceMovers have. */
+inline void writeSurfaceMover(const MonteCarloSurfaceMover& mover, OpenMM::SerializationNode& node, int version) {
+    writeMover(mover, node, version);
+    node.setDoubleProperty("attemptsPerEdge", mover.getAttemptsPerEdge())
+        .setStringProperty("ensemble", ENSEMBLES[mover.getEnsemble()]);
+    writeTriangles(mover, node);
+}
+
+inline void readSurfaceMover(const OpenMM::SerializationNode& node, MonteCarloSurfaceMover& mover) {
+    const std::string& name = mover.getTypeName();
+    readMover(node, mover);
+    mover.setAttemptsPerEdge(numberOr(name, node, "attemptsPerEdge", mover.getAttemptsPerEdge()));
+    mover.setEnsemble(constantOr(name, node, "ensemble", ENSEMBLES, mover.getEnsemble()));
+    readTriangles(name, node, mover);
 }
 
 } // namespace xml

@@ -22,7 +22,7 @@ namespace HelfrichPlugin {
  * this.
  *
  * Domains belong to the vertices: bond flips take a vertex along with its domain, so that domains mix and sort on a
- * membrane that flows.
+ * membrane that flows. With a MonteCarloDomainSwap neighbours exchange them.
  */
 class LineTensionForce : public MembraneForce {
 public:
@@ -60,6 +60,17 @@ public:
      */
     void setDomains(const std::vector<int>& domains) {
         setVertexNumbers(std::vector<double>(domains.begin(), domains.end()));
+    }
+    /**
+     * Get the number of each vertex' domain as it is in a Context now: MonteCarloDomainSwap lets neighbours exchange
+     * them.
+     *
+     * @param context  the Context
+     */
+    std::vector<int> getDomainsInContext(OpenMM::Context& context) const {
+        std::vector<double> numbers = dynamic_cast<const VertexNumbersImpl&>(getImplInContext(context))
+                                          .getVertexNumbersInContext(getContextImpl(context));
+        return std::vector<int>(numbers.begin(), numbers.end());
     }
 };
 

@@ -1,13 +1,10 @@
 #ifndef HELFRICH_MONTE_CARLO_BOND_FLIP_H_
 #define HELFRICH_MONTE_CARLO_BOND_FLIP_H_
 
-#include "MonteCarloMover.h"
-#include "TriangulatedForce.h"
-#include "internal/UpdatableImpl.h"
+#include "MonteCarloSurfaceMover.h"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -29,6 +26,9 @@ namespace HelfrichPlugin {
  * thermostat of the same temperature, positions, velocities and connectivity have their joint Boltzmann distribution.
  * An edge that vertices have stretched beyond the longest that a new edge may be can flip, but not back: where that
  * happens, long edges are rarer than in that distribution.
+ * Refused attempts count, by the first of these that they fail, as "refusedByBorder" (the edge has one triangle only),
+ * "refusedByDegree", "refusedByLength", "refusedByShape" (a triangle would have no area), "refusedByEnergy" and
+ * "refusedByEdge" (the new edge was there already).
  * See G. Gompper and D. M. Kroll, doi:10.1088/0953-8984/9/42/001, and on the viscosity that the rate of flips sets
  * H. Noguchi and G. Gompper, doi:10.1103/PhysRevE.72.011901.
  *
@@ -65,21 +65,8 @@ namespace HelfrichPlugin {
  * is taken for the present one as long as time or number of steps go on; a State from the beginning of the very step in
  * which bonds have flipped is therefore not refused. If both are set anew in the Context, ask for the energy before.
  */
-class MonteCarloBondFlip : public MonteCarloMover<TriangulatedForce> {
+class MonteCarloBondFlip : public MonteCarloSurfaceMover {
 public:
-    /**
-     * Who pays for flips.
-     */
-    enum Ensemble {
-        /**
-         * A bath of a temperature.
-         */
-        Canonical = 0,
-        /**
-         * A demon, which has no energy when a Context is made. The temperature is not used.
-         */
-        Microcanonical = 1
-    };
     /**
      * The name of the Context parameter that holds the temperature of the flips, K.
      */
@@ -100,28 +87,13 @@ public:
      */
     MonteCarloBondFlip(const std::vector<int>& triangles, double temperature, int frequency = 10,
                        double attemptsPerEdge = 0.1, int minDegree = 3, int maxDegree = 10, double maxEdgeLength = 0)
-        : MonteCarloMover(temperature, frequency, "MonteCarloBondFlip", triangles), ensemble(Canonical) {
-        setAttemptsPerEdge(attemptsPerEdge);
+        : MonteCarloSurfaceMover("MonteCarloBondFlip", triangles, temperature, frequency, attemptsPerEdge) {
         setMinDegree(minDegree);
         setMaxDegree(maxDegree);
         setMaxEdgeLength(maxEdgeLength);
         if (maxDegree < minDegree)
             fail("maxDegree must not be below minDegree, got " + std::to_string(maxDegree) + " and " +
                  std::to_string(minDegree));
-    }
-    /**
-     * Get how many flips are tried each time, for each edge.
-     */
-    double getAttemptsPerEdge() const {
-        return attemptsPerEdge;
-    }
-    /**
-     * Set how many flips are tried each time, for each edge, from 0 to 1000.
-     */
-    void setAttemptsPerEdge(double attemptsPerEdge) {
-        if (!(attemptsPerEdge >= 0 && attemptsPerEdge <= 1000))
-            fail("attemptsPerEdge must be from 0 to 1000, got " + text(attemptsPerEdge));
-        this->attemptsPerEdge = attemptsPerEdge;
     }
     /**
      * Get the fewest neighbours of a vertex.
@@ -166,42 +138,6 @@ public:
         this->maxEdgeLength = maxEdgeLength;
     }
     /**
-     * Get who pays for flips.
-     */
-    Ensemble getEnsemble() const {
-        return ensemble;
-    }
-    /**
-     * Set who pays for flips: Canonical, a bath, or Microcanonical, a demon.
-     */
-    void setEnsemble(Ensemble ensemble) {
-        if (ensemble != Canonical && ensemble != Microcanonical)
-            fail("there is no ensemble " + std::to_string((int) ensemble));
-        this->ensemble = ensemble;
-    }
-    /**
-     * Copy frequency, attemptsPerEdge, the bounds and the ensemble of this object to a Context. The temperature is a
-     * parameter of the Context; changed triangles are refused (use Context::reinitialize()).
-     *
-     * @param context  the Context to update
-     */
-    void updateParametersInContext(OpenMM::Context& context) {
-        dynamic_cast<UpdatableImpl&>(getImplInContext(context)).updateParametersInContext(getContextImpl(context));
-    }
-    /**
-     * Get what has come of the flips that were tried in a Context since it was made: "attempts", those "accepted", and
-     * those refused, by the first of these that they failed: "refusedByBorder" (the edge has one triangle only),
-     * "refusedByDegree", "refusedByLength", "refusedByShape" (a triangle would have no area), "refusedByEnergy" and
-     * "refusedByEdge" (the new edge was there already); "acceptance", accepted over attempts; "time", the time that has
-     * been simulated, ps; "rate", accepted for each edge and ps; and "demonEnergy", kJ/mol. Ratios are NaN as long as
-     * there is nothing to divide by.
-     *
-     * @param context  the Context
-     */
-    std::map<std::string, double> getStatistics(OpenMM::Context& context) const {
-        return dynamic_cast<StatisticsImpl&>(getImplInContext(context)).getStatistics(getContextImpl(context));
-    }
-    /**
      * Get the name of the Context parameter that holds the fingerprint of the triangles: BondFlipConnectivity with the
      * smallest index of a particle among them. It is not to be set.
      */
@@ -210,19 +146,10 @@ public:
         auto smallest = std::min_element(corners.begin(), corners.end());
         return "BondFlipConnectivity" + (smallest == corners.end() ? "" : std::to_string(*smallest));
     }
-    /**
-     * Positions are taken as they are, without periodic boundary conditions.
-     *
-     * @return false
-     */
-    bool usesPeriodicBoundaryConditions() const {
-        return false;
-    }
 
 private:
-    double attemptsPerEdge, maxEdgeLength;
+    double maxEdgeLength;
     int minDegree, maxDegree;
-    Ensemble ensemble;
 };
 
 } // namespace HelfrichPlugin

@@ -78,9 +78,27 @@ public:
      */
     void setTrianglesInContext(OpenMM::Context& context, const std::vector<int>& corners) const;
     /**
+     * Get whose values the vertices of a surface have in a Context now: MonteCarloDomainSwap lets neighbours exchange
+     * them. Vertex i has the values that forces were given for vertex permutation[i]; vertices are counted in ascending
+     * order of particle index.
+     *
+     * @param context  the Context
+     */
+    std::vector<int> getPermutationInContext(OpenMM::Context& context) const;
+    /**
+     * Let the vertices of a surface in a Context have each other's values, in all forces on the same triangles:
+     * rigidity and the like, and the number of the domain. What holds of setTrianglesInContext() without a
+     * MonteCarloBondFlip holds here without a MonteCarloDomainSwap.
+     *
+     * @param context      the Context
+     * @param permutation  for each vertex the one whose values it shall have, as they were given; each comes once
+     */
+    void setPermutationInContext(OpenMM::Context& context, const std::vector<int>& permutation) const;
+    /**
      * Get all that restoreConnectivity() needs to go on with the same bits: the triangles of a Context, the order in
-     * which sums are formed, and what a MonteCarloBondFlip on them has come to. Positions are not among it. The bytes
-     * have a checksum and are those of processors with little-endian numbers.
+     * which sums are formed, the permutation of the vertices' values, and what a MonteCarloBondFlip and a
+     * MonteCarloDomainSwap on them have come to. Positions are not among it. The bytes have a checksum and are those of
+     * processors with little-endian numbers.
      *
      * @param context  the Context
      */
@@ -159,6 +177,15 @@ inline void TriangulatedForce::setTrianglesInContext(OpenMM::Context& context, c
     if (corners.size() % 3 != 0)
         fail("a list of " + std::to_string(corners.size()) + " corners is not made of triangles");
     getConnectivityImpl(context).setTrianglesInContext(getContextImpl(context), corners);
+}
+
+inline std::vector<int> TriangulatedForce::getPermutationInContext(OpenMM::Context& context) const {
+    return getConnectivityImpl(context).getPermutationInContext(getContextImpl(context));
+}
+
+inline void TriangulatedForce::setPermutationInContext(OpenMM::Context& context,
+                                                       const std::vector<int>& permutation) const {
+    getConnectivityImpl(context).setPermutationInContext(getContextImpl(context), permutation);
 }
 
 inline std::string TriangulatedForce::saveConnectivity(OpenMM::Context& context) const {

@@ -17,10 +17,21 @@ public:
     }
     virtual std::vector<int> getTrianglesInContext(OpenMM::ContextImpl& context) const = 0;
     virtual void setTrianglesInContext(OpenMM::ContextImpl& context, const std::vector<int>& corners) = 0;
+    virtual std::vector<int> getPermutationInContext(OpenMM::ContextImpl& context) const = 0;
+    virtual void setPermutationInContext(OpenMM::ContextImpl& context, const std::vector<int>& permutation) = 0;
     virtual std::string saveConnectivity(OpenMM::ContextImpl& context) const = 0;
     virtual void restoreConnectivity(OpenMM::ContextImpl& context, const std::string& saved) = 0;
     /** Of all membrane forces of the Context in some groups, not only of this one. */
     virtual std::vector<double> getVirial(OpenMM::ContextImpl& context, int groups) const = 0;
+};
+
+/** What forces ask of their implementations that have numbers for each vertex. */
+class VertexNumbersImpl {
+public:
+    virtual ~VertexNumbersImpl() {
+    }
+    /** As vertices have them now. */
+    virtual std::vector<double> getVertexNumbersInContext(OpenMM::ContextImpl& context) const = 0;
 };
 
 /** What movers ask of their implementations. */

@@ -115,6 +115,22 @@ struct HelfrichFlipState {
     double demonEnergy;
 };
 
+/** How neighbours exchange what they are. */
+struct HelfrichSwapRules {
+    /** kT, kJ/mol. */
+    double temperature;
+    /** Whether a demon takes the place of a bath. */
+    int demon;
+};
+
+/** What a mover of this kind has come to, as above. */
+struct HelfrichSwapState {
+    uint32_t key[2];
+    uint64_t attempts, accepted, byKind, byEnergy;
+    /** kJ/mol. */
+    double demonEnergy;
+};
+
 int64_t Helfrich_lastError(char* buffer, int64_t size);
 void helfrich_setLastError(const char* message);
 const char* Helfrich_openmmVersion();
@@ -127,11 +143,17 @@ int Helfrich_Potential_switch(const char* potential, int index, const char** nam
 int Helfrich_Potential_check(const char* potential, int index, double value);
 /** How many numbers it wants for each vertex, or 0; what they are called, or null. */
 int Helfrich_Potential_numbers(const char* potential, const char** name);
+/** Whether they say of what kind a vertex is, so that neighbours can exchange them: 1 or 0. */
+int Helfrich_Potential_hasKinds(const char* potential);
 /** `box` has the vectors of the periodic box that positions among them are in, or is null. */
 int Helfrich_Potential_checkNumbers(const char* potential, const double* numbers, int64_t count, const double* box);
 /** What a force object has for each vertex, after what it has had `before` or null. */
 HelfrichNumbers* Helfrich_Numbers_create(const HelfrichNumbers* before, const double* numbers, int64_t count,
                                          const double* box);
+/** A version of numbers, or of values by vertex that go with them, that no others have. */
+uint64_t Helfrich_Numbers_takeVersion(void);
+/** Set as many as before, in the order that vertices have exchanged theirs to. */
+void Helfrich_Numbers_rearrange(HelfrichNumbers* numbers, const double* values, int64_t count, uint64_t version);
 void Helfrich_Numbers_destroy(HelfrichNumbers* numbers);
 int Helfrich_Membrane_create(const char* subject, const int* triangles, int64_t numTriangles, int64_t numParticles,
                              HelfrichMembrane** membrane);
@@ -181,6 +203,15 @@ int Helfrich_Membrane_flip(const char* subject, HelfrichMembrane* membrane, cons
                            int64_t numParticles, const double* positions, const double* box,
                            const HelfrichFlipRules* rules, int64_t attempts, HelfrichFlipState* state, int64_t* made,
                            double* forceChange, const HelfrichFollower* followers, int64_t numFollowers);
+/**
+ * Let neighbours exchange what they are. `kinds` has the same number for vertices that are alike, `sources` gets the
+ * vertex whose values each one has then, and `version` is what terms will have for theirs that have been changed.
+ */
+int Helfrich_Membrane_swap(const char* subject, HelfrichMembrane* membrane, const HelfrichTerm* terms, int64_t numTerms,
+                           int64_t numParticles, const double* positions, const double* box,
+                           const HelfrichSwapRules* rules, int64_t attempts, HelfrichSwapState* state,
+                           const uint32_t* kinds, uint32_t* sources, uint64_t version, int64_t* made,
+                           double* forceChange);
 int64_t Helfrich_Membrane_numTriangles(const HelfrichMembrane* membrane);
 int64_t Helfrich_Membrane_numVertices(const HelfrichMembrane* membrane);
 void Helfrich_Membrane_triangles(const HelfrichMembrane* membrane, int* corners);

@@ -1,0 +1,75 @@
+//! What moves of a membrane begin with, and what leapfrogs want to know after them.
+
+use super::surface::check_references;
+use super::{Configuration, Membrane};
+use crate::contact::is_contact;
+use crate::error::{Error, Result};
+use crate::potentials::Term;
+
+impl Membrane {
+    /// Note the energy and the geometry of every element at some positions, and, if they are wanted, the forces.
+    ///
+    /// # Errors
+    /// Those of [`Self::evaluate`].
+    pub(super) fn look_around(
+        &mut self,
+        terms: &[Term],
+        at: Configuration,
+        wants_forces: bool,
+    ) -> Result<()> {
+        let Configuration { positions, cell } = at;
+        if positions.len() != 3 * self.num_particles {
+            return Err(Error::Contract(format!(
+                "needs positions of {} particles",
+                self.num_particles
+            )));
+        }
+        for term in terms {
+            self.check(term)?;
+        }
+        self.remembered.clear();
+        self.before.clear();
+        if wants_forces {
+            self.before.resize(positions.len(), 0.0);
+        }
+        let mut before = wants_forces.then_some(self.before.as_mut_slice());
+        let surface = &mut self.surface;
+        let equipped = self.workshop.equip(&surface.mesh, surface.generation, terms)?;
+        let mut placed = surface.place(at)?;
+        check_references(placed.present.mesh, terms)?;
+        let (mesh, into) = (placed.present.mesh, before.as_deref_mut());
+        self.local.fill(mesh, terms, cell, |survey| placed.survey(&equipped, into, survey))?;
+        if terms.iter().any(is_contact) {
+            self.contacts.evaluate(mesh, cell, terms, positions, &mut [], before)?;
+        }
+        Ok(())
+    }
+
+    /// By how much forces differ from those before moves; what they are is remembered.
+    pub(super) fn compare_forces(
+        &mut self,
+        terms: &[Term],
+        at: Configuration,
+        change: &mut [f64],
+    ) -> Result<()> {
+        let Configuration { positions, cell } = at;
+        let surface = &mut self.surface;
+        let equipped = self.workshop.equip(&surface.mesh, surface.generation, terms)?;
+        let mut placed = surface.place(at)?;
+        let after = self.remembered.fill(terms, positions, cell, |forces| {
+            placed.evaluate(&equipped, &mut [], Some(&mut *forces))?;
+            self.contacts.evaluate(
+                placed.present.mesh,
+                cell,
+                terms,
+                positions,
+                &mut [],
+                Some(forces),
+            )
+        })?;
+        for ((change, after), before) in change.iter_mut().zip(after).zip(&self.before) {
+            *change = after - before;
+        }
+        Ok(())
+    }
+}
