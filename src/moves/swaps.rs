@@ -17,7 +17,7 @@ use super::records::{SwapRules, SwapState};
 use crate::mesh::geometry::TriangleGeometry;
 use crate::mesh::triangulation::next;
 use crate::mesh::{NONE, Triangulation};
-use crate::potentials::{Constants, Corners, MadeOf, Needs, Term, Triangles, Vertices};
+use crate::potentials::{Common, Constants, Corners, MadeOf, Needs, Term, Triangles, Vertices};
 use smallvec::SmallVec;
 
 /// So many attempts one after the other, by some rules.
@@ -136,6 +136,7 @@ impl<'a, 't> Kinds<'a, 't> {
     fn of_triangles_around(&mut self, sources: &[u32]) -> f64 {
         self.energies.clear();
         self.energies.resize(self.ids.len(), 0.0);
+        let none = Common::default();
         for (term, made_of) in &self.of_triangles {
             self.constants.clear();
             for triangle in self.ids.iter().map(|id| *id as usize) {
@@ -145,7 +146,7 @@ impl<'a, 't> Kinds<'a, 't> {
                     are_outer: vertices.map(|vertex| self.mesh.is_border(vertex)),
                     on_border: self.mesh.twins()[triangle].map(|twin| twin == NONE),
                 };
-                match made_of.constants(term, &corners, 0.0) {
+                match made_of.constants(term, &corners, &none) {
                     Ok(constants) => self.constants.push(constants),
                     Err(_) => return f64::NAN,
                 }

@@ -13,8 +13,8 @@ using std::string;
 using std::vector;
 
 MembraneForceImpl::MembraneForceImpl(const MembraneForce& owner)
-    : CustomCPPForceImpl(owner), owner(owner), term(), hasKinds(false), inPlace(false), native(false),
-      group(owner.getForceGroup()), periodic(owner.usesPeriodicBoundaryConditions()) {
+    : CustomCPPForceImpl(owner), OnMembrane(owner.getTypeName()), owner(owner), term(), hasKinds(false), inPlace(false),
+      native(false), group(owner.getForceGroup()), periodic(owner.usesPeriodicBoundaryConditions()) {
     // OpenMM asks for the default parameters before it initialises the force.
     for (int i = 0; i < owner.getNumParameters(); i++)
         contextParameters.push_back(owner.getContextParameter(owner.getParameterName(i)));

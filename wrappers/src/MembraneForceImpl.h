@@ -1,7 +1,7 @@
 #ifndef HELFRICH_MEMBRANE_FORCE_IMPL_H_
 #define HELFRICH_MEMBRANE_FORCE_IMPL_H_
 
-#include "SharedMembrane.h"
+#include "OnMembrane.h"
 #include "openmm-helfrich/MembraneForce.h"
 #include "openmm-helfrich/internal/UpdatableImpl.h"
 
@@ -21,7 +21,7 @@ namespace HelfrichPlugin {
  */
 class MembraneForceImpl : public OpenMM::CustomCPPForceImpl,
                           public UpdatableImpl,
-                          public ConnectivityImpl,
+                          public OnMembrane,
                           public VertexNumbersImpl {
 public:
     explicit MembraneForceImpl(const MembraneForce& owner);
@@ -37,30 +37,9 @@ public:
     std::vector<std::pair<int, int>> getBondedParticles() const;
     std::vector<std::string> getKernelNames();
     void updateParametersInContext(OpenMM::ContextImpl& context);
-    std::vector<int> getTrianglesInContext(OpenMM::ContextImpl& context) const {
-        return membrane->getPresentTriangles(context);
-    }
-    void setTrianglesInContext(OpenMM::ContextImpl& context, const std::vector<int>& corners) {
-        membrane->setTriangles(owner.getTypeName(), context, corners);
-    }
-    std::vector<int> getPermutationInContext(OpenMM::ContextImpl& context) const {
-        return membrane->getPermutation(owner.getTypeName(), context);
-    }
-    void setPermutationInContext(OpenMM::ContextImpl& context, const std::vector<int>& permutation) {
-        membrane->setPermutation(owner.getTypeName(), context, permutation);
-    }
     std::vector<double> getVertexNumbersInContext(OpenMM::ContextImpl& context) const {
         membrane->settle(context);
         return vertexNumbers;
-    }
-    std::string saveConnectivity(OpenMM::ContextImpl& context) const {
-        return membrane->save(context);
-    }
-    void restoreConnectivity(OpenMM::ContextImpl& context, const std::string& saved) {
-        membrane->restore(owner.getTypeName(), context, saved);
-    }
-    std::vector<double> getVirial(OpenMM::ContextImpl& context, int groups) const {
-        return SharedMembrane::sumVirials(context, groups);
     }
     /** Whether the force belongs to one of some groups, given as bits. */
     bool isInGroups(int groups) const;
@@ -99,7 +78,6 @@ private:
     void copyValues();
 
     const MembraneForce& owner;
-    std::shared_ptr<SharedMembrane> membrane;
     HelfrichTerm term;
     /** What the fields of the term point to. */
     std::vector<std::vector<double>> fields;

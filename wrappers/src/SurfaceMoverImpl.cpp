@@ -98,9 +98,9 @@ bool writesParameters(const Integrator& integrator, ContextImpl& context, bool o
 
 SurfaceMoverImpl::SurfaceMoverImpl(const MonteCarloSurfaceMover& owner, const string& temperature,
                                    const string& parameter, const Tally& tally)
-    : owner(owner), home(nullptr), temperature(temperature), parameter(parameter), tally(tally), schedule(),
-      frequency(0), attemptsPerEdge(0), inPlace(false), announced(nullptr), present(0), replaced(0), mayRevert(false),
-      seenTime(0), nextTime(0), seenStep(NEVER), lastTime(0), lastStep(NEVER) {
+    : OnMembrane(owner.getTypeName()), owner(owner), home(nullptr), temperature(temperature), parameter(parameter),
+      tally(tally), schedule(), frequency(0), attemptsPerEdge(0), inPlace(false), announced(nullptr), present(0),
+      replaced(0), mayRevert(false), seenTime(0), nextTime(0), seenStep(NEVER), lastTime(0), lastStep(NEVER) {
 }
 
 void SurfaceMoverImpl::leave() {

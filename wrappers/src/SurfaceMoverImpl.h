@@ -1,7 +1,7 @@
 #ifndef HELFRICH_SURFACE_MOVER_IMPL_H_
 #define HELFRICH_SURFACE_MOVER_IMPL_H_
 
-#include "SharedMembrane.h"
+#include "OnMembrane.h"
 #include "openmm-helfrich/MonteCarloSurfaceMover.h"
 #include "openmm-helfrich/internal/UpdatableImpl.h"
 
@@ -25,10 +25,7 @@ static_assert(sizeof(MoverSchedule) == 24, "the schedule of a mover has no gaps"
  * What the implementations of movers of a surface have in common: when they act, and that the Context's State belongs
  * to what the membrane has come to, which it does not hold. A fingerprint of that is a parameter of the Context.
  */
-class SurfaceMoverImpl : public OpenMM::ForceImpl,
-                         public UpdatableImpl,
-                         public ConnectivityImpl,
-                         public StatisticsImpl {
+class SurfaceMoverImpl : public OpenMM::ForceImpl, public UpdatableImpl, public OnMembrane, public StatisticsImpl {
 public:
     void initialize(OpenMM::ContextImpl& context);
     const MonteCarloSurfaceMover& getOwner() const {
@@ -42,27 +39,6 @@ public:
     }
     void updateParametersInContext(OpenMM::ContextImpl& context);
     std::map<std::string, double> getStatistics(OpenMM::ContextImpl& context) const;
-    std::vector<int> getTrianglesInContext(OpenMM::ContextImpl& context) const {
-        return membrane->getPresentTriangles(context);
-    }
-    void setTrianglesInContext(OpenMM::ContextImpl& context, const std::vector<int>& corners) {
-        membrane->setTriangles(owner.getTypeName(), context, corners);
-    }
-    std::vector<int> getPermutationInContext(OpenMM::ContextImpl& context) const {
-        return membrane->getPermutation(owner.getTypeName(), context);
-    }
-    void setPermutationInContext(OpenMM::ContextImpl& context, const std::vector<int>& permutation) {
-        membrane->setPermutation(owner.getTypeName(), context, permutation);
-    }
-    std::string saveConnectivity(OpenMM::ContextImpl& context) const {
-        return membrane->save(context);
-    }
-    void restoreConnectivity(OpenMM::ContextImpl& context, const std::string& saved) {
-        membrane->restore(owner.getTypeName(), context, saved);
-    }
-    std::vector<double> getVirial(OpenMM::ContextImpl& context, int groups) const {
-        return SharedMembrane::sumVirials(context, groups);
-    }
     /** What it moves. */
     virtual MoverKind getKind() const = 0;
     /** Refuse the present triangles if it could not go on from there. */
@@ -135,8 +111,6 @@ protected:
     virtual std::string describeForeign() const = 0;
     /** kT of the bath, kJ/mol. */
     double findBath(OpenMM::ContextImpl& context) const;
-
-    std::shared_ptr<SharedMembrane> membrane;
 
 private:
     /** Copy the values of the force; if they are refused, everything stays as it was. */

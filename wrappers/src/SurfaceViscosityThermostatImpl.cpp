@@ -109,8 +109,8 @@ void checkVertices(const System& system, const std::set<int>& vertices) {
 } // namespace
 
 SurfaceViscosityThermostatImpl::SurfaceViscosityThermostatImpl(const SurfaceViscosityThermostat& owner)
-    : owner(owner), frictionParameter(owner.getFrictionParameter()), viscosity(nullptr), state(), frequency(0),
-      hasVirtualSites(false), positions(&copies[0]), velocities(&copies[1]) {
+    : OnMembrane(NAME), owner(owner), frictionParameter(owner.getFrictionParameter()), viscosity(nullptr), state(),
+      frequency(0), hasVirtualSites(false), positions(&copies[0]), velocities(&copies[1]) {
 }
 
 SurfaceViscosityThermostatImpl::~SurfaceViscosityThermostatImpl() {

@@ -2,7 +2,7 @@
 #define HELFRICH_SURFACE_VISCOSITY_THERMOSTAT_IMPL_H_
 
 #include "HelfrichDynamics.h"
-#include "SharedMembrane.h"
+#include "OnMembrane.h"
 #include "openmm-helfrich/SurfaceViscosityThermostat.h"
 
 #include <openmm/internal/ForceImpl.h>
@@ -24,7 +24,7 @@ static_assert(sizeof(ViscosityState) == 24, "the state of a thermostat has no ga
 /** Lets friction and noise act along the edges of a membrane. */
 class SurfaceViscosityThermostatImpl : public OpenMM::ForceImpl,
                                        public UpdatableImpl,
-                                       public ConnectivityImpl,
+                                       public OnMembrane,
                                        public StateImpl {
 public:
     explicit SurfaceViscosityThermostatImpl(const SurfaceViscosityThermostat& owner);
@@ -42,21 +42,6 @@ public:
         return {};
     }
     void updateParametersInContext(OpenMM::ContextImpl& context);
-    std::vector<int> getTrianglesInContext(OpenMM::ContextImpl& context) const {
-        return membrane->getPresentTriangles(context);
-    }
-    void setTrianglesInContext(OpenMM::ContextImpl& context, const std::vector<int>& corners) {
-        membrane->setTriangles(owner.getTypeName(), context, corners);
-    }
-    std::string saveConnectivity(OpenMM::ContextImpl& context) const {
-        return membrane->save(context);
-    }
-    void restoreConnectivity(OpenMM::ContextImpl& context, const std::string& saved) {
-        membrane->restore(owner.getTypeName(), context, saved);
-    }
-    std::vector<double> getVirial(OpenMM::ContextImpl& context, int groups) const {
-        return SharedMembrane::sumVirials(context, groups);
-    }
     std::string saveState() const;
     void restoreState(const std::string& saved);
     /** What all thermostats of a Context have come to, in their order. */
@@ -70,7 +55,6 @@ private:
 
     const SurfaceViscosityThermostat& owner;
     const std::string frictionParameter;
-    std::shared_ptr<SharedMembrane> membrane;
     HelfrichViscosity* viscosity;
     ViscosityState state;
     int frequency;
