@@ -33,18 +33,22 @@ enum Depends {
 struct Values {
     rigidity: Vec<f64>,
     spontaneous: Vec<f64>,
-    domains: Vec<f64>,
+    domains: VertexNumbers,
     moduli: Vec<f64>,
+    with_moduli: VertexNumbers,
 }
 
 impl Values {
     fn new(kinds: &[u32]) -> Self {
-        let of = |values: [f64; 3]| kinds.iter().map(|kind| values[*kind as usize]).collect();
+        let of = |values: [f64; 3]| -> Vec<f64> {
+            kinds.iter().map(|kind| values[*kind as usize]).collect()
+        };
         Self {
             rigidity: of(RIGIDITIES),
             spontaneous: of(SPONTANEOUS),
-            domains: of(DOMAINS),
+            domains: VertexNumbers::new(of(DOMAINS), None, None),
             moduli: of(MODULI),
+            with_moduli: VertexNumbers::new(Vec::new(), None, None),
         }
     }
 
@@ -53,10 +57,10 @@ impl Values {
         bending.fields[0] = &self.rigidity;
         bending.fields[1] = &self.spontaneous;
         let mut line = Term::new("LineTensionForce", 0, &[1.7]).unwrap();
-        line.numbers = VertexNumbers::new(&self.domains, None);
+        line.numbers = &self.domains;
         let mut gauss = Term::new("GaussianCurvatureForce", 0, &[0.0]).unwrap();
         gauss.fields[0] = &self.moduli;
-        gauss.numbers = VertexNumbers::new(&[], None);
+        gauss.numbers = &self.with_moduli;
         match depends {
             Depends::Lines => vec![line],
             Depends::Rigidity => vec![bending],
@@ -347,20 +351,20 @@ fn evaluations_after_exchanges_have_the_new_values() {
     let mut kinds = kinds_of(56, 4);
     let mut state = SwapState { key: [5, 5], ..SwapState::default() };
     for round in 0..5 {
-        let evaluate = |membrane: &mut Membrane, kinds: &[u32], owner: u64| {
-            let values = Values::new(kinds);
-            let mut terms = values.terms(Depends::All, 0);
-            let owner = if owner == 0 { terms[1].numbers.owner } else { owner };
-            (terms[1].numbers.owner, terms[1].numbers.version) = (owner, round);
+        let evaluate = |membrane: &mut Membrane, kinds: &[u32], owner: Option<u64>| {
+            let mut values = Values::new(kinds);
+            values.domains.owner = owner.unwrap_or(values.domains.owner);
+            values.domains.version = round;
+            let terms = values.terms(Depends::All, 0);
             let mut forces = vec![0.0; mesh.0.len()];
             membrane.evaluate(&terms, at, &mut [], Some(&mut forces)).unwrap();
             forces
         };
-        let found = evaluate(&mut membrane, &kinds, 77);
-        assert_eq!(found, evaluate(&mut Membrane::new(&mesh.1, 56).unwrap(), &kinds, 0));
-        let values = Values::new(&kinds);
-        let mut terms = values.terms(Depends::All, 0);
-        (terms[1].numbers.owner, terms[1].numbers.version) = (77, round);
+        let found = evaluate(&mut membrane, &kinds, Some(77));
+        assert_eq!(found, evaluate(&mut Membrane::new(&mesh.1, 56).unwrap(), &kinds, None));
+        let mut values = Values::new(&kinds);
+        (values.domains.owner, values.domains.version) = (77, round);
+        let terms = values.terms(Depends::All, 0);
         let mut sources: Vec<u32> = (0..56).collect();
         let rules = SwapRules { temperature: 1e6, demon: 0 };
         let turn = SwapRound {
