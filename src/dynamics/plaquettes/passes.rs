@@ -178,7 +178,8 @@ impl Kernel for Areas<'_> {
     }
 }
 
-/// The same with the gradients: ∂aₜ/∂r = n̂ × (c − b) / 2 at a corner, from b to c the side opposite to it.
+/// The same with the gradients: ∂aₜ/∂r = n̂ × (c − b) / 2 at a corner, from b to c the side opposite to it. The sum is
+/// no number if a triangle has none.
 pub struct Gradients<'a> {
     triangles: Triangles<'a>,
     areas: &'a mut [Lanes],
@@ -205,23 +206,27 @@ impl Kernel for Gradients<'_> {
     #[inline(always)]
     fn execute<A: Arithmetic>(self) {
         let Triangles { corners, positions, cell, padding } = self.triangles;
+        let mut inverses = Lanes::default();
         let results = self.areas.iter_mut().zip(self.gradients);
         for (corners, (areas, gradients)) in corners.iter().zip(results) {
             let [ab, ac] = sides::<A>(corners, positions, cell);
-            let normal = cross::<A>(&ab, &ac);
+            let mut normal = cross::<A>(&ab, &ac);
             let twice = norm::<A>(&normal);
-            let mut scale = twice;
+            let (mut halves, mut scale) = (twice, twice);
             for lane in 0..LANES {
-                areas[lane] = 0.5 * twice[lane];
+                halves[lane] *= 0.5;
                 scale[lane] = 0.5 / twice[lane];
+                inverses[lane] += scale[lane];
             }
-            let half_unit = times(&scale, &normal);
-            let bc = plus::<A>(&ac, -1.0, &ab);
-            gradients[0] = cross::<A>(&half_unit, &bc);
-            gradients[1] = cross::<A>(&ac, &half_unit);
-            gradients[2] = cross::<A>(&half_unit, &ab);
+            normal = times(&scale, &normal);
+            let (at_b, at_c) = (cross::<A>(&ac, &normal), cross::<A>(&normal, &ab));
+            // A triangle that is moved as a whole keeps its area.
+            *gradients = [times(&[-1.0; LANES], &plus::<A>(&at_b, 1.0, &at_c)), at_b, at_c];
+            *areas = halves;
         }
-        *self.sum = sum(self.areas, padding);
+        // A triangle without area has no gradient.
+        let all_have_areas = inverses.iter().sum::<f64>().is_finite();
+        *self.sum = if all_have_areas { sum(self.areas, padding) } else { f64::NAN };
     }
 }
 

@@ -14,8 +14,9 @@
 //! 2. q' = q + (h/2) (p'/m(q) + p'/m(q')), an implicit equation for q',
 //! 3. p″ = p' − (h/2) ∂H/∂q(p', q').
 //!
-//! It is symplectic, symmetric and of second order, and conserves linear and angular momentum. Both equations are solved by iteration to rounding; in a step
-//! vertices move by some 1e-3 of a plaquette's width, and each iteration gains as much.
+//! It is symplectic, symmetric and of second order, and conserves linear and angular momentum. Both equations are solved
+//! to rounding by iteration; in a step vertices move by some 1e-3 of a plaquette's width, and each iteration gains as
+//! much.
 
 mod passes;
 #[cfg(test)]
