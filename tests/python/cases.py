@@ -426,7 +426,7 @@ def _dihedrals() -> list[Case]:
         return {"stiffness": 40.0}
 
     def bent(m: Membrane) -> dict[str, Any]:
-        return {"stiffness": 40.0, "restAngle": 0.4}
+        return {"stiffness": 400.0, "restAngle": 0.4}
 
     def each(m: Membrane) -> dict[str, Any]:
         rng = np.random.default_rng(12)

@@ -340,7 +340,7 @@ def test_langevin_samples_the_exact_distribution_of_a_vertex_in_a_fixed_ring(den
         # Apart along z, so that nothing but the springs knows where they are.
         springs.addParticle(copy * size, [100.0 * copy])
         triangles.append(patches.triangles + copy * size)
-        positions.append([*patches.vertices, 0, 0, 100.0 * copy])
+        positions.append(np.add(patches.vertices, (0, 0, 100.0 * copy)))
     system.addForce(springs)
     system.addForce(
         helfrich.TriangleAreaForce(np.concatenate(triangles), patches.MODULUS, patches.TARGET)
