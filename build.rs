@@ -26,7 +26,7 @@ mod records;
 
 /// Where the included files look for them.
 mod potentials {
-    pub use crate::codes::{CONSTANTS, MAX_PARAMETERS, Needs};
+    pub use crate::codes::{CONSTANTS, Contribution, MAX_PARAMETERS, Needs};
 }
 
 use std::path::{Path, PathBuf};

@@ -6,6 +6,7 @@
 
 #![allow(non_snake_case, reason = "names follow OpenMM's C API")]
 
+mod crowd;
 mod dynamics;
 mod membrane;
 mod mesh;
@@ -17,6 +18,7 @@ mod records;
 mod variable_mass;
 mod viscosity;
 
+pub use crowd::*;
 pub use membrane::*;
 pub use mesh::*;
 pub use moves::*;

@@ -13,12 +13,14 @@ use std::sync::atomic::{AtomicI64, Ordering};
 mod checks;
 mod connectivity;
 mod constants;
+mod crowd;
 mod flips;
 mod moves;
 mod surface;
 mod swaps;
 
 pub use connectivity::Connectivity;
+pub use crowd::{Crowd, Turn};
 use constants::{Equipped, Workshop, need_constants};
 pub use flips::Follower;
 use surface::{Surface, check_references};
@@ -98,6 +100,11 @@ impl Membrane {
     /// What has been chosen for it, once that is known.
     pub fn choice(&self) -> Option<Choice> {
         self.surface.evaluator.choice()
+    }
+
+    /// Whether it is settled that the processor evaluates it.
+    pub fn is_on_processor(&self) -> bool {
+        self.surface.evaluator.is_settled_on_cpu()
     }
 
     /// How often the connectivity has changed.

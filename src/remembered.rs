@@ -68,7 +68,10 @@ impl Remembered {
         let known = self.is_of(terms, positions, cell);
         self.is_there = false;
         if known {
-            forces.iter_mut().zip(&self.forces).for_each(|(sum, force)| *sum += force);
+            // Forces on others may be summed at the same time.
+            for (sum, force) in forces.iter_mut().zip(&self.forces).filter(|(_, force)| **force != 0.0) {
+                *sum += force;
+            }
         }
         known
     }

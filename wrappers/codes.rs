@@ -9,7 +9,7 @@ use crate::interface::{Binding, NUMBERS};
 use crate::move_records::{FlipRules, FlipState, SwapRules, SwapState};
 use crate::records::{
     EdgeBath, FollowerInput, NativeBuffer, NativePass, NativePlan, ParameterInfo, ParticleArrays,
-    SheetInput, TermInput,
+    SheetInput, TermInput, TurnInput,
 };
 use std::ffi::CStr;
 use std::mem::offset_of;
@@ -76,6 +76,11 @@ pub fn comparison() -> String {
             "HelfrichTerm",
             potential form switches wants_derivatives values fields field_lengths particles num_particles
             numbers
+        );
+        text += &structure!(
+            TurnInput,
+            "HelfrichTurn",
+            subject membrane terms num_terms contributions box_vectors
         );
         text += &structure!(
             FollowerInput,

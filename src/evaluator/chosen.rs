@@ -118,6 +118,11 @@ impl ChosenEvaluator {
         self.choice
     }
 
+    /// Whether it is settled that the processor computes.
+    pub fn is_settled_on_cpu(&self) -> bool {
+        self.settled_on_cpu
+    }
+
     /// Go on with other connectivity, or with another order of the vertices, from the next evaluation on.
     pub fn connectivity_changed(&mut self) {
         self.cpu_is_current = false;

@@ -49,6 +49,15 @@ pub extern "C" fn Helfrich_Membrane_count() -> i64 {
     membrane::count()
 }
 
+/// Whether it is settled that the processor evaluates it: 1 or 0.
+///
+/// # Safety
+/// `membrane` must be alive.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_Membrane_isOnProcessor(membrane: *const Membrane) -> c_int {
+    unsafe { &*membrane }.is_on_processor().into()
+}
+
 /// Number of edges of a membrane.
 ///
 /// # Safety

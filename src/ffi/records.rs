@@ -2,7 +2,7 @@
 //!
 //! build.rs includes this file, and has the C++ compiler compare those of `Core.h` and `HelfrichDynamics.h` with their layout.
 
-use crate::potentials::MAX_PARAMETERS;
+use crate::potentials::{Contribution, MAX_PARAMETERS};
 use std::ffi::{c_char, c_int, c_void};
 
 /// A scalar of a potential, for C++ and Python: `name` lives as long as the library, the unit is
@@ -36,6 +36,19 @@ pub struct TermInput {
     pub(super) num_particles: i64,
     /// What the user has given for each vertex, as `Helfrich_Numbers_create` has made it; null where there is nothing.
     pub(super) numbers: *const c_void,
+}
+
+/// What is evaluated of one of several membranes, as C++ hands it over.
+#[repr(C)]
+pub struct TurnInput {
+    pub(super) subject: *const c_char,
+    pub(super) membrane: *mut c_void,
+    pub(super) terms: *const TermInput,
+    pub(super) num_terms: i64,
+    /// One a term, or null.
+    pub(super) contributions: *mut Contribution,
+    /// The vectors of its periodic box, or null.
+    pub(super) box_vectors: *const [[f64; 3]; 3],
 }
 
 /// A membrane that follows the flips of another, as C++ hands it over.

@@ -13,6 +13,9 @@ extern "C" {
 /** Threads that wait for work; one user at a time. */
 struct HelfrichTeam;
 
+/** Several membranes that are evaluated side by side. */
+struct HelfrichCrowd;
+
 /** Masses, ready for time steps. */
 struct HelfrichDynamics;
 
@@ -48,6 +51,11 @@ struct HelfrichEdgeBath {
 int Helfrich_Team_available();
 int Helfrich_Team_create(int threads, HelfrichTeam** team);
 void Helfrich_Team_destroy(HelfrichTeam* team);
+HelfrichCrowd* Helfrich_Crowd_create();
+void Helfrich_Crowd_destroy(HelfrichCrowd* crowd);
+/** Without a team this thread does it alone; forces may be null. No two membranes may have a particle in common. */
+int Helfrich_Crowd_evaluate(HelfrichCrowd* crowd, HelfrichTeam* team, const HelfrichTurn* turns, int64_t numTurns,
+                            int64_t numParticles, const double* positions, double* forces);
 int Helfrich_Dynamics_usesTeam(int64_t numParticles);
 int Helfrich_Dynamics_create(int64_t numParticles, const double* masses, HelfrichDynamics** dynamics);
 void Helfrich_Dynamics_destroy(HelfrichDynamics* dynamics);

@@ -115,6 +115,7 @@ void HelfrichCalcForcesAndEnergyKernel::initialize(const System& system) {
 
 void HelfrichCalcForcesAndEnergyKernel::beginComputation(ContextImpl& context, bool includeForce, bool includeEnergy,
                                                          int groups) {
+    data.crowd.begin();
     if (!includeForce || hasVirtualSites)
         return reference.getAs<CalcForcesAndEnergyKernel>().beginComputation(context, includeForce, includeEnergy,
                                                                              groups);

@@ -2,6 +2,7 @@
 #define HELFRICH_PLATFORM_H_
 
 #include "HelfrichDynamics.h"
+#include "MembraneCrowd.h"
 
 #include <openmm/reference/ReferencePlatform.h>
 
@@ -57,6 +58,7 @@ public:
     const std::string threadsProperty;
     /** In the order in which kernels were made; they stay where they are. */
     std::deque<HelfrichStream> streams;
+    MembraneCrowd crowd;
 
 private:
     HelfrichTeam* team;

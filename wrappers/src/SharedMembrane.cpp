@@ -136,7 +136,7 @@ const SurfaceMoverImpl* SharedMembrane::findMover() const {
 }
 
 SharedMembrane::SharedMembrane(const string& subject, ContextImpl& context, const vector<int>& triangles)
-    : triangles(triangles), core(nullptr), movers(), hasLeftBehind(false), permutationFingerprint(0), spans(false) {
+    : triangles(triangles), core(nullptr), inCrowd(false), movers(), hasLeftBehind(false), permutationFingerprint(0), spans(false) {
     check(Helfrich_Membrane_create(subject.c_str(), triangles.data(), (int64_t) triangles.size() / 3,
                                    context.getSystem().getNumParticles(), &core));
     if (int threads = helfrichThreads(context))
@@ -323,20 +323,50 @@ void SharedMembrane::collect(ContextImpl& context, int groups, Which which) {
         }
 }
 
+bool SharedMembrane::hasContacts() const {
+    return std::any_of(members.begin(), members.end(),
+                       [](const MembraneForceImpl* member) { return member->isContact(); });
+}
+
+void SharedMembrane::joinCrowd(bool isAlone) {
+    inCrowd = true;
+    if (isAlone)
+        Helfrich_Membrane_setThreads(core, 1);
+}
+
+bool SharedMembrane::prepare(const Computation& computation) {
+    settle(computation.context);
+    collect(computation.context, computation.groups, Which::Others);
+    contributions.assign(terms.size(), HelfrichContribution());
+    return !active.empty();
+}
+
+HelfrichTurn SharedMembrane::getTurn(const Computation& computation) {
+    bool wantsContributions = computation.includeEnergy ||
+        (computation.includeDerivatives &&
+         std::any_of(terms.begin(), terms.end(), [](const HelfrichTerm& term) { return term.wantsDerivatives != 0; }));
+    return {active[0]->getOwner().getTypeName().c_str(),
+            core,
+            terms.data(),
+            (int64_t) terms.size(),
+            wantsContributions ? contributions.data() : nullptr,
+            findBox(computation.context)};
+}
+
 double SharedMembrane::evaluate(const string& subject, ContextImpl& context, int groups, const vector<Vec3>& positions,
                                 bool includeEnergy, vector<Vec3>* forces, std::map<string, double>* derivatives) {
-    settle(context);
-    collect(context, groups, Which::Others);
-    bool wantsDerivatives = derivatives != nullptr &&
-        std::any_of(terms.begin(), terms.end(), [](const HelfrichTerm& term) { return term.wantsDerivatives != 0; });
-    contributions.assign(terms.size(), HelfrichContribution());
     // Vec3 is three doubles and nothing else, but its operator[] returns copies.
     static_assert(sizeof(Vec3) == 3 * sizeof(double), "an array of Vec3 is an array of coordinates");
-    check(Helfrich_Membrane_evaluate(subject.c_str(), core, terms.data(), (int64_t) terms.size(),
-                                     (int64_t) positions.size(), reinterpret_cast<const double*>(positions.data()),
-                                     findBox(context),
-                                     includeEnergy || wantsDerivatives ? contributions.data() : nullptr,
-                                     forces == nullptr ? nullptr : reinterpret_cast<double*>(forces->data())));
+    Computation computation = {context, groups, positions, includeEnergy, forces, derivatives != nullptr};
+    HelfrichPlatform::PlatformData* data = HelfrichPlatform::getData(context);
+    if (data == nullptr || !data->crowd.evaluate(*this, computation)) {
+        prepare(computation);
+        HelfrichTurn turn = getTurn(computation);
+        check(Helfrich_Membrane_evaluate(turn.subject, turn.membrane, turn.terms, turn.numTerms,
+                                         (int64_t) positions.size(), reinterpret_cast<const double*>(positions.data()),
+                                         turn.boxVectors, turn.contributions,
+                                         forces == nullptr ? nullptr : reinterpret_cast<double*>(forces->data())));
+    }
     noteSpanning(subject, context);
     double energy = 0;
     for (size_t i = 0; i < active.size(); i++) {

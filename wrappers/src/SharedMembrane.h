@@ -2,6 +2,7 @@
 #define HELFRICH_SHARED_MEMBRANE_H_
 
 #include "HelfrichDynamics.h"
+#include "MembraneCrowd.h"
 #include "NativeMembrane.h"
 #include "openmm-helfrich/internal/Core.h"
 
@@ -225,6 +226,21 @@ public:
     int64_t getNumEdges() const {
         return Helfrich_Membrane_numEdges(core);
     }
+    /** Whether any member acts on what is near. */
+    bool hasContacts() const;
+    /** Whether it is settled that the processor evaluates it. */
+    bool isOnProcessor() const {
+        return Helfrich_Membrane_isOnProcessor(core) != 0;
+    }
+    /** Let a MembraneCrowd evaluate it, with one thread, where there are enough membranes for all threads. */
+    void joinCrowd(bool isAlone);
+    bool isInCrowd() const {
+        return inCrowd;
+    }
+    /** Note what to compute; returns whether there is anything. */
+    bool prepare(const Computation& computation);
+    /** What prepare() has noted. */
+    HelfrichTurn getTurn(const Computation& computation);
     /** The pairs of particles that edges connect. */
     std::vector<std::pair<int, int>> getEdges() const;
 
@@ -320,6 +336,7 @@ private:
     std::unique_ptr<NativeMembrane> native;
     /** For each scalar of each term the number of the derivative that it adds to. */
     std::vector<int> derivativeNumbers;
+    bool inCrowd;
     /** By their kinds, or null. */
     SurfaceMoverImpl* movers[NUM_MOVER_KINDS];
     /** What lets friction act along edges. */

@@ -95,6 +95,19 @@ struct HelfrichContribution {
     double byParameter[HELFRICH_MAX_PARAMETERS];
 };
 
+/** What is evaluated of one of several membranes. */
+struct HelfrichTurn {
+    /** The class that messages shall name. */
+    const char* subject;
+    HelfrichMembrane* membrane;
+    const HelfrichTerm* terms;
+    int64_t numTerms;
+    /** One a term, or null. */
+    HelfrichContribution* contributions;
+    /** The vectors of its periodic box, or null. */
+    const double* boxVectors;
+};
+
 /** What bond flips may do. */
 struct HelfrichFlipRules {
     /** kT, kJ/mol. */
@@ -158,6 +171,8 @@ void Helfrich_Numbers_destroy(HelfrichNumbers* numbers);
 int Helfrich_Membrane_create(const char* subject, const int* triangles, int64_t numTriangles, int64_t numParticles,
                              HelfrichMembrane** membrane);
 void Helfrich_Membrane_destroy(HelfrichMembrane* membrane);
+/** Whether it is settled that the processor evaluates it: 1 or 0. */
+int Helfrich_Membrane_isOnProcessor(const HelfrichMembrane* membrane);
 int Helfrich_Membrane_choose(const char* subject, HelfrichMembrane* membrane, const char* backend);
 /** Whether OpenMM's GPU platforms shall evaluate it themselves: 0 no, 1 if they can, 2 or it is an error. */
 int Helfrich_Membrane_wishesNative(const HelfrichMembrane* membrane);
