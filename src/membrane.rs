@@ -20,7 +20,7 @@ mod surface;
 mod swaps;
 
 pub use connectivity::Connectivity;
-pub use crowd::{Crowd, Turn};
+pub use crowd::Crowd;
 use constants::{Equipped, Workshop, need_constants};
 pub use flips::Follower;
 use surface::{Surface, check_references};

@@ -2,7 +2,8 @@
 
 use super::membrane::{cell, read_terms};
 use super::{TurnInput, guarded, slice, text};
-use crate::membrane::{Crowd, Membrane, Turn};
+use crate::error::Result;
+use crate::membrane::{Configuration, Crowd, Membrane};
 use crate::team::Team;
 use std::ffi::c_int;
 use std::slice as slices;
@@ -24,6 +25,42 @@ pub unsafe extern "C" fn Helfrich_Crowd_destroy(crowd: *mut Crowd) {
     }
 }
 
+/// What is evaluated of one membrane, and what has come of it.
+struct Turn<'a> {
+    input: &'a TurnInput,
+    outcome: Result<()>,
+}
+
+// SAFETY: the membranes are used by nobody else, and the rest is only read.
+unsafe impl Send for Turn<'_> {}
+
+/// The positions and forces of all particles.
+struct Arrays<'a> {
+    positions: &'a [f64],
+    forces: *mut f64,
+}
+
+// SAFETY: no two membranes touch the same forces.
+unsafe impl Sync for Arrays<'_> {}
+
+impl Arrays<'_> {
+    /// # Safety
+    /// As of [`Helfrich_Crowd_evaluate`].
+    unsafe fn evaluate(&self, input: &TurnInput) -> Result<()> {
+        let terms = unsafe { read_terms(input.terms, input.num_terms) };
+        let contributions = match input.contributions.is_null() {
+            true => &mut [],
+            false => unsafe { slices::from_raw_parts_mut(input.contributions, terms.len()) },
+        };
+        let forces = (!self.forces.is_null())
+            .then(|| unsafe { slices::from_raw_parts_mut(self.forces, self.positions.len()) });
+        let cell = unsafe { cell(input.box_vectors) }?;
+        let at = Configuration::new(self.positions, cell.as_ref());
+        let membrane = unsafe { &mut *input.membrane.cast::<Membrane>() };
+        membrane.evaluate(&terms, at, contributions, forces)
+    }
+}
+
 /// Evaluate several membranes, of which no two have a particle in common, by the threads of a team or by this one alone.
 /// The first that fails says why. `forces` may be null; otherwise forces are added to it.
 ///
@@ -41,41 +78,20 @@ pub unsafe extern "C" fn Helfrich_Crowd_evaluate(
     forces: *mut f64,
 ) -> c_int {
     let inputs = unsafe { slice(turns, num_turns as usize) };
-    let mut culprit = inputs.first().map_or("", |input| unsafe { text(input.subject) });
-    let mut failure = Ok(());
-    let evaluate = || {
-        let length = 3 * num_particles as usize;
-        let terms: Vec<_> =
-            inputs.iter().map(|input| unsafe { read_terms(input.terms, input.num_terms) }).collect();
-        let mut turns = Vec::with_capacity(inputs.len());
-        for (input, terms) in inputs.iter().zip(&terms) {
-            let contributions = match input.contributions.is_null() {
-                true => &mut [],
-                false => unsafe {
-                    slices::from_raw_parts_mut(input.contributions, terms.len())
-                },
-            };
-            turns.push(Turn {
-                membrane: unsafe { &mut *input.membrane.cast::<Membrane>() },
-                terms,
-                cell: unsafe { cell(input.box_vectors) }?,
-                contributions,
-                // These overlap, but no two membranes touch the same numbers of them.
-                forces: (!forces.is_null())
-                    .then(|| unsafe { slices::from_raw_parts_mut(forces, length) }),
-                outcome: Ok(()),
-            });
-        }
-        let positions = unsafe { slice(positions, length) };
-        unsafe { &mut *crowd }.evaluate(unsafe { team.as_mut() }, positions, &mut turns);
-        for (input, turn) in inputs.iter().zip(turns) {
-            if turn.outcome.is_err() {
-                (culprit, failure) = (unsafe { text(input.subject) }, turn.outcome);
-                break;
-            }
-        }
-        Ok(())
+    let positions = unsafe { slice(positions, 3 * num_particles as usize) };
+    let (crowd, team) = unsafe { (&mut *crowd, team.as_mut()) };
+    let arrays = Arrays { positions, forces };
+    let size = |turn: &Turn| {
+        unsafe { &*turn.input.membrane.cast::<Membrane>() }.mesh().num_vertices()
     };
-    let status = guarded("MembraneForce", evaluate);
-    if status == 0 { guarded(culprit, || failure) } else { status }
+    let mut turns: Vec<_> = inputs.iter().map(|input| Turn { input, outcome: Ok(()) }).collect();
+    let status = guarded("MembraneForce", || {
+        let evaluate = |turn: &mut Turn| turn.outcome = unsafe { arrays.evaluate(turn.input) };
+        crowd.evaluate(team, &mut turns, size, evaluate);
+        Ok(())
+    });
+    match turns.into_iter().find(|turn| turn.outcome.is_err()) {
+        Some(Turn { input, outcome }) => guarded(unsafe { text(input.subject) }, || outcome),
+        None => status,
+    }
 }

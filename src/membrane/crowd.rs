@@ -1,37 +1,9 @@
 //! Several membranes that are evaluated side by side, each by one thread.
 
-use super::{Configuration, Membrane};
-use crate::error::Result;
 use crate::evaluator::simd::Choice;
-use crate::mesh::Cell;
-use crate::potentials::{Contribution, Term};
 use crate::team::{Parts, Team};
 
-/// What a crowd evaluates of one membrane.
-pub struct Turn<'a> {
-    /// The membrane, which is to have one thread.
-    pub membrane: &'a mut Membrane,
-    /// As of [`Membrane::evaluate`], and so is the rest.
-    pub terms: &'a [Term<'a>],
-    /// The periodic box, if it lives in one.
-    pub cell: Option<Cell>,
-    /// One a term, or none.
-    pub contributions: &'a mut [Contribution],
-    /// Those of all particles; each membrane adds to its own.
-    pub forces: Option<&'a mut [f64]>,
-    /// What has come of it.
-    pub outcome: Result<()>,
-}
-
-impl Turn<'_> {
-    fn take(&mut self, positions: &[f64]) {
-        let at = Configuration::new(positions, self.cell.as_ref());
-        let forces = self.forces.as_deref_mut();
-        self.outcome = self.membrane.evaluate(self.terms, at, self.contributions, forces);
-    }
-}
-
-/// Membranes of a Context, and whether several threads are faster for them.
+/// Whether several threads are faster for some membranes, each of which is evaluated by one of them.
 pub struct Crowd {
     choice: Choice,
 }
@@ -43,31 +15,70 @@ impl Default for Crowd {
 }
 
 impl Crowd {
-    /// Evaluate all membranes at the positions of all particles. Results do not depend on the team. No particle may
-    /// belong to two of them.
-    pub fn evaluate(&mut self, team: Option<&mut Team>, positions: &[f64], turns: &mut [Turn]) {
+    /// Let the members of a team, or this thread alone, evaluate all membranes, each of which takes about as long as its
+    /// `size` says. Which thread evaluates which is the same in every step, so that it finds it in its cache.
+    pub fn evaluate<M: Send>(
+        &mut self,
+        team: Option<&mut Team>,
+        membranes: &mut [M],
+        size: impl Fn(&M) -> usize,
+        evaluate: impl Fn(&mut M) + Sync,
+    ) {
         let attempt = self.choice.next();
         match team.filter(|team| attempt.together && team.size() > 1) {
-            None => turns.iter_mut().for_each(|turn| turn.take(positions)),
+            None => membranes.iter_mut().for_each(evaluate),
             Some(team) => {
-                // Each thread has the same ones in every step, which are in its cache then.
-                let size = |turn: &Turn| turn.membrane.mesh().num_vertices();
-                let (all, mut before) = (turns.iter().map(size).sum::<usize>(), 0);
-                let mut ends = vec![turns.len(); team.size()];
-                for (k, turn) in turns.iter().enumerate() {
-                    let middle = before + size(turn) / 2;
-                    before += size(turn);
-                    ends[..middle * team.size() / all].iter_mut().for_each(|end| *end = k.min(*end));
-                }
-                let turns = Parts::new(turns);
+                let ends = shares(membranes.iter().map(size), team.size());
+                let membranes = Parts::new(membranes);
                 team.run(|member| {
                     let start = member.index().checked_sub(1).map_or(0, |other| ends[other]);
                     // SAFETY: each member has its own.
-                    let own = unsafe { turns.part(start..ends[member.index()]) };
-                    own.iter_mut().for_each(|turn| turn.take(positions));
+                    let own = unsafe { membranes.part(start..ends[member.index()]) };
+                    own.iter_mut().for_each(&evaluate);
                 });
             }
         }
         self.choice.done(&attempt);
+    }
+}
+
+/// Where the shares of so many members end, which are about equal.
+fn shares(sizes: impl Iterator<Item = usize> + Clone, members: usize) -> Vec<usize> {
+    let all: usize = sizes.clone().sum();
+    let mut ends = vec![0; members];
+    let mut before = 0;
+    for (k, size) in sizes.enumerate() {
+        let member = (before + size / 2) * members / all.max(1);
+        ends[member.min(members - 1)..].fill(k + 1);
+        before += size;
+    }
+    ends
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_are_about_equal() {
+        let of = |sizes: &[usize], members| shares(sizes.iter().copied(), members);
+        assert_eq!(of(&[5, 5, 5, 5], 2), [2, 4]);
+        assert_eq!(of(&[5, 5, 5], 2), [2, 3]);
+        assert_eq!(of(&[15, 5, 5, 5], 2), [1, 4]);
+        assert_eq!(of(&[1, 1, 100], 3), [2, 3, 3]);
+        assert_eq!(of(&[7], 4), [0, 0, 1, 1]);
+        assert_eq!(of(&[], 2), [0, 0]);
+    }
+
+    #[test]
+    fn everything_is_evaluated_once() {
+        let mut team = Team::new(3).unwrap();
+        let mut crowd = Crowd::default();
+        let mut counts = vec![0; 10];
+        for _ in 0..40 {
+            crowd.evaluate(Some(&mut team), &mut counts, |_| 1, |count| *count += 1);
+        }
+        crowd.evaluate(None, &mut counts, |_| 1, |count| *count += 1);
+        assert_eq!(counts, [41; 10]);
     }
 }
