@@ -28,7 +28,7 @@ impl Crowd {
         match team.filter(|team| attempt.together && team.size() > 1) {
             None => membranes.iter_mut().for_each(evaluate),
             Some(team) => {
-                let ends = shares(membranes.iter().map(size), team.size());
+                let ends = shares(membranes.iter().map(&size), team.size());
                 let membranes = Parts::new(membranes);
                 team.run(|member| {
                     let start = member.index().checked_sub(1).map_or(0, |other| ends[other]);
