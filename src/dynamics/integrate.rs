@@ -10,8 +10,11 @@ use super::random::{GROUP, Stream, fill_group};
 use crate::team::{Parts, Team};
 use std::ops::Range;
 
-/// From this many particles on, threads share a step.
-pub const PARALLEL_FROM: usize = 20_000;
+/// From this many particles on, threads that have just evaluated membranes share a step,
+pub const PARALLEL_FROM: usize = 4_000;
+
+/// and from this many on, threads that may sleep.
+pub const WAKE_FROM: usize = 20_000;
 
 /// What a step reads and changes; three values for each particle, nm, nm/ps and kJ/mol/nm.
 pub struct Particles<'a> {

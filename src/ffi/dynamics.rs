@@ -2,7 +2,7 @@
 //! `wrappers/src/HelfrichDynamics.h` declares these functions for C++; the two change together.
 
 use super::{ParticleArrays, guarded, slice};
-use crate::dynamics::integrate::{self, Dynamics, PARALLEL_FROM, Particles};
+use crate::dynamics::integrate::{self, Dynamics, PARALLEL_FROM, Particles, WAKE_FROM};
 use crate::dynamics::random::{self, Stream};
 use crate::error::Error;
 use crate::team::Team;
@@ -46,10 +46,11 @@ pub unsafe extern "C" fn Helfrich_Team_destroy(team: *mut Team) {
     }
 }
 
-/// Whether time steps of so many particles use a team.
+/// Whether time steps of so many particles use a team, which may be awake.
 #[unsafe(no_mangle)]
-pub extern "C" fn Helfrich_Dynamics_usesTeam(num_particles: i64) -> c_int {
-    c_int::from(num_particles >= PARALLEL_FROM as i64)
+pub extern "C" fn Helfrich_Dynamics_usesTeam(num_particles: i64, is_awake: c_int) -> c_int {
+    let least = if is_awake != 0 { PARALLEL_FROM } else { WAKE_FROM };
+    c_int::from(num_particles >= least as i64)
 }
 
 /// The 128 random bits of a number, for a key.

@@ -56,7 +56,8 @@ void Helfrich_Crowd_destroy(HelfrichCrowd* crowd);
 /** Without a team this thread does it alone; forces may be null. No two membranes may have a particle in common. */
 int Helfrich_Crowd_evaluate(HelfrichCrowd* crowd, HelfrichTeam* team, const HelfrichTurn* turns, int64_t numTurns,
                             int64_t numParticles, const double* positions, double* forces);
-int Helfrich_Dynamics_usesTeam(int64_t numParticles);
+/** Whether steps of so many particles use a team; it is awake if it evaluates membranes. */
+int Helfrich_Dynamics_usesTeam(int64_t numParticles, int isAwake);
 int Helfrich_Dynamics_create(int64_t numParticles, const double* masses, HelfrichDynamics** dynamics);
 void Helfrich_Dynamics_destroy(HelfrichDynamics* dynamics);
 int Helfrich_Dynamics_verlet(const HelfrichDynamics* dynamics, HelfrichTeam* team,

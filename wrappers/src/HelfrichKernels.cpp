@@ -45,11 +45,6 @@ bool findVirtualSites(const System& system) {
     return false;
 }
 
-/** The Context's threads, where they are worth while. */
-HelfrichTeam* findTeam(HelfrichPlatform::PlatformData& data, const System& system) {
-    return Helfrich_Dynamics_usesTeam(system.getNumParticles()) ? data.getTeam() : nullptr;
-}
-
 template <class T>
 void write(std::ostream& stream, const T& value) {
     stream.write(reinterpret_cast<const char*>(&value), sizeof(T));
@@ -104,13 +99,12 @@ KernelImpl* HelfrichKernelFactory::createKernelImpl(string name, const Platform&
 HelfrichCalcForcesAndEnergyKernel::HelfrichCalcForcesAndEnergyKernel(const string& name, const Platform& platform,
                                                                      ContextImpl& context)
     : CalcForcesAndEnergyKernel(name, platform), data(*HelfrichPlatform::getData(context)),
-      reference(createReferenceKernel(name, platform, context)), hasVirtualSites(false), team(nullptr) {
+      reference(createReferenceKernel(name, platform, context)), hasVirtualSites(false) {
 }
 
 void HelfrichCalcForcesAndEnergyKernel::initialize(const System& system) {
     reference.getAs<CalcForcesAndEnergyKernel>().initialize(system);
     hasVirtualSites = findVirtualSites(system);
-    team = findTeam(data, system);
 }
 
 void HelfrichCalcForcesAndEnergyKernel::beginComputation(ContextImpl& context, bool includeForce, bool includeEnergy,
@@ -119,7 +113,7 @@ void HelfrichCalcForcesAndEnergyKernel::beginComputation(ContextImpl& context, b
     if (!includeForce || hasVirtualSites)
         return reference.getAs<CalcForcesAndEnergyKernel>().beginComputation(context, includeForce, includeEnergy,
                                                                              groups);
-    check(Helfrich_Dynamics_clear(team, data.numParticles, &(*data.forces)[0][0]));
+    check(Helfrich_Dynamics_clear(data.findTeam(), data.numParticles, &(*data.forces)[0][0]));
     for (const auto& parameter : context.getParameters())
         (*data.energyParameterDerivatives)[parameter.first] = 0;
 }
@@ -275,7 +269,7 @@ void HelfrichUpdateStateDataKernel::loadOurs(ContextImpl& context, std::istream&
 
 TimeStep::TimeStep(const string& name, const Platform& platform, ContextImpl& context)
     : data(*HelfrichPlatform::getData(context)), reference(createReferenceKernel(name, platform, context)),
-      dynamics(nullptr), team(nullptr) {
+      dynamics(nullptr) {
 }
 
 TimeStep::~TimeStep() {
@@ -289,7 +283,6 @@ void TimeStep::initialize(const System& system) {
     for (int i = 0; i < system.getNumParticles(); i++)
         masses.push_back(system.getParticleMass(i));
     check(Helfrich_Dynamics_create((int64_t) masses.size(), masses.data(), &dynamics));
-    team = findTeam(data, system);
 }
 
 HelfrichParticleArrays TimeStep::getParticles() const {
@@ -315,7 +308,7 @@ void HelfrichIntegrateVerletStepKernel::execute(ContextImpl& context, const Verl
     if (step.isDelegated())
         return step.reference.getAs<IntegrateVerletStepKernel>().execute(context, integrator);
     HelfrichParticleArrays particles = step.getParticles();
-    check(Helfrich_Dynamics_verlet(step.dynamics, step.team, &particles, integrator.getStepSize()));
+    check(Helfrich_Dynamics_verlet(step.dynamics, step.data.findTeam(), &particles, integrator.getStepSize()));
     step.advance(integrator.getStepSize());
 }
 
@@ -342,7 +335,7 @@ void HelfrichIntegrateLangevinMiddleStepKernel::execute(ContextImpl& context,
     if (step.isDelegated())
         return step.reference.getAs<IntegrateLangevinMiddleStepKernel>().execute(context, integrator);
     HelfrichParticleArrays particles = step.getParticles();
-    check(Helfrich_Dynamics_langevinMiddle(step.dynamics, step.team, &particles, stream, integrator.getStepSize(),
+    check(Helfrich_Dynamics_langevinMiddle(step.dynamics, step.data.findTeam(), &particles, stream, integrator.getStepSize(),
                                            integrator.getFriction(), BOLTZ * integrator.getTemperature()));
     step.advance(integrator.getStepSize());
 }
@@ -367,7 +360,7 @@ void HelfrichIntegrateBrownianStepKernel::execute(ContextImpl& context, const Br
     if (step.isDelegated())
         return step.reference.getAs<IntegrateBrownianStepKernel>().execute(context, integrator);
     HelfrichParticleArrays particles = step.getParticles();
-    check(Helfrich_Dynamics_brownian(step.dynamics, step.team, &particles, stream, integrator.getStepSize(),
+    check(Helfrich_Dynamics_brownian(step.dynamics, step.data.findTeam(), &particles, stream, integrator.getStepSize(),
                                      integrator.getFriction(), BOLTZ * integrator.getTemperature()));
     step.advance(integrator.getStepSize());
 }

@@ -38,7 +38,6 @@ private:
     /** Reference's kernel, for energies without forces, and for virtual sites. */
     OpenMM::Kernel reference;
     bool hasVirtualSites;
-    HelfrichTeam* team;
 };
 
 /** Reference's kernel, with the random streams of the Context in its checkpoints. */
@@ -98,7 +97,6 @@ public:
     OpenMM::Kernel reference;
     /** Null if steps are delegated. */
     HelfrichDynamics* dynamics;
-    HelfrichTeam* team;
 };
 
 class HelfrichIntegrateVerletStepKernel : public OpenMM::IntegrateVerletStepKernel {

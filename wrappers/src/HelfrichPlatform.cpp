@@ -149,6 +149,10 @@ HelfrichTeam* HelfrichPlatform::PlatformData::getTeam() {
     return team;
 }
 
+HelfrichTeam* HelfrichPlatform::PlatformData::findTeam() {
+    return Helfrich_Dynamics_usesTeam(numParticles, crowd.usesTeam()) ? getTeam() : nullptr;
+}
+
 HelfrichStream& HelfrichPlatform::PlatformData::addStream(int seed) {
     // The second half of the key keeps two integrators of one seed apart.
     streams.push_back({{toKey(seed), (uint32_t) streams.size()}, 0});

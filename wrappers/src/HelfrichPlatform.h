@@ -51,6 +51,8 @@ public:
     ~PlatformData();
     /** The Context's threads, which are started when first asked for; null if there is only one. */
     HelfrichTeam* getTeam();
+    /** The same where steps of this many particles are for them, else null. */
+    HelfrichTeam* findTeam();
     /** A new stream of random numbers, with a seed of its own if the given one is 0. */
     HelfrichStream& addStream(int seed);
 

@@ -9,7 +9,7 @@ using namespace HelfrichPlugin;
 using namespace OpenMM;
 using std::vector;
 
-MembraneCrowd::MembraneCrowd() : core(Helfrich_Crowd_create()), isGathered(false), isDone(false) {
+MembraneCrowd::MembraneCrowd() : core(Helfrich_Crowd_create()), isGathered(false), isDone(false), isShared(false) {
 }
 
 MembraneCrowd::~MembraneCrowd() {
@@ -41,9 +41,9 @@ void MembraneCrowd::gather(ContextImpl& context) {
         membranes.clear();
         return;
     }
-    auto threads = (size_t) HelfrichPlatform::getData(context)->numThreads;
+    isShared = membranes.size() >= (size_t) HelfrichPlatform::getData(context)->numThreads;
     for (SharedMembrane* membrane : membranes)
-        membrane->joinCrowd(membranes.size() >= threads);
+        membrane->joinCrowd(isShared);
 }
 
 bool MembraneCrowd::evaluate(const SharedMembrane& membrane, const Computation& computation) {
@@ -57,8 +57,7 @@ bool MembraneCrowd::evaluate(const SharedMembrane& membrane, const Computation& 
     for (SharedMembrane* each : membranes)
         if (each->prepare(computation))
             turns.push_back(each->getTurn(computation));
-    HelfrichPlatform::PlatformData& data = *HelfrichPlatform::getData(computation.context);
-    HelfrichTeam* team = turns.size() >= (size_t) data.numThreads ? data.getTeam() : nullptr;
+    HelfrichTeam* team = isShared ? HelfrichPlatform::getData(computation.context)->getTeam() : nullptr;
     vector<Vec3>* forces = computation.forces;
     check(Helfrich_Crowd_evaluate(core, team, turns.data(), (int64_t) turns.size(),
                                   (int64_t) computation.positions.size(),

@@ -30,6 +30,10 @@ public:
     MembraneCrowd();
     MembraneCrowd(const MembraneCrowd&) = delete;
     ~MembraneCrowd();
+    /** Whether threads evaluate membranes, rather than share each of them. */
+    bool usesTeam() const {
+        return isShared;
+    }
     /** Another computation begins. */
     void begin() {
         isDone = false;
@@ -52,6 +56,8 @@ private:
     std::vector<HelfrichTurn> turns;
     /** Whether the membranes are known, and whether they have been evaluated in the present computation. */
     bool isGathered, isDone;
+    /** Whether there are enough membranes for all threads. */
+    bool isShared;
 };
 
 } // namespace HelfrichPlugin

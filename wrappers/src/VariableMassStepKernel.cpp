@@ -123,8 +123,8 @@ void VariableMassStepKernel::initialize(ContextImpl& context, const VariableMass
         for (const Force* contained : impl->getContainedForces())
             refuseIn(subject, isVertex, *contained, impl->getOwner().getName());
     auto* ours = HelfrichPlatform::getData(context);
-    if (ours != nullptr && Helfrich_Dynamics_usesTeam(system.getNumParticles()))
-        team = ours->getTeam();
+    if (ours != nullptr)
+        team = ours->findTeam();
     if (bath == nullptr)
         return;
     int seed = bath->getRandomNumberSeed();
