@@ -7,6 +7,7 @@ import pytest
 from openmm import unit
 
 MESHES = [helfrich.Mesh.random_sphere(n, 100.0, seed=n) for n in (92, 162, 52)]
+X = np.array([1.0, 0, 0])
 KJ = unit.kilojoule_per_mole
 FORCE = KJ / unit.nanometer
 
@@ -39,7 +40,7 @@ def crowd_of(count, between=False):
             bonds = mm.HarmonicBondForce()
             bonds.addBond(first, first + 1, 1.0, 3.0)
             system.addForce(bonds)
-        positions.append(mesh.vertices + [250.0 * number, 0, 0])
+        positions.append(mesh.vertices + 250.0 * number * X)
     return system, np.concatenate(positions)
 
 
@@ -75,7 +76,7 @@ def test_each_counts_once(groups):
             system.addParticle(50.0)
         for force in forces_on(mesh, 0, number):
             system.addForce(force)
-        one, theirs = found(context_of(system, mesh.vertices + [250.0 * number, 0, 0]), groups)
+        one, theirs = found(context_of(system, mesh.vertices + 250.0 * number * X), groups)
         alone += one
         np.testing.assert_array_equal(forces[first : first + mesh.num_vertices], theirs)
         first += mesh.num_vertices
@@ -108,7 +109,7 @@ def test_steps_that_share_the_threads():
         for _ in range(mesh.num_vertices):
             system.addParticle(50.0)
         system.addForce(helfrich.BendingForce(mesh.triangles + number * mesh.num_vertices, 50))
-        positions.append(mesh.vertices + [300.0 * number, 0, 0])
+        positions.append(mesh.vertices + 300.0 * number * X)
     assert system.getNumParticles() > 4000
     for threads in (1, 2):
         context = context_of(system, np.concatenate(positions), threads, seed=1)
@@ -134,7 +135,9 @@ def test_flips_of_each():
         context.setVelocitiesToTemperature(300, 5)
         context.getIntegrator().step(50)
         ends.append(found(context))
-        movers = [force for force in system.getForces() if helfrich.MonteCarloBondFlip.isinstance(force)]
+        movers = [
+            force for force in system.getForces() if helfrich.MonteCarloBondFlip.isinstance(force)
+        ]
         assert len(movers) == 4
         for mover in map(helfrich.MonteCarloBondFlip.cast, movers):
             assert mover.getStatistics(context)["accepted"] > 0
