@@ -79,6 +79,7 @@ bench: build ## race evaluations, time steps and the paper's Table III; BENCH=--
 	@$(CARGO) bench -q --locked --bench flips
 	@$(VENV)/bin/python benches/flip_steps.py $(findstring --quick,$(BENCH))
 	@$(VENV)/bin/python benches/viscosity_steps.py $(findstring --quick,$(BENCH))
+	@$(VENV)/bin/python benches/many_steps.py $(findstring --quick,$(BENCH))
 	@$(VENV)/bin/python benches/steps.py $(BENCH)
 	@$(VENV)/bin/python benches/table3.py $(findstring --quick,$(BENCH))
 

@@ -57,9 +57,8 @@ def main():
                 took = (time.perf_counter() - begin) / steps * 1e6
                 shortest[index] = min(shortest[index], took)
         one, two = shortest
-        print(
-            f"{count:8}  {num_vertices:8}  {one:8.1f}  {two:9.1f}  {two / one:5.2f}  {two / count:11.2f}"
-        )
+        print(f"{count:8}  {num_vertices:8}  {one:8.1f}  {two:9.1f}", end="")
+        print(f"  {two / one:5.2f}  {two / count:11.2f}")
 
 
 if __name__ == "__main__":

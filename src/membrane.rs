@@ -20,8 +20,8 @@ mod surface;
 mod swaps;
 
 pub use connectivity::Connectivity;
-pub use crowd::Crowd;
 use constants::{Equipped, Workshop, need_constants};
+pub use crowd::Crowd;
 pub use flips::Follower;
 use surface::{Surface, check_references};
 

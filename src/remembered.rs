@@ -69,7 +69,9 @@ impl Remembered {
         self.is_there = false;
         if known {
             // Forces on others may be summed at the same time.
-            for (sum, force) in forces.iter_mut().zip(&self.forces).filter(|(_, force)| **force != 0.0) {
+            for (sum, force) in
+                forces.iter_mut().zip(&self.forces).filter(|(_, force)| **force != 0.0)
+            {
                 *sum += force;
             }
         }

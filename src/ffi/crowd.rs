@@ -81,9 +81,8 @@ pub unsafe extern "C" fn Helfrich_Crowd_evaluate(
     let positions = unsafe { slice(positions, 3 * num_particles as usize) };
     let (crowd, team) = unsafe { (&mut *crowd, team.as_mut()) };
     let arrays = Arrays { positions, forces };
-    let size = |turn: &Turn| {
-        unsafe { &*turn.input.membrane.cast::<Membrane>() }.mesh().num_vertices()
-    };
+    let size =
+        |turn: &Turn| unsafe { &*turn.input.membrane.cast::<Membrane>() }.mesh().num_vertices();
     let mut turns: Vec<_> = inputs.iter().map(|input| Turn { input, outcome: Ok(()) }).collect();
     let status = guarded("MembraneForce", || {
         let evaluate = |turn: &mut Turn| turn.outcome = unsafe { arrays.evaluate(turn.input) };

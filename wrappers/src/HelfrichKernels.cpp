@@ -335,8 +335,9 @@ void HelfrichIntegrateLangevinMiddleStepKernel::execute(ContextImpl& context,
     if (step.isDelegated())
         return step.reference.getAs<IntegrateLangevinMiddleStepKernel>().execute(context, integrator);
     HelfrichParticleArrays particles = step.getParticles();
-    check(Helfrich_Dynamics_langevinMiddle(step.dynamics, step.data.findTeam(), &particles, stream, integrator.getStepSize(),
-                                           integrator.getFriction(), BOLTZ * integrator.getTemperature()));
+    check(Helfrich_Dynamics_langevinMiddle(step.dynamics, step.data.findTeam(), &particles, stream,
+                                           integrator.getStepSize(), integrator.getFriction(),
+                                           BOLTZ * integrator.getTemperature()));
     step.advance(integrator.getStepSize());
 }
 

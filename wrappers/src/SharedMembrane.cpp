@@ -136,7 +136,8 @@ const SurfaceMoverImpl* SharedMembrane::findMover() const {
 }
 
 SharedMembrane::SharedMembrane(const string& subject, ContextImpl& context, const vector<int>& triangles)
-    : triangles(triangles), core(nullptr), inCrowd(false), movers(), hasLeftBehind(false), permutationFingerprint(0), spans(false) {
+    : triangles(triangles), core(nullptr), inCrowd(false), movers(), hasLeftBehind(false), permutationFingerprint(0),
+      spans(false) {
     check(Helfrich_Membrane_create(subject.c_str(), triangles.data(), (int64_t) triangles.size() / 3,
                                    context.getSystem().getNumParticles(), &core));
     if (int threads = helfrichThreads(context))
