@@ -1,8 +1,8 @@
 """Many vesicles in one Context: `python benches/many_steps.py [--quick]`.
 
-LangevinMiddle on platform Helfrich with one thread and with two: vesicles of the paper's forces side
-by side. µs a step, the shortest of many turns, which both Contexts take one after the other; the
-ratio of the two; and the time of one vesicle.
+LangevinMiddle on platform Helfrich with one thread and with two: vesicles of the paper's forces
+side by side. µs a step, the shortest of many turns, which both Contexts take one after the other;
+the ratio of the two; and the time of one vesicle.
 """
 
 import sys
