@@ -17,8 +17,8 @@ away, which Jülicher's scheme does not see; it is not part of E.
 
 Shapes that are not their own image in any plane across the axis are "stomatocyte" where Δa < 1,
 "budded" where they have a neck narrower than 0.2 R_A, and otherwise "pear". What is hardly wider
-than a triangle of the mesh has no right energy there: necks of buds and the dimple of stomatocytes. So these are repeated at N = 4002, each from
-one start.
+than a triangle of the mesh has no right energy there: necks of buds and the dimple of stomatocytes.
+So these are repeated at N = 4002, each from one start.
 """
 
 import sys
