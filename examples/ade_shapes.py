@@ -270,7 +270,7 @@ def main():
             runs = report.runs(shape_of, points, VERSION)
             if runs:
                 rows.append(row_of(volume, target, runs))
-    names = "ν Δa0 shape Δa E/8πκ theory E_theory deviation/%".split()
+    names = ["ν", "Δa0", "shape", "Δa", "E/8πκ", "theory", "E_theory", "deviation/%"]
     report.table(names, rows)
     if report.quick:
         return
