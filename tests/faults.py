@@ -120,7 +120,7 @@ KINDS = {"toml": toml, "vcm": vcm, "sweep": sweep_, "reporters": reporters}
 
 
 def attempt(work, folder, seconds=None):
-    """Work in a process of its own, which is killed after a while; returns whether it came to its end."""
+    """Work in a process of its own, killed after a while; returns whether it came to its end."""
     child = os.fork()
     if child == 0:
         status = 1
