@@ -1,0 +1,204 @@
+"""Two domains at the poles of a vesicle bud, or do not: the line tension at which they must.
+
+`lined_shapes.py` has the theory, without any mesh: from the sphere on the lines shrink as λ grows,
+up to a spinodal from which on there are only buds. Here it is compared with meshes of n rings
+from pole to equator, all triangles of the same area, whose inner m on both sides are domains of
+the share (m + ½)² / 2n² of the area each. Volume is free. As in `budding.py` λ is the tension of the
+force times the length of the lines on the sphere over that of circles: a line on a mesh goes in
+zigzag.
+
+"energies": the spinodal from energies alone. Meshes are put on the contours of the theory, and
+the highest −dE/dℓ of bending energy and length is taken. "cold": at a share of the spinodal of the
+theory a sphere goes to its least energy; the line's radius is compared, neighbours stay neighbours.
+"runs": spheres are let go at 30 K, κ = 200 kT, with bonds that flip, at shares of the spinodal of
+their own mesh; the openings of both lines are means over the last fifth.
+"""
+
+import sys
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import openmm
+from openmmhelfrich import (
+    BendingForce,
+    DihedralForce,
+    LineTensionForce,
+    Mesh,
+    MonteCarloBondFlip,
+    TriangleAreaForce,
+    TriangleHeightForce,
+)
+from scipy.interpolate import CubicSpline
+from scipy.optimize import minimize_scalar
+
+sys.path.append(str(Path(__file__).resolve().parents[1] / "surfaces"))
+from budding import COLD, FRICTION, RIGIDITY, SOFTNESS, TIME_STEP
+from membranes import context_of, positions_of
+from reports import Report
+
+from lined_shapes import branch
+
+VERSION = 1
+RADIUS = 1000.0  # nm
+INNER = 5.5 / 13
+"""(m + ½) / n."""
+FRAMES = 50
+
+branch_of = cache(branch)
+
+
+def share_of(n):
+    """α of n rings, as near as it gets."""
+    return (round(INNER * n - 0.5) + 0.5) ** 2 / (2 * n**2)
+
+
+def domains_of(n):
+    """1 and 2 for the domains of a mesh of n rings to the equator, 0 for the others."""
+    ring = np.repeat(np.arange(n + 1), [1, *(6 * np.arange(1, n + 1))])
+    inner = ring <= round(INNER * n - 0.5)
+    return np.concatenate([inner, 2 * inner[ring < n]]).astype(int)
+
+
+def mesh_of(n, variables):
+    """A mesh on a shape of `lined_shapes`, with n rings to the equator.
+
+    A ring has the share of the area inside of it that it has on a flat disk.
+    """
+    disk = Mesh.disk(n, 1.0)
+    flat = np.hypot(*disk.vertices[:, :2].T)
+    rings = np.round(flat * n).astype(int)
+    shares = np.maximum(np.arange(n + 1) / n, 1e-6) ** 2 / 2
+    r, z = branch_of(share_of(n)).shapes.points(variables, shares).T
+    r[0] = 0
+    around = disk.vertices[:, :2] / np.where(flat > 0, flat, 1)[:, np.newaxis]
+    upper = np.column_stack([around * r[rings][:, np.newaxis], z[rings]])
+    inside = rings < n
+    # The other half has the equator's vertices in common, and its own orientation.
+    other = np.where(inside, len(flat) + np.cumsum(inside) - 1, np.arange(len(flat)))
+    vertices = np.concatenate([upper, upper[inside] * [1, 1, -1]])
+    triangles = np.concatenate([disk.triangles, other[disk.triangles][:, ::-1]])
+    return Mesh(vertices * RADIUS, triangles)
+
+
+def line_lengths(positions, triangles, domains):
+    """Lengths of the lines around domains 1 and 2, nm.
+
+    A line joins the middles of two sides of a triangle: it is half as long as the third.
+    """
+    lengths = []
+    for which in (1, 2):
+        inside = domains[triangles] == which
+        mixed = (inside.sum(axis=1) > 0) & (inside.sum(axis=1) < 3)
+        odd = inside[mixed] == (inside[mixed].sum(axis=1) == 1)[:, np.newaxis]
+        ends = positions[triangles[mixed][~odd].reshape(-1, 2)]
+        lengths.append(np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1).sum() / 2)
+    return np.array(lengths)
+
+
+def tension_of(n, strength):
+    """The force's tension, kJ/mol/nm, for λL/κ."""
+    sphere = mesh_of(n, branch_of(share_of(n)).shapes.sphere())
+    zigzag = line_lengths(sphere.vertices, sphere.triangles, domains_of(n)).mean()
+    share = share_of(n)
+    circle = 2 * np.pi * 2 * np.sqrt(share * (1 - share)) * RADIUS
+    return strength * RIGIDITY / (2 * np.sqrt(share) * RADIUS) * circle / zigzag
+
+
+def spinodal_of(n):
+    """λL/κ at which the domains of a mesh must bud, from energies alone."""
+    states = branch_of(share_of(n))
+    some = (states.openings > 0.4) & (states.openings < 0.9)
+    energies, lengths = [], []
+    for variables in states.variables[some]:
+        mesh = mesh_of(n, variables)
+        energies.append(mesh.energy(BendingForce(mesh, 1 / (8 * np.pi))))
+        lengths.append(line_lengths(mesh.vertices, mesh.triangles, domains_of(n)).mean())
+    sphere = mesh_of(n, states.shapes.sphere())
+    whole = line_lengths(sphere.vertices, sphere.triangles, domains_of(n)).mean()
+    openings = np.array(lengths) / whole
+    curve = CubicSpline(openings[::-1], np.array(energies)[::-1])
+    # E / 8πκ of the line is λL/κ (r / r of the sphere) √(1 − α) / 2.
+    share = share_of(n)
+    slope = minimize_scalar(lambda x: curve(x, 1), bounds=(0.5, 0.8), method="bounded").fun
+    return {"spinodal": -2 * slope / np.sqrt(1 - share)}
+
+
+def forces_of(n, mesh, strength, area_stiffness, dihedrals):
+    """Forces of a vesicle with two domains.
+
+    Parameters
+    ----------
+    n : int
+    mesh : Mesh
+    strength : float
+        λL/κ.
+    area_stiffness : float
+        Of triangles, κ/L².
+    dihedrals : bool
+        With a term against folds, of fourth order in the angles.
+    """
+    size = 2 * np.sqrt(share_of(n)) * RADIUS
+    area = 4 * np.pi * RADIUS**2 / mesh.num_triangles
+    forces = [
+        BendingForce(mesh, RIGIDITY),
+        LineTensionForce(mesh, tension_of(n, strength), domains_of(n)),
+        TriangleAreaForce(mesh, area_stiffness * RIGIDITY / size**2, area),
+        TriangleHeightForce(mesh, mesh.min_height(SOFTNESS), RIGIDITY),
+    ]
+    return [*forces, DihedralForce(mesh, RIGIDITY)] if dihedrals else forces
+
+
+def openings_of(n, positions, triangles):
+    """Lengths of both lines over those on the sphere."""
+    sphere = mesh_of(n, branch_of(share_of(n)).shapes.sphere())
+    domains = domains_of(n)
+    whole = line_lengths(sphere.vertices, sphere.triangles, domains)
+    return line_lengths(positions, triangles, domains) / whole
+
+
+def coldest(n, strength):
+    """The openings of least energy, from a sphere on, at λL/κ."""
+    mesh = mesh_of(n, branch_of(share_of(n)).shapes.sphere())
+    context = context_of(mesh, forces_of(n, mesh, strength, 3000, False))
+    openmm.LocalEnergyMinimizer.minimize(context, 1e-6)
+    positions = positions_of(context)
+    return {
+        "openings": openings_of(n, positions, mesh.triangles),
+        "area": Mesh(positions, mesh.triangles).area / (4 * np.pi * RADIUS**2),
+        "positions": positions,
+    }
+
+
+def let_go(n, strength, seed, duration):
+    """What becomes of a sphere with two domains.
+
+    Parameters
+    ----------
+    n : int
+    strength : float
+        λL/κ.
+    seed : int
+    duration : float
+        ps.
+
+    Returns
+    -------
+    dict
+        "openings" over time, shape (FRAMES, 2), and the last "positions" and "triangles".
+    """
+    mesh = mesh_of(n, branch_of(share_of(n)).shapes.sphere())
+    flips = MonteCarloBondFlip(mesh, COLD, 5, 0.3)
+    flips.setRandomNumberSeed(seed)
+    integrator = openmm.LangevinMiddleIntegrator(COLD, FRICTION, TIME_STEP)
+    integrator.setRandomNumberSeed(seed)
+    forces = forces_of(n, mesh, strength, 200, True)
+    context = context_of(mesh, [*forces, flips], integrator)
+    context.setVelocitiesToTemperature(COLD, seed)
+    openings = []
+    for _ in range(FRAMES):
+        integrator.step(round(duration / TIME_STEP / FRAMES))
+        positions = positions_of(context)
+        triangles = np.array(forces[0].getTrianglesInContext(context))
+        openings.append(openings_of(n, positions, triangles))
+    return {"openings": np.array(openings), "positions": positions, "triangles": triangles}
