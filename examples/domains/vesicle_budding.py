@@ -9,9 +9,10 @@ zigzag.
 
 "energies": the spinodal from energies alone. Meshes are put on the contours of the theory, and
 the highest −dE/dℓ of bending energy and length is taken. "cold": at a share of the spinodal of the
-theory a sphere goes to its least energy; the line's radius is compared, neighbours stay neighbours.
-"runs": spheres are let go at 30 K, κ = 200 kT, with bonds that flip, at shares of the spinodal of
-their own mesh; the openings of both lines are means over the last fifth.
+theory a sphere goes to its least energy, and the line's radius over that on the sphere is compared;
+neighbours stay neighbours. "runs": spheres are let go at 30 K, κ = 200 kT, with bonds that flip, at
+shares of the spinodal of the theory. Openings are the lengths of the lines over those at the start, a
+mean over the last fifth. A line that is shorter than at the spinodal belongs to a bud.
 """
 
 import sys
@@ -40,12 +41,13 @@ from reports import Report
 from lined_shapes import branch
 
 VERSION = 1
-RADIUS = 1000.0  # nm
+RADIUS = 100.0  # nm
 INNER = 5.5 / 13
 """(m + ½) / n."""
 FRAMES = 50
 
 branch_of = cache(branch)
+"""The theory for a share of the area."""
 
 
 def share_of(n):
@@ -160,7 +162,7 @@ def openings_of(n, positions, triangles):
 def coldest(n, strength):
     """The openings of least energy, from a sphere on, at λL/κ."""
     mesh = mesh_of(n, branch_of(share_of(n)).shapes.sphere())
-    context = context_of(mesh, forces_of(n, mesh, strength, 3000, False))
+    context = context_of(mesh, forces_of(n, mesh, strength, 200, False))
     openmm.LocalEnergyMinimizer.minimize(context, 1e-6)
     positions = positions_of(context)
     return {
@@ -202,3 +204,54 @@ def let_go(n, strength, seed, duration):
         triangles = np.array(forces[0].getTrianglesInContext(context))
         openings.append(openings_of(n, positions, triangles))
     return {"openings": np.array(openings), "positions": positions, "triangles": triangles}
+
+
+def main():
+    report = Report("vesicle_budding", __doc__, folder="domains")
+    rows = []
+    for share in (share_of(13), 0.1, 0.2):
+        states = branch_of(share)
+        high, low = states.spinodals()
+        rows.append((share, *high, states.crossing(), *low))
+    columns = ["α", "spinodal", "its_opening", "equal_energies", "buds_open", "their_opening"]
+    report.table(columns, rows, "_theory")
+
+    sizes = (27,) if report.quick else (27, 39, 65)
+    found = report.runs(spinodal_of, [{"n": n} for n in sizes], VERSION)
+    rows = []
+    for n, run in zip(sizes, found, strict=True):
+        (theory, _), _ = branch_of(share_of(n)).spinodals()
+        rows.append((n, share_of(n), float(run["spinodal"]), theory))
+    report.table(["n", "α", "spinodal", "theory"], rows, "_energies")
+
+    rows = []
+    for n in (13,) if report.quick else (13, 20):
+        states = branch_of(share_of(n))
+        (spinodal, _), _ = states.spinodals()
+        factors = (0.5, 0.7, 0.8, 0.9, 0.95)
+        points = [{"n": n, "strength": factor * spinodal} for factor in factors]
+        for factor, run in zip(factors, report.runs(coldest, points, VERSION), strict=True):
+            theory = states.opening_at(factor * spinodal)
+            mean = run["openings"].mean()
+            rows.append(
+                (n, factor, *run["openings"], theory, mean / theory - 1, float(run["area"]))
+            )
+    columns = ["n", "over_spinodal", "opening_1", "opening_2", "theory", "difference", "area"]
+    report.table(columns, rows, "_cold")
+
+    n, duration = (13, 4000.0) if report.quick else (13, 32000.0)
+    (spinodal, opening), _ = branch_of(share_of(n)).spinodals()
+    rows = []
+    for factor in (0.7, 1.6) if report.quick else (0.7, 0.8, 0.9, 1.1, 1.2, 1.4):
+        for seed in (1,) if report.quick else (1, 2):
+            point = {"n": n, "strength": factor * spinodal, "seed": seed, "duration": duration}
+            (run,) = report.runs(let_go, [point], VERSION)
+            last = run["openings"][-FRAMES // 5 :].mean(axis=0)
+            theory = branch_of(share_of(n)).opening_at(factor * spinodal) if factor < 1 else ""
+            rows.append((n, factor, seed, *last, theory, (last < opening).sum()))
+    columns = ["n", "over_spinodal", "seed", "opening_1", "opening_2", "theory", "buds"]
+    report.table(columns, rows, "_runs")
+
+
+if __name__ == "__main__":
+    main()
