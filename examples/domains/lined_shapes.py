@@ -19,7 +19,7 @@ import numpy as np
 from axisymmetric import NODES, Shapes
 from numpy.polynomial.legendre import leggauss
 from scipy.interpolate import CubicSpline
-from scipy.optimize import brentq, minimize, minimize_scalar
+from scipy.optimize import brentq, minimize
 
 HIGHEST = 96
 OPENINGS = np.concatenate([np.linspace(0.99, 0.15, 43), [0.13, 0.11, 0.09, 0.075, 0.06]])
@@ -56,7 +56,7 @@ class LinedShapes(Shapes):
         return row / row.sum()
 
     def at_area(self, variables, share):
-        """x up to which the area is a share of all."""
+        """Where, in x, the area from the pole on is a share of all."""
         r = self._radius(self.angles(variables)[0], variables[-1])[0]
         areas, whole = self.integral @ r, self.weights @ r
         x = np.interp(share * whole, areas, self.x)
@@ -119,12 +119,12 @@ class LinedShapes(Shapes):
         return found, -4 * np.sqrt(self.share) * multipliers[1]
 
     def points(self, variables, shares):
-        """r and z where the area from one pole on is each of `shares` of all, z = 0 between poles.
+        """Points up to which the area from one pole on is each of `shares` of all: r, and z.
 
         Returns
         -------
         ndarray
-            Shape (num_shares, 2).
+            Shape (num_shares, 2); z is 0 between the poles.
         """
         length = variables[-1]
         psi, _ = self.angles(variables)
@@ -154,40 +154,37 @@ class Branch(NamedTuple):
     energies: np.ndarray
     variables: np.ndarray
 
+    def _curve(self, values):
+        # Openings from low to high, as splines need them.
+        return CubicSpline(self.openings[::-1], values[::-1])
+
     def spinodals(self):
         """(λL/κ, opening) where domains have to bud, and where buds have to open."""
-        # From low to high, as splines need it.
-        curve = CubicSpline(self.openings[::-1], self.tensions[::-1])
-        found = []
-        for sign, bounds in ((-1, (0.5, 0.9)), (1, (0.1, 0.4))):
-            at = minimize_scalar(
-                lambda opening, sign=sign: sign * curve(opening), bounds=bounds, method="bounded"
-            ).x
-            found.append((float(curve(at)), float(at)))
-        return found
+        curve = self._curve(self.tensions)
+        bottom, top = curve.derivative().roots(extrapolate=False)[-2:]
+        return [(float(curve(at)), float(at)) for at in (top, bottom)]
 
     def opening_at(self, tension):
         """The opening of domains that have not budded."""
-        curve = CubicSpline(self.openings[::-1], self.tensions[::-1])
+        curve = self._curve(self.tensions)
         (_, top), _ = self.spinodals()
         return brentq(lambda opening: curve(opening) - tension, top, self.openings[0])
 
     def crossing(self):
         """λL/κ where buds have the energy of domains that have not budded."""
-        (high, top), (low, bottom) = self.spinodals()
+        (high, _), (low, bottom) = self.spinodals()
         radius = 2 * np.sqrt(self.shapes.share * (1 - self.shapes.share))
-        up, down = self.openings[::-1], self.tensions[::-1]
-        curve, bending = CubicSpline(up, down), CubicSpline(up, self.energies[::-1])
+        curve, bending = self._curve(self.tensions), self._curve(self.energies)
 
         def energy(opening, tension):
             line = tension * radius * opening / (4 * np.sqrt(self.shapes.share))
             return bending(opening) + line
 
         def difference(tension):
-            bud = brentq(lambda opening: curve(opening) - tension, up[0], bottom)
+            bud = brentq(lambda opening: curve(opening) - tension, self.openings[-1], bottom)
             return energy(self.opening_at(tension), tension) - energy(bud, tension)
 
-        return brentq(difference, low, min(high, down[0]))
+        return brentq(difference, low, min(high, self.tensions[-1]))
 
 
 def branch(share, openings=OPENINGS, highest=HIGHEST):
