@@ -75,8 +75,8 @@ def coarsen(tension, seed, vertices, last):
     Returns
     -------
     dict
-        By frame: "sweeps", "domains", "largest" as a share of the second kind, "line" in l, "kinds",
-        "positions" and "triangles".
+        By frame: "sweeps", "domains", "largest" as a share of the second kind, "line" in l,
+        "kinds", "positions" and "triangles".
     """
     mesh = Mesh.random_sphere(vertices, RADIUS, seed=seed)
     count = round(SHARE * vertices)
