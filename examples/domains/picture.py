@@ -88,7 +88,7 @@ def main():
     for frame in (0, 7, last + 1):
         title = f"γl = {tension:g} kT, {run['sweeps'][frame]} sweeps"
         panels[title] = tuple(run[name][frame] for name in ("positions", "triangles", "kinds"))
-    n, factor, duration = (13, 1.6, 6000.0) if report.quick else (13, 1.4, 32000.0)
+    n, factor, duration = (13, 1.6, 6000.0) if report.quick else (20, 1.4, 16000.0)
     (spinodal, _), _ = branch_of(share_of(n)).spinodals()
     point = {"n": n, "strength": factor * spinodal, "seed": 1, "duration": duration}
     (run,) = report.runs(let_go, [point], BUDDING)
