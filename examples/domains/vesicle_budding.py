@@ -32,13 +32,14 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize_scalar
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "surfaces"))
-from budding import COLD, FRICTION, RIGIDITY, TIME_STEP
+from budding import COLD, RIGIDITY, TIME_STEP
 from lined_shapes import branch
 from membranes import context_of, positions_of
 from reports import Report
 
-VERSION = 2
+VERSION = 3
 SOFTNESS = 0.037  # Ξ
+FRICTION = 0.005  # 1/ps
 RADIUS = 100.0  # nm
 INNER = 5.5 / 13
 """(m + ½) / n."""
@@ -139,7 +140,7 @@ def forces_of(n, mesh, strength):
     return [
         BendingForce(mesh, RIGIDITY),
         LineTensionForce(mesh, tension_of(n, strength), domains_of(n)),
-        # A domain loses 1 % of its area under λ/r; stiffer triangles would keep shapes from changing.
+        # It leaves 1 % to the tension of the line; stiffer triangles keep shapes from changing.
         TriangleAreaForce(mesh, 200 * RIGIDITY / size**2, area),
         TriangleHeightForce(mesh, mesh.min_height(SOFTNESS), RIGIDITY),
     ]
