@@ -90,8 +90,8 @@ def main():
         panels[title] = tuple(run[name][frame] for name in ("positions", "triangles", "kinds"))
     n, factor, duration = (13, 1.6, 6000.0) if report.quick else (20, 1.4, 16000.0)
     (spinodal, _), _ = branch_of(share_of(n)).spinodals()
-    point = {"n": n, "strength": factor * spinodal, "seed": 1, "duration": duration}
-    (run,) = report.runs(let_go, [point], BUDDING)
+    point = {"n": n, "strength": factor * spinodal, "temperature": 5.0, "duration": duration}
+    (run,) = report.runs(let_go, [{**point, "seed": 1}], BUDDING)
     panels[f"λ = {factor:g} of the spinodal"] = (
         run["positions"],
         run["triangles"],
