@@ -4,6 +4,7 @@ Runs are theirs, and are read from the folder of results where they are stored.
 """
 
 import sys
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from coarsening import CASES, VERTICES, coarsen
 from coarsening import VERSION as COARSENING
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
+from PIL import Image
 from vesicle_budding import VERSION as BUDDING
 from vesicle_budding import branch_of, domains_of, let_go, share_of
 
@@ -74,7 +76,12 @@ def draw(path, panels):
         axes.set_axis_off()
         axes.set_title(title, fontsize=9)
     path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path)
+    with BytesIO() as file:
+        figure.savefig(file)
+        # A palette takes half the space.
+        Image.open(file).convert("RGB").quantize(96, dither=Image.Dither.NONE).save(
+            path, optimize=True
+        )
 
 
 def main():
