@@ -81,9 +81,11 @@ def accept_units(force: type) -> None:
         for s, list_ in elements.items():
             if not list_:
                 raise ValueError(f"{name}: {s.name} is an empty list; give one value or many")
+            # First of all, since it names what it refuses.
             self._setElementValues(s.name, list_)
             # The scalar is not used beside them; their mean is what a reader would expect.
             getattr(self, "set" + capitalised(s.name))(float(np.mean(list_)))
+            self._setElementValues(s.name, list_)
         self._addTriangleBuffer(corners.tobytes())
         if getattr(arguments["triangles"], "box", None) is not None:
             self.setUsesPeriodicBoundaryConditions(True)

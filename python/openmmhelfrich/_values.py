@@ -269,6 +269,8 @@ def triangles(force: str, given, offset: int = 0) -> np.ndarray:
         If the shape is another, or an index does not fit a C int.
     """
     given = getattr(given, "triangles", given)
+    if unit.is_quantity(given):
+        raise TypeError(f"{force}: triangles are particle indices, which have no unit")
     try:
         array = np.asarray(given)
     except ValueError:

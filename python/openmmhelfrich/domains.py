@@ -40,12 +40,23 @@ def values_of_domains(domains, table: Mapping) -> dict:
     Raises
     ------
     TypeError
-        If domains are not integers, or a value is no number or of another unit than that of the
-        first domain.
+        If domains are not integers, the table is no mapping of mappings, or a value is no number or
+        of another unit than that of the first domain.
     ValueError
-        If a vertex has a domain, or a domain lacks a name, that is not in the table.
+        If a vertex has a domain, or a domain lacks a name, that is not in the table, or a value is
+        not finite.
     """
+    if unit.is_quantity(domains):
+        raise TypeError("values_of_domains: domains are numbers without a unit")
     numbers = whole_numbers("values_of_domains", "domains", "domain", domains)
+    if not isinstance(table, Mapping):
+        raise TypeError(f"values_of_domains: the table needs a mapping of domains, got {table!r}")
+    for domain, values in table.items():
+        if not isinstance(values, Mapping):
+            raise TypeError(
+                f"values_of_domains: domain {domain} needs a mapping of names to values, got "
+                f"{values!r}"
+            )
     rows = {int(domain): dict(values) for domain, values in table.items()}
     if not rows:
         raise ValueError("values_of_domains: the table is empty")
@@ -91,4 +102,6 @@ def _of_all(name: str, rows: dict) -> tuple[dict[int, float], unit.Unit | None]:
             plain[domain] = float(value)
         except (TypeError, ValueError):
             raise TypeError(f"{where} must be a number, got {value!r}") from None
+        if not np.isfinite(plain[domain]):
+            raise ValueError(f"{where} must be finite, got {value!r}")
     return plain, dimension

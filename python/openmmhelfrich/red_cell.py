@@ -305,7 +305,9 @@ def _checked(model: RedCellModel) -> RedCellModel:
                 f"RedCell: there is no {name} {value!r}; known are: {', '.join(known)}"
             )
     plain = {
-        name: checked_number(name, getattr(model, name), dimension, caller="RedCell")
+        name: checked_number(
+            name, getattr(model, name), dimension, zero=name != "diameter", caller="RedCell"
+        )
         for name, dimension in _UNITS.items()
     }
     for name, negative in (("reference", False), ("area_difference", True)):

@@ -453,8 +453,10 @@ int64_t SharedMembrane::swap(const string& subject, ContextImpl& context, int gr
                              const HelfrichSwapRules& rules, int64_t attempts, HelfrichSwapState& state,
                              vector<Vec3>* forceChange) {
     collect(context, groups);
-    if (kinds.empty())
-        findKinds();
+    if (kinds.empty() && !findKinds())
+        throw OpenMMException(subject + ": no force on these triangles has values of single vertices, or domains, so there is "
+                              "nothing to exchange; give a BendingForce one rigidity for each vertex, for instance, or add a "
+                              "LineTensionForce");
     double* change = nullptr;
     if (forceChange != nullptr) {
         forceChange->resize(positions.size());
@@ -472,14 +474,19 @@ int64_t SharedMembrane::swap(const string& subject, ContextImpl& context, int gr
     return made;
 }
 
-void SharedMembrane::findKinds() {
+bool SharedMembrane::findKinds() {
+    bool isAny = false;
     kinds.assign(Helfrich_Membrane_numVertices(core), 0);
     for (const MembraneForceImpl* member : members)
-        member->visitKinds([this](const vector<double>& values) {
+        member->visitKinds([&](const vector<double>& values) {
+            isAny = true;
             std::map<std::pair<uint32_t, double>, uint32_t> known;
             for (size_t i = 0; i < kinds.size(); i++)
                 kinds[i] = known.emplace(std::make_pair(kinds[i], values[i]), (uint32_t) known.size()).first->second;
         });
+    if (!isAny)
+        kinds.clear();
+    return isAny;
 }
 
 vector<std::pair<int, int>> SharedMembrane::getEdges() const {

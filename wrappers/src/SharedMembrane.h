@@ -312,8 +312,8 @@ private:
     void rearrange(const std::vector<uint32_t>& sources, uint64_t version);
     /** Go on with another permutation, empty for none. */
     void setPermutation(const std::vector<uint32_t>& wanted);
-    /** Find which vertices are alike in all members. */
-    void findKinds();
+    /** Find which vertices are alike in all members; returns whether any of these says what vertices are. */
+    bool findKinds();
     /** Take what has been saved of these triangles, or stay as before. The Context does not know yet. */
     void take(const std::string& subject, const SavedConnectivity& saved);
     /** Tell the Context of another state, and let the movers go on from what has been saved, if anything. */

@@ -76,6 +76,7 @@ public:
     }
     /**
      * Set the bending rigidity kappa, kJ/mol, zero or above.
+     * Values of single vertices are given up.
      */
     void setRigidity(double rigidity) {
         setParameterValue("rigidity", rigidity);
@@ -88,6 +89,7 @@ public:
     }
     /**
      * Set the spontaneous curvature C0, 1/nm, positive for bulging outward.
+     * Values of single vertices are given up.
      */
     void setSpontaneousCurvature(double spontaneousCurvature) {
         setParameterValue("spontaneousCurvature", spontaneousCurvature);

@@ -65,6 +65,7 @@ public:
     }
     /**
      * Set the stiffness K, kJ/mol, zero or above.
+     * Values of single edges are given up.
      */
     void setStiffness(double stiffness) {
         setParameterValue("stiffness", stiffness);
@@ -77,6 +78,7 @@ public:
     }
     /**
      * Set the angle phi0 at rest, from -pi to pi, positive for convex edges.
+     * Values of single edges are given up.
      */
     void setRestAngle(double restAngle) {
         setParameterValue("restAngle", restAngle);

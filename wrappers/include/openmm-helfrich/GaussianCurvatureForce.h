@@ -48,6 +48,7 @@ public:
     }
     /**
      * Set the modulus kappa_G, kJ/mol.
+     * Values of single vertices are given up.
      */
     void setModulus(double modulus) {
         setParameterValue("modulus", modulus);

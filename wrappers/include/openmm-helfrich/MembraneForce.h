@@ -43,7 +43,7 @@ public:
      */
     double getParameterValue(const std::string& name) const;
     /**
-     * Set the value of a scalar parameter.
+     * Set the value of a scalar parameter; values of single elements, if there are any, are given up.
      *
      * @param name   the name of the parameter
      * @param value  the value in OpenMM's units (nm, kJ/mol)
@@ -292,6 +292,7 @@ inline void MembraneForce::setParameterValue(const std::string& name, double val
     int index = findParameter(name);
     check(Helfrich_Potential_check(getTypeName().c_str(), index, value));
     parameters[index].value = value;
+    parameters[index].elementValues.clear();
 }
 
 inline void MembraneForce::setElementValues(const std::string& name, const std::vector<double>& values) {

@@ -110,6 +110,7 @@ public:
     }
     /**
      * Set the radius R of all particles, nm, zero or above.
+     * Values of single particles are given up.
      */
     void setRadius(double radius) {
         setParameterValue("radius", radius);

@@ -45,6 +45,7 @@ public:
     }
     /**
      * Set the target area a0 of each triangle, nm^2, above zero.
+     * Values of single triangles are given up.
      */
     void setTarget(double target) {
         setParameterValue("target", target);
