@@ -266,12 +266,20 @@ class TestRules:
         assert found["rate"] == pytest.approx(found["accepted"] / 270 / 10, rel=1e-12)
         assert found["demonEnergy"] == 0
 
-    @pytest.mark.parametrize("what", ["nothing", "one domain", "rigidity", "elsewhere"])
+    def test_nothing_to_exchange(self):
+        mesh = start()
+        mover = swap_of(mesh, frequency=1, attemptsPerEdge=3)
+        context = REFERENCE.context(system_of(helfrich.BendingForce(mesh, 30), mover))
+        context.setPositions(mesh.vertices)
+        message = "MonteCarloDomainSwap: no force on these triangles has values of single vertices"
+        with pytest.raises(mm.OpenMMException, match=message):
+            context.getIntegrator().step(1)
+
+    @pytest.mark.parametrize("what", ["one domain", "rigidity", "elsewhere"])
     def test_whoever_is_alike_stays(self, what):
         # Edges whose ends differ in anything of any force are tried, whatever its group.
         mesh = start()
         force = {
-            "nothing": helfrich.BendingForce(mesh, 30, 0.01),
             "one domain": helfrich.LineTensionForce(mesh, 1, [5] * COUNT),
             "rigidity": helfrich.BendingForce(mesh, [30.0] * (COUNT - 1) + [31.0]),
             "elsewhere": helfrich.BendingForce(mesh, [30.0] * (COUNT - 1) + [31.0]),
@@ -285,7 +293,7 @@ class TestRules:
         integrator.step(20)
         found = mover.getStatistics(context)
         tried = found["attempts"] - found["refused"]["kind"]
-        if what in ("nothing", "one domain"):
+        if what == "one domain":
             assert tried == 0
         else:
             degree = np.count_nonzero(mesh.edges == COUNT - 1)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import openmm as mm
 import openmmhelfrich as helfrich
 import pytest
 from openmm import unit
@@ -60,3 +61,51 @@ def test_forces_take_them():
 def test_mistakes_are_named(domains, table, error, words):
     with pytest.raises(error, match=rf"^values_of_domains: .*{words}"):
         helfrich.values_of_domains(domains, table)
+
+
+@pytest.mark.parametrize(
+    ("domains", "table", "message"),
+    [
+        ([0], [{"rigidity": 1}], "the table needs a mapping of domains"),
+        ([0], {0: 1.0}, "domain 0 needs a mapping of names to values, got 1.0"),
+        ([0] * unit.nanometer, {0: {"rigidity": 1}}, "domains are numbers without a unit"),
+    ],
+)
+def test_tables_that_are_none(domains, table, message):
+    with pytest.raises(TypeError, match=f"values_of_domains: {message}"):
+        helfrich.values_of_domains(domains, table)
+
+
+def test_values_that_are_not_finite():
+    with pytest.raises(ValueError, match="'rigidity' of domain 2 must be finite, got nan"):
+        helfrich.values_of_domains([2], {2: {"rigidity": np.nan}})
+
+
+@pytest.mark.parametrize(
+    ("make", "setter", "list_"),
+    [
+        (helfrich.BendingForce, "setRigidity", "getVertexRigidity"),
+        (helfrich.GaussianCurvatureForce, "setModulus", "getVertexModulus"),
+    ],
+)
+def test_a_scalar_takes_the_place_of_values(make, setter, list_):
+    """In a Context, too."""
+    mesh = helfrich.Mesh.icosphere(1, 5.0)
+    force, plain = make(mesh, np.linspace(1, 2, 12)), make(mesh, 3.0)
+    system = mm.System()
+    for _ in range(12):
+        system.addParticle(1)
+    system.addForce(force)
+    context = mm.Context(system, mm.VerletIntegrator(1), mm.Platform.getPlatformByName("Reference"))
+    context.setPositions(mesh.vertices)
+    getattr(force, setter)(3.0)
+    assert len(getattr(force, list_)()) == 0
+    force.updateParametersInContext(context)
+    energy = context.getState(energy=True).getPotentialEnergy()._value
+    assert energy == pytest.approx(mesh.energy(plain), rel=1e-12)
+
+
+def test_indices_have_no_unit():
+    mesh = helfrich.Mesh.icosphere(1, 5.0)
+    with pytest.raises(TypeError, match="PressureForce: triangles are particle indices"):
+        helfrich.PressureForce(mesh.triangles * unit.nanometer, 1)
