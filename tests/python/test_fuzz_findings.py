@@ -35,3 +35,19 @@ def test_huge_coordinates_name_the_triangle(tmp_path, options):
     rows = ["-1e308 0 0", "1e308 0 0", "0 1e200 0", *ROWS[3:]]
     said = refused(tmp_path / "m.ply", ply(rows=rows), **options)
     assert said.startswith("Mesh.read: m.ply: ") and "triangle 0" in said
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("element face", "element vertex 3\nproperty float a\nelement face", "'vertex'"),
+        ("property float y", "property float x", "'x'"),
+        ("list uchar int", "list float int", "vertex_indices"),
+        ("list uchar int", "list uchar float", "vertex_indices"),
+        ("element face", "element other 9\nelement face", "'other'"),
+    ],
+)
+@pytest.mark.parametrize("form", ["ascii", "binary_little_endian"])
+def test_ply_headers_that_contradict_themselves(tmp_path, old, new, words, form):
+    said = refused(tmp_path / "m.ply", ply((old, new), ("format ascii", f"format {form}")))
+    assert said.startswith("Mesh.read: m.ply, line ") and words in said
