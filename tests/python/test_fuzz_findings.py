@@ -51,3 +51,38 @@ def test_huge_coordinates_name_the_triangle(tmp_path, options):
 def test_ply_headers_that_contradict_themselves(tmp_path, old, new, words, form):
     said = refused(tmp_path / "m.ply", ply((old, new), ("format ascii", f"format {form}")))
     assert said.startswith("Mesh.read: m.ply, line ") and words in said
+
+
+@pytest.mark.parametrize("count", ["3000000000000", "9" * 30])
+def test_vtk_counts_take_no_more_memory_than_the_file(tmp_path, count):
+    lines = ["# vtk DataFile Version 3.0", "x", "ASCII", "DATASET POLYDATA"]
+    said = refused(tmp_path / "m.vtk", "\n".join([*lines, f"POINTS {count} float", "0"]).encode())
+    assert said.startswith("Mesh.read: m.vtk, line 5: ") and "points need" in said
+
+
+def test_vtk_indices_beyond_64_bits(tmp_path):
+    lines = ["# vtk DataFile Version 3.0", "x", "ASCII", "DATASET POLYDATA", "POINTS 3 float"]
+    lines += [*ROWS[:3], "POLYGONS 1 4", f"3 0 1 {'9' * 30}"]
+    said = refused(tmp_path / "m.vtk", "\n".join(lines).encode())
+    assert said.startswith("Mesh.read: m.vtk, line 10: expected numbers")
+
+
+@pytest.mark.parametrize("word", ["1_0", "\u0661"])
+@pytest.mark.parametrize("extension", ["ply", "obj", "off", "vtk", "vtp"])
+def test_only_python_takes_these_for_numbers(tmp_path, extension, word):
+    path = tmp_path / f"m.{extension}"
+    mesh = Mesh.icosphere(1, 10)
+    if extension == "vtp":
+        points = " ".join(["1"] * 8 + [word])
+        data = (
+            '<VTKFile type="PolyData"><PolyData><Piece NumberOfPoints="3"><Points>'
+            f'<DataArray type="Float64">{points}</DataArray></Points></Piece></PolyData></VTKFile>'
+        )
+    else:
+        mesh.write(path)
+        first = repr(mesh.vertices[0, 1].item())
+        data = path.read_text()
+        assert first in data
+        data = data.replace(first, word, 1)
+    said = refused(path, data.encode())
+    assert "number" in said or "coordinates" in said or "cannot be read" in said

@@ -17,7 +17,7 @@ import numpy as np
 
 from ..errors import MeshError
 from .cells import Cells, polydata_cells
-from .source import Source, shorten
+from .source import Source, plain, shorten
 
 __all__ = ["read"]
 
@@ -163,7 +163,7 @@ class _Reader:
         text = element.text or ""
         try:
             if form == "ascii":
-                return np.array(text.split(), dtype=wanted)
+                return np.array(plain(text.split()), dtype=wanted)
             if form == "binary":
                 data = self._from_base64("".join(text.split()).encode())
             else:
