@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from openmmhelfrich import Mesh, MeshError
+from openmmhelfrich import Mesh, MeshError, config, vcm
 
 HEADER = ["ply", "format ascii 1.0", "element vertex 3", "property float x", "property float y"]
 HEADER += ["property float z", "element face 1", "property list uchar int vertex_indices"]
@@ -86,3 +86,36 @@ def test_only_python_takes_these_for_numbers(tmp_path, extension, word):
         data = data.replace(first, word, 1)
     said = refused(path, data.encode())
     assert "number" in said or "coordinates" in said or "cannot be read" in said
+
+
+@pytest.mark.filterwarnings("error")
+def test_signalling_nan_is_named_without_a_warning(tmp_path):
+    facets = np.zeros(1, [("normal", "<f4", 3), ("corners", "<u4", (3, 3)), ("attribute", "<u2")])
+    facets["corners"] = 0x7FA00000
+    data = bytes(80) + (1).to_bytes(4, "little") + facets.tobytes()
+    assert "not finite" in refused(tmp_path / "m.stl", data)
+
+
+# --- configurations ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("[output]\ninterval = " + "9" * 5000, ":2: an integer has 5000 digits"),
+        ("# x\na = " + "[" * 20000, ":2: arrays or tables are nested too deeply"),
+    ],
+)
+def test_toml_that_python_refuses(tmp_path, text, words):
+    path = tmp_path / "run.toml"
+    path.write_text(text)
+    with pytest.raises(vcm.ConfigError, match=f"run.toml{words}"):
+        config.read(path)
+
+
+@pytest.mark.parametrize("word", ["1_0", "\u0661"])
+def test_numbers_of_vcm_are_those_of_c(tmp_path, word):
+    path = tmp_path / "run.txt"
+    path.write_text(f"-GeneralParameters\nSeed {word}\nFrictionIninvertPs {word}\n-Membrane 0\n")
+    with pytest.raises(vcm.ConfigError, match="run.txt:2: key Seed: expected an integer"):
+        vcm.read(path)
