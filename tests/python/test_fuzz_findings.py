@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import struct
+
+import meshes
 import numpy as np
+import openmm as mm
+import openmmhelfrich as helfrich
 import pytest
 from openmmhelfrich import Mesh, MeshError, config, vcm
 
@@ -119,3 +124,51 @@ def test_numbers_of_vcm_are_those_of_c(tmp_path, word):
     path.write_text(f"-GeneralParameters\nSeed {word}\nFrictionIninvertPs {word}\n-Membrane 0\n")
     with pytest.raises(vcm.ConfigError, match="run.txt:2: key Seed: expected an integer"):
         vcm.read(path)
+
+
+# --- saved states and connectivity ---------------------------------------------------------------
+
+
+@pytest.fixture
+def flowing():
+    """A Context with all that a saved state has, and a force on its triangles."""
+    membrane = meshes.membrane("octahedron")
+    bending = helfrich.BendingForce(membrane.triangles, 50)
+    bending.setUsesPeriodicBoundaryConditions(True)
+    system = mm.System()
+    for _ in range(membrane.num_particles):
+        system.addParticle(50)
+    system.setDefaultPeriodicBoxVectors((900, 0, 0), (0, 900, 0), (0, 0, 900))
+    for force in (
+        bending,
+        helfrich.MonteCarloBondFlip(membrane.triangles, 300, 1, 0.5),
+        helfrich.MonteCarloMembraneTension(300, 0.0),
+    ):
+        system.addForce(force)
+    platform = mm.Platform.getPlatformByName("Helfrich")
+    context = mm.Context(system, mm.VerletIntegrator(1e-4), platform)
+    context.setPositions(membrane.positions)
+    context.getIntegrator().step(3)
+    return context, bending
+
+
+def checksummed(data: bytes) -> bytes:
+    """With FNV-1a, as the library writes it."""
+    found = 0xCBF29CE484222325
+    for byte in data:
+        found = (found ^ byte) * 0x100000001B3 % 2**64
+    return data + struct.pack("<Q", found)
+
+
+@pytest.mark.parametrize(
+    ("at", "count"), [(16, -1), (16, 9), (16, 2**30), (20, -1), (20, 5), (20, 2**30)]
+)
+def test_counts_that_do_not_fit_the_connectivity(flowing, at, count):
+    """The checksum is right: these read beyond the end, or asked for all memory."""
+    context, force = flowing
+    saved = force._saveConnectivity(context)
+    wrong = saved[:at] + struct.pack("<i", count) + saved[at + 4 : -8]
+    for data in (checksummed(wrong), checksummed(saved[:30]), checksummed(saved[:-9]), b"x"):
+        with pytest.raises(mm.OpenMMException, match="saved connectivity is damaged"):
+            force._restoreConnectivity(context, data)
+    assert force._saveConnectivity(context) == saved
