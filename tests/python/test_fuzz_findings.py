@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import io
 import struct
+import zipfile
 
 import meshes
 import numpy as np
 import openmm as mm
 import openmmhelfrich as helfrich
 import pytest
-from openmmhelfrich import Mesh, MeshError, config, vcm
+from openmmhelfrich import Mesh, MeshError, _blocks, config, vcm
 
 HEADER = ["ply", "format ascii 1.0", "element vertex 3", "property float x", "property float y"]
 HEADER += ["property float z", "element face 1", "property list uchar int vertex_indices"]
@@ -172,3 +174,52 @@ def test_counts_that_do_not_fit_the_connectivity(flowing, at, count):
         with pytest.raises(mm.OpenMMException, match="saved connectivity is damaged"):
             force._restoreConnectivity(context, data)
     assert force._saveConnectivity(context) == saved
+
+
+def in_place_of(blocks: dict, name: str, value) -> bytes:
+    changed = dict(blocks)
+    if value is None:
+        del changed[name]
+    else:
+        changed[name] = _blocks.Block(value)
+    return _blocks.pack("state", changed)
+
+
+def test_blocks_of_other_types_change_nothing(flowing, tmp_path):
+    context, force = flowing
+    path = tmp_path / "run.state"
+    helfrich.save_state(context, path)
+    names = ("positions", "velocities", "box", "parameters", "clock", "connectivity", "tension")
+    blocks = _blocks.unpack(path.read_bytes(), "state", dict.fromkeys(names, 1))
+    context.getIntegrator().step(2)
+
+    def present():
+        state = context.getState(positions=True, velocities=True)
+        return str(state.getPositions()), str(state.getTime()), force._saveConnectivity(context)
+
+    before = present()
+    wild = [np.zeros((2, 3)), np.zeros(3), np.array(["x"]), b"x", {"step": 3}, [1], 7]
+    wild += [{"time": "0x1p+0", "step": 2**63}, {"time": "0x1p+9999", "step": 1}, {"a": "x"}]
+    count = 0
+    for name in blocks:
+        for value in wild:
+            # Nothing says how much bytes mean but the force, which is asked then.
+            path.write_bytes(in_place_of(blocks, name, value))
+            with pytest.raises((ValueError, mm.OpenMMException)) as caught:
+                helfrich.load_state(context, path)
+            assert "run.state" in str(caught.value) or "saved" in str(caught.value)
+            assert present() == before
+            count += 1
+    assert count == len(blocks) * len(wild)
+
+
+def test_files_of_blocks_by_another_hand(flowing, tmp_path):
+    """Under a checksum that is right: no archive, and one without an index."""
+    path = tmp_path / "run.state"
+    empty = io.BytesIO()
+    zipfile.ZipFile(empty, "w").close()
+    for body in (b"no archive", empty.getvalue()):
+        head = _blocks._HEAD.pack(_blocks._MAGIC, 1, 52 + len(body))
+        path.write_bytes(head + _blocks._digest(head, body) + body)
+        with pytest.raises(ValueError, match=r"run\.state is not made as"):
+            helfrich.load_state(flowing[0], path)
