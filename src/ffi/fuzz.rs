@@ -432,6 +432,8 @@ impl Bench {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
     #[test]
     fn calls_succeed_or_say_why_not(
         round in any::<bool>(),

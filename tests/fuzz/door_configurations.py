@@ -16,7 +16,7 @@ _LARGE = re.compile(rb"(icosphere|random|sheet|tube|disk)\s*=\s*\[?\s*[\d_]{3,}"
 _SMALL = [
     (rb"random *= *\d+", b"random = 42"),
     (rb"icosphere *= *\d+", b"icosphere = 2"),
-    (rb"sheet *= *\[[^\]]*\]", b"sheet = [6, 6]"),
+    (rb"sheet *= *\[[^\]]*\]", b"sheet = [10, 10]"),
 ]
 _TOML = b"""
 simulation.duration = 0.4
@@ -108,7 +108,7 @@ SurfaceConstraint GWCAH 0.3
 SurfaceConstraintCoeff 40
 VolumeConstraint G
 VolumeConstraintCoeff 40
-DihedralModel Dihedral
+DihedralBendingModel smoothTheta4
 DihedralBendingCoeff 10
 -Membrane 1 from 0
 CoordinateTranslateVector 300 0 0

@@ -1,4 +1,4 @@
-"""What a door is: where inputs come from, how they are changed, and what is wrong with an answer."""
+"""What a door is: where inputs come from, how they change, and what is wrong with an answer."""
 
 from __future__ import annotations
 

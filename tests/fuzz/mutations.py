@@ -99,16 +99,17 @@ def _replaced(line: str, pattern: re.Pattern, by: str, random: Random) -> str:
     return line[: match.start()] + by + line[match.end() :]
 
 
-def xml(data: bytes, random: Random, within: str | None = None) -> bytes:
+def xml(data: bytes, random: Random, within: str | None = None, only_values: bool = False) -> bytes:
     """Attributes and elements changed, left out, repeated, renamed; sometimes text.
 
     `within` is the path of the elements that are changed with all below them; default: the root.
+    With `only_values` what is there stays there, with other values.
     """
     try:
         root = ElementTree.fromstring(data)
     except ElementTree.ParseError:
         return text(data, random)
-    if random.random() < 0.05:
+    if random.random() < 0.05 and not only_values:
         return text(data, random)
     roots = [root] if within is None else root.findall(within)
     for _ in range(random.choice((1, 1, 1, 2, 4))):
@@ -122,8 +123,8 @@ def xml(data: bytes, random: Random, within: str | None = None) -> bytes:
         element = random.choice(kinds[random.choice(list(kinds))])
         parent = parents.get(element)
         name = random.choice(list(element.attrib) or ["value"])
-        match random.randrange(8):
-            case 0 | 1 | 2:
+        match random.randrange(3 if only_values else 8):
+            case 0 | 1 | 2 if name in element.attrib:
                 element.set(name, random.choice(NUMBERS))
             case 3 if element.attrib:
                 del element.attrib[name]
@@ -137,4 +138,4 @@ def xml(data: bytes, random: Random, within: str | None = None) -> bytes:
             case 7:
                 element.tag = random.choice([*kinds, "Extra"])
     # XML has no control characters.
-    return ElementTree.tostring(root).replace(b"\0", b"").replace(b"&#0;", b"")
+    return ElementTree.tostring(root, encoding="unicode").replace("\0", "").encode()

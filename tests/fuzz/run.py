@@ -14,6 +14,7 @@ import contextlib
 import faulthandler
 import hashlib
 import importlib
+import os
 import random
 import re
 import resource
@@ -32,6 +33,8 @@ MODULES = {
     "door_saved": ("saved", "connectivity", "checkpoint"),
     "door_expressions": ("expression",),
 }
+#: Rust's own, in src/ffi/fuzz.rs, has no files: its seed does it again.
+RUST, RUST_CASES = "ffi", 50_000
 DOORS = [name for names in MODULES.values() for name in names]
 #: An input that takes longer hangs, s; it may take so much memory more, bytes.
 TIME, MEMORY = 10, 3 << 30
@@ -91,7 +94,9 @@ class Session:
         path = self.out / f"fault-{hashlib.sha256(data).hexdigest()[:12]}"
         path.write_bytes(data)
         path.with_suffix(".txt").write_text("".join(traceback.format_exception(fault)))
-        print(f"FAULT {self.door.name} {kind}: {str(fault)[:300]}\n  {replay(self.door.name, path)}")
+        print(
+            f"FAULT {self.door.name} {kind}: {str(fault)[:300]}\n  {replay(self.door.name, path)}"
+        )
 
     def plain(self, seed: int) -> None:
         """Inputs changed at random, some of them again and again."""
@@ -184,11 +189,36 @@ def run(name: str, seconds: float, seed: int, guided: bool) -> tuple[int, int]:
     return cases, faults
 
 
+def run_rust(seconds: float, seed: int) -> tuple[int, int]:
+    """The properties of src/ffi/fuzz.rs for some time, with one seed after another."""
+    end = time.monotonic() + seconds
+    cases, faults = 0, 0
+    while time.monotonic() < end:
+        setting = {
+            "PROPTEST_CASES": str(RUST_CASES),
+            "PROPTEST_RNG_SEED": str(seed + faults + cases),
+        }
+        command = ["cargo", "test", "-q", "--release", "--locked", "--lib", "ffi::fuzz"]
+        done = subprocess.run(
+            command, capture_output=True, text=True, cwd=ROOT, env={**os.environ, **setting}
+        )
+        passed = re.search(r"(\d+) passed", done.stdout)
+        cases += RUST_CASES * int(passed.group(1)) if passed else 0
+        if done.returncode != 0:
+            faults += 1
+            again = " ".join([*(f"{name}={value}" for name, value in setting.items()), *command])
+            out = ROOT / "out" / "fuzz" / RUST
+            out.mkdir(parents=True, exist_ok=True)
+            (out / f"fault-{seed + faults}.txt").write_text(done.stdout + done.stderr)
+            print(f"FAULT {RUST}: {done.stdout[-400:]}\n  {again}", flush=True)
+    return cases, faults
+
+
 def main() -> int:
     """What the command line says; 1 if there was a fault."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--minutes", type=float, default=5, help="for all doors together")
-    parser.add_argument("--door", action="append", choices=DOORS, help="default: all")
+    parser.add_argument("--door", action="append", choices=[*DOORS, RUST], help="default: all")
     parser.add_argument("--seed", type=int, default=int(time.time()), help="default: the time")
     parser.add_argument("--plain", action="store_true", help="without atheris")
     parser.add_argument("--replay", nargs=2, metavar=("DOOR", "FILE"), help="one input again")
@@ -203,12 +233,16 @@ def main() -> int:
         out = ROOT / "out" / "fuzz" / given.child
         child(given.child, given.seconds, given.seed, out, not given.plain)
         return 0
-    doors = given.door or DOORS
+    doors = given.door or [*DOORS, RUST]
     total = 0
     for number, name in enumerate(doors):
         seed = (given.seed + 1000 * number) % 2**31
         start = time.monotonic()
-        cases, faults = run(name, 60 * given.minutes / len(doors), seed, not given.plain)
+        seconds = 60 * given.minutes / len(doors)
+        if name == RUST:
+            cases, faults = run_rust(seconds, seed)
+        else:
+            cases, faults = run(name, seconds, seed, not given.plain)
         total += faults
         spent = time.monotonic() - start
         print(f"{name}: seed {seed}, {spent:.0f} s, {cases} cases, {faults} faults", flush=True)

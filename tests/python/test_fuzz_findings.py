@@ -12,6 +12,7 @@ import openmm as mm
 import openmmhelfrich as helfrich
 import pytest
 from openmmhelfrich import Mesh, MeshError, _blocks, config, vcm
+from openmmhelfrich.vcm.expressions import Expression, ExpressionError
 
 HEADER = ["ply", "format ascii 1.0", "element vertex 3", "property float x", "property float y"]
 HEADER += ["property float z", "element face 1", "property list uchar int vertex_indices"]
@@ -124,7 +125,7 @@ def test_toml_that_python_refuses(tmp_path, text, words):
 def test_numbers_of_vcm_are_those_of_c(tmp_path, word):
     path = tmp_path / "run.txt"
     path.write_text(f"-GeneralParameters\nSeed {word}\nFrictionIninvertPs {word}\n-Membrane 0\n")
-    with pytest.raises(vcm.ConfigError, match="run.txt:2: key Seed: expected an integer"):
+    with pytest.raises(vcm.ConfigError, match=r"run\.txt:2: key Seed: expected an integer"):
         vcm.read(path)
 
 
@@ -223,3 +224,31 @@ def test_files_of_blocks_by_another_hand(flowing, tmp_path):
         path.write_bytes(head + _blocks._digest(head, body) + body)
         with pytest.raises(ValueError, match=r"run\.state is not made as"):
             helfrich.load_state(flowing[0], path)
+
+
+# --- expressions ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("point", ["p\u00b2", "p" + "9" * 5000])
+def test_points_that_python_takes_for_numbers(point):
+    with pytest.raises(ExpressionError, match="is no particle"):
+        Expression(f"distance(p1,{point})", 2)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "flips = { attempts_per_edge = 4294967295 }",
+        "flips = { frequency = 4294967296 }",
+        "flips = { min_degree = 9, max_degree = 4 }",
+        "viscosity = { friction = 1, frequency = 4294967296 }",
+    ],
+)
+def test_toml_that_movers_refuse(tmp_path, line):
+    path = tmp_path / "run.toml"
+    start = (
+        "simulation.duration = 1\nintegrator.time_step = 0.1\noutput.interval = 1\n[[vesicle]]\n"
+    )
+    path.write_text(f"{start}{line}\nmesh = {{ icosphere = 2, radius = 30 }}\n")
+    with pytest.raises(vcm.ConfigError, match=r"run\.toml:[45]: key vesicle"):
+        config.read(path)

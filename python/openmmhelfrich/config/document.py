@@ -68,10 +68,14 @@ class Document:
         except RecursionError:
             depths = [line.count("[") + line.count("{") for line in text.splitlines()]
             line = depths.index(max(depths)) + 1
-            raise ConfigError(f"{self.path}:{line}: arrays or tables are nested too deeply") from None
+            raise ConfigError(
+                f"{self.path}:{line}: arrays or tables are nested too deeply"
+            ) from None
         except ValueError:
             # Python refuses thousands of digits before TOML is asked.
-            digits = [max(map(len, re.findall(r"[\d_]+", line)), default=0) for line in text.splitlines()]
+            digits = [
+                max(map(len, re.findall(r"[\d_]+", line)), default=0) for line in text.splitlines()
+            ]
             line = digits.index(max(digits)) + 1
             raise ConfigError(
                 f"{self.path}:{line}: an integer has {max(digits)} digits; write it as a float"
