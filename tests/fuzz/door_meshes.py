@@ -47,7 +47,8 @@ def _plys() -> list[bytes]:
     mesh = _meshes()[0]
     head = (
         "ply\nformat {0} 1.0\nobj_info none\nelement vertex 12\nproperty float x\n"
-        "property float y\nproperty double z\nproperty uchar red\nelement face 20\nproperty ushort flags\n"
+        "property float y\nproperty double z\nproperty uchar red\nelement face 20\n"
+        "property ushort flags\n"
         "property list uchar {1} vertex_index\nelement edge 1\nproperty list int short ends\n"
         "end_header\n"
     )

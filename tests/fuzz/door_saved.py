@@ -186,18 +186,21 @@ def _checksum(data: bytes) -> int:
 
 
 def _check_checkpoint(data: bytes) -> None:
+    end = _end_of_parameters()
+    if data[:end] != _checkpoint()[:end]:
+        return
     _loaded(lambda: _context()[0].loadCheckpoint(data))
 
 
 @cache
 def _end_of_parameters() -> int:
+    """What comes before is OpenMM's, which believes any number of parameters that it says."""
     data = _checkpoint()
     names = [name.encode() for name in _context()[0].getParameters()]
     return max(data.rfind(name) + len(name) + 8 for name in names)
 
 
 def _change_checkpoint(data: bytes, random: Random) -> bytes:
-    """Behind the parameters: those before are OpenMM's, which believes any count of them."""
     start = _end_of_parameters()
     saved = _connectivity()
     at = data.find(saved[:20])
