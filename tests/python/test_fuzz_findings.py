@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import io
+import os
+import shutil
 import struct
+import subprocess
+import sys
 import zipfile
 
 import meshes
@@ -252,3 +256,29 @@ def test_toml_that_movers_refuse(tmp_path, line):
     path.write_text(f"{start}{line}\nmesh = {{ icosphere = 2, radius = 30 }}\n")
     with pytest.raises(vcm.ConfigError, match=r"run\.toml:[45]: key vesicle"):
         config.read(path)
+
+
+# --- XML -----------------------------------------------------------------------------------------
+
+ELSEWHERE = """
+import locale
+import openmm as mm
+import openmmhelfrich as helfrich
+
+locale.setlocale(locale.LC_NUMERIC, "de_DE.UTF-8")
+assert locale.localeconv()["decimal_point"] == ","
+force = helfrich.BendingForce([(0, 1, 2), (0, 2, 3), (0, 3, 1), (1, 3, 2)], 1.5)
+text = mm.XmlSerializer.serialize(force)
+assert mm.XmlSerializer.serialize(mm.XmlSerializer.deserialize(text)) == text and "1.5" in text
+"""
+
+
+def test_xml_in_a_locale_with_a_comma(tmp_path):
+    """As a program with windows sets it, in whose Python a System is read."""
+    command = ["localedef", "-i", "de_DE", "-f", "UTF-8", tmp_path / "de_DE.UTF-8"]
+    if shutil.which("localedef") is None or subprocess.run(command, capture_output=True).returncode:
+        pytest.skip("no locale with a comma can be made")
+    places = {**os.environ, "LOCPATH": str(tmp_path)}
+    command = [sys.executable, "-c", ELSEWHERE]
+    done = subprocess.run(command, env=places, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr

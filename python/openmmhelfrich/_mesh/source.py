@@ -130,10 +130,13 @@ class Source:
 
     def integer(self, word: str, what: str) -> int:
         """One integer."""
+        # As in `plain`, for many words.
         try:
-            return int(*plain([word]))
+            if word.isascii() and "_" not in word:
+                return int(word)
         except ValueError:
-            raise self.error(f"{what} must be an integer, got {shorten([word])}") from None
+            pass
+        raise self.error(f"{what} must be an integer, got {shorten([word])}")
 
     def face(self, words: list[str], face: int, num_vertices: int) -> list[int]:
         """The corners of a face that is written as a count and as many indices."""
