@@ -3,6 +3,7 @@
 //! `PROPTEST_CASES=100000 cargo test --release --lib ffi::fuzz` looks longer, and `PROPTEST_RNG_SEED` elsewhere.
 
 use super::*;
+use crate::dynamics::random::Stream;
 use crate::membrane::Membrane;
 use crate::mesh::{Topology, Triangulation};
 use crate::moves::{FlipRules, FlipState, SwapRules, SwapState};
@@ -523,5 +524,79 @@ proptest! {
         let numbers = unsafe { Helfrich_Numbers_create(ptr::null(), [1.0; 3].as_ptr(), 3, ptr::null()) };
         let kept = Kept { field: Vec::new(), numbers };
         unsafe { Helfrich_Numbers_rearrange(kept.numbers, [2.0; 2].as_ptr(), 2, 7) };
+    }
+
+    /// Positions, velocities, forces and masses of any size, in any order of calls.
+    #[test]
+    fn time_steps_end(
+        numbers in vec(number(), 54),
+        masses in vec(prop_oneof![3 => 0.5f64..90.0, 1 => Just(0.0), 1 => number()], 6),
+        settings in prop::array::uniform8(number()),
+        round in vec(0u8..8, 1..12),
+        corners in vec(prop::array::uniform3(index(6)), 0..3),
+        is_periodic in 0..2,
+    ) {
+        let (vertices, triangles) = octahedron();
+        let triangles: Vec<_> = triangles.iter().map(|t| t.map(|v| v as c_int)).collect();
+        let near = vertices.into_iter().flatten().zip(&numbers);
+        let mut positions: Vec<f64> = near.map(|(x, noise)| if noise.abs() < 2.5 { x } else { *noise }).collect();
+        let mut velocities = numbers[18..36].to_vec();
+        let forces = numbers[36..].to_vec();
+        let arrays = ParticleArrays {
+            num_particles: 6,
+            positions: positions.as_mut_ptr(),
+            velocities: velocities.as_mut_ptr(),
+            forces: forces.as_ptr(),
+        };
+        let subject = c"Fuzz".as_ptr();
+        let vectors = [[9.0, 0.0, 0.0], [0.0, 9.0, 0.0], [0.0, 0.0, settings[6]]];
+        let vectors = if is_periodic == 1 { &vectors } else { ptr::null() };
+        let [step, friction, kt, density, lag, time, ..] = settings;
+        let mut stream = Stream { key: [1, 2], draws: u64::MAX - 3 };
+        let (mut membrane, mut steps) = (ptr::null_mut(), ptr::null_mut());
+        let (mut viscosity, mut variable) = (ptr::null_mut(), ptr::null_mut());
+        unsafe {
+            let count = triangles.len() as i64;
+            told(Helfrich_Membrane_create(subject, triangles.as_ptr().cast(), count, 6, &mut membrane))?;
+            told(dynamics::Helfrich_Dynamics_create(6, masses.as_ptr(), &mut steps))?;
+            told(Helfrich_Viscosity_create(subject, membrane, 6, masses.as_ptr(), &mut viscosity))?;
+            told(Helfrich_VariableMasses_create(subject, 6, masses.as_ptr(), density, &mut variable))?;
+        }
+        let team = ptr::null_mut();
+        for call in round {
+            let mut out = [0.0; 6];
+            let bath = EdgeBath { friction, kt, lag };
+            told(unsafe {
+                match call {
+                    0 => dynamics::Helfrich_Dynamics_verlet(steps, team, &arrays, step),
+                    1 => dynamics::Helfrich_Dynamics_langevinMiddle(
+                        steps, team, &arrays, &mut stream, step, friction, kt,
+                    ),
+                    2 => Helfrich_Viscosity_sweep(
+                        subject, viscosity, membrane, 6, arrays.positions, arrays.velocities, vectors, &bath,
+                        &mut stream,
+                    ),
+                    3 => {
+                        let mut all = triangles.clone();
+                        all.extend(&corners);
+                        let num_triangles = all.len() as i64;
+                        let sheet = SheetInput { corners: all.as_ptr().cast(), num_triangles, is_periodic };
+                        Helfrich_VariableMasses_setSurfaces(subject, variable, &sheet, 1)
+                    }
+                    4 => Helfrich_VariableMasses_begin(subject, variable, team, &arrays, vectors, step),
+                    5 => Helfrich_VariableMasses_finish(subject, variable, team, &arrays, vectors, step),
+                    6 => Helfrich_VariableMasses_bathe(
+                        subject, variable, team, &arrays, vectors, &mut stream, time, friction, kt,
+                    ),
+                    _ => Helfrich_VariableMasses_get(subject, variable, &arrays, vectors, out.as_mut_ptr()),
+                }
+            })?;
+        }
+        unsafe {
+            Helfrich_Membrane_destroy(membrane);
+            dynamics::Helfrich_Dynamics_destroy(steps);
+            Helfrich_Viscosity_destroy(viscosity);
+            Helfrich_VariableMasses_destroy(variable);
+        }
     }
 }
