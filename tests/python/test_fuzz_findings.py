@@ -100,6 +100,12 @@ def test_only_python_takes_these_for_numbers(tmp_path, extension, word):
     assert "number" in said or "coordinates" in said or "cannot be read" in said
 
 
+def test_vtk_announces_a_number_of_thousands_of_digits(tmp_path):
+    data = f'<VTKFile type="PolyData"><PolyData><Piece NumberOfPoints="{"9" * 5000}"><Points>'
+    data += "<DataArray type='Float64'>0 0 0</DataArray></Points></Piece></PolyData></VTKFile>"
+    assert "points were announced" in refused(tmp_path / "m.vtp", data.encode())
+
+
 @pytest.mark.filterwarnings("error")
 def test_signalling_nan_is_named_without_a_warning(tmp_path):
     facets = np.zeros(1, [("normal", "<f4", 3), ("corners", "<u4", (3, 3)), ("attribute", "<u2")])

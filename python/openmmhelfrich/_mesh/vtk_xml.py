@@ -106,7 +106,8 @@ class _Reader:
             if announced == "0":
                 continue
             array = self._array(piece, "Points", None, np.float64)
-            if not announced.isdecimal() or len(array) != 3 * int(announced):
+            # Compared as text: Python makes no integer of thousands of digits.
+            if len(array) % 3 or announced.lstrip("0") != str(len(array) // 3):
                 raise self._error(
                     f"{announced or 'no'} points were announced, but there are {len(array)} "
                     "coordinates, not three for each",
