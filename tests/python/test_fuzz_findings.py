@@ -49,6 +49,13 @@ def test_huge_coordinates_name_the_triangle(tmp_path, options):
     assert said.startswith("Mesh.read: m.ply: ") and "triangle 0" in said
 
 
+def test_merging_what_is_in_the_same_place_only(tmp_path):
+    rows = [*ROWS[:3], "1e-200 0 0", "-1 0 0", "0 -1 0", "3 0 1 2", "3 3 4 5", ""]
+    data = ply(("vertex 3", "vertex 6"), ("face 1", "face 2"), rows=rows)
+    (tmp_path / "m.ply").write_bytes(data)
+    assert Mesh.read(tmp_path / "m.ply", merge=0).num_vertices == 6
+
+
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [

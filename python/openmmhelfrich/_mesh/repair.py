@@ -39,6 +39,9 @@ def merge(
             f"merge={distance:g} joins more than {_MANY} vertices with each; take "
             "a smaller distance"
         )
+    if distance == 0:
+        # The square of a difference can be too small for a number.
+        pairs = pairs[(points[pairs[:, 0]] == points[pairs[:, 1]]).all(axis=1)]
     links = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(points), len(points)))
     _, group = connected_components(links, directed=False)
     _, first = np.unique(group, return_index=True)
