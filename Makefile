@@ -18,7 +18,7 @@ CPP := $(wildcard $(foreach any,wrappers/* wrappers/*/* wrappers/*/*/* tests/cpp
 PY := $(wildcard .ci setup.py python tests examples benches)
 
 .DEFAULT_GOAL := build
-.PHONY: build test lint format wheel demo paper bench clean help check-tools test-rust test-package test-python FORCE
+.PHONY: build test lint format wheel demo paper bench fuzz clean help check-tools test-rust test-package test-python FORCE
 
 build: $(VENV)/.installed ## build everything and install it in .venv (the default)
 	@echo "openmm-helfrich is installed in .venv; try: make demo"
@@ -82,6 +82,12 @@ bench: build ## race evaluations, time steps and the paper's Table III; BENCH=--
 	@$(VENV)/bin/python benches/many_steps.py $(findstring --quick,$(BENCH))
 	@$(VENV)/bin/python benches/steps.py $(BENCH)
 	@$(VENV)/bin/python benches/table3.py $(findstring --quick,$(BENCH))
+
+# Each door gets the same part of the time; what is found is in out/fuzz.
+fuzz: build ## look for faults at random for MINUTES (default 10); SEED goes where it says
+	@$(PIP) install atheris==3.0.0 || echo "fuzz: without atheris, inputs are changed blindly" >&2
+	@PYTHON=$(VENV)/bin/python OPENMM_DIR=$(OPENMM) $(VENV)/bin/python tests/fuzz/run.py \
+	    --minutes $(or $(MINUTES),10) $(if $(SEED),--seed $(SEED))
 
 clean: ## remove everything that was built, .venv too
 	rm -rf $(VENV) build dist target out python/*.egg-info

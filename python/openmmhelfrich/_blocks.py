@@ -144,21 +144,32 @@ def unpack(data: bytes, kind: str, known: Mapping[str, int]) -> dict[str, Block]
         raise DamagedError("is damaged: its contents do not have the checksum that it says")
     if layout > _LAYOUT:
         raise BlockError(f"has layout {layout} of a newer openmm-helfrich, which can read it")
-    with zipfile.ZipFile(io.BytesIO(body)) as file:
-        index = json.loads(file.read(_INDEX))
-        if index["kind"] != kind:
-            raise BlockError(f"is a file of the kind {index['kind']!r}, not {kind!r}")
-        found = {}
-        for name, entry in index["blocks"].items():
-            newest = known.get(name.partition("/")[0], 0)
-            if entry["version"] <= newest:
-                value = _decode(entry["entry"], file.read(entry["entry"]))
-                found[name] = Block(value, entry["version"], entry["required"])
-            elif entry["required"]:
-                raise BlockError(
-                    f"has {name!r} in version {entry['version']}, of a newer openmm-helfrich, "
-                    "which can read it"
-                )
+    try:
+        with zipfile.ZipFile(io.BytesIO(body)) as file:
+            return _read(file, kind, known)
+    except BlockError:
+        raise
+    # A checksum can be right for contents that nobody here has written.
+    except (zipfile.BadZipFile, LookupError, TypeError, AttributeError, ValueError) as reason:
+        raise BlockError(f"is not made as openmm-helfrich makes its files: {reason}") from None
+
+
+def _read(file: zipfile.ZipFile, kind: str, known: Mapping[str, int]) -> dict[str, Block]:
+    """The blocks in an archive."""
+    index = json.loads(file.read(_INDEX))
+    if index["kind"] != kind:
+        raise BlockError(f"is a file of the kind {index['kind']!r}, not {kind!r}")
+    found = {}
+    for name, entry in index["blocks"].items():
+        newest = known.get(name.partition("/")[0], 0)
+        if entry["version"] <= newest:
+            value = _decode(entry["entry"], file.read(entry["entry"]))
+            found[name] = Block(value, entry["version"], entry["required"])
+        elif entry["required"]:
+            raise BlockError(
+                f"has {name!r} in version {entry['version']}, of a newer openmm-helfrich, "
+                "which can read it"
+            )
     return found
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from openmm import unit
 
 from . import _blocks, _writing
+from ._mesh.inputs import box_array
 from ._present import surfaces_of
 from .forces import MonteCarloMembraneTension, SurfaceViscosityThermostat
 
@@ -113,10 +114,8 @@ def load_state(context, path) -> None:
         blocks = _blocks.unpack(name.read_bytes(), _KIND, _KNOWN)
     except _blocks.BlockError as reason:
         raise ValueError(f"load_state: {name} {reason}") from None
-    missing = [needed for needed in _NEEDED if needed not in blocks]
-    if missing:
-        raise ValueError(f"load_state: {name} has no {', '.join(missing)}")
     values = {key: block.value for key, block in blocks.items()}
+    _check_values(name, values)
     parameters = {key: float.fromhex(text) for key, text in values["parameters"].items()}
     surfaces = surfaces_of(context)
     connectivity = _in_order(values, "connectivity")
@@ -135,9 +134,7 @@ def load_state(context, path) -> None:
         stateful += zip(movers, states, strict=False)
     _check(context, name, values["positions"], parameters, surfaces, connectivity)
     # First what may be refused.
-    _restore(context, surfaces, connectivity)
-    for force, saved in stateful:
-        force._restoreState(context, saved)
+    _restore(context, surfaces, connectivity, stateful)
     present = context.getParameters()
     for key, value in parameters.items():
         # Connectivity has set its own.
@@ -151,18 +148,64 @@ def load_state(context, path) -> None:
     context.setStepCount(values["clock"]["step"])
 
 
-def _restore(context, surfaces: list, connectivity: list[bytes]) -> None:
-    """Restore the connectivity of all surfaces, or of none."""
-    before = [force._saveConnectivity(context) for force in surfaces]
+def _restore(context, surfaces: list, connectivity: list[bytes], stateful: list) -> None:
+    """Restore the connectivity of all surfaces and the states of all movers, or of none."""
+    steps = [
+        (force._restoreConnectivity, force._saveConnectivity, saved)
+        for force, saved in zip(surfaces, connectivity, strict=True)
+    ]
+    steps += [(force._restoreState, force._saveState, saved) for force, saved in stateful]
+    before = [save(context) for _, save, _ in steps]
     done = []
     try:
-        for force, saved, old in zip(surfaces, connectivity, before, strict=True):
-            force._restoreConnectivity(context, saved)
-            done.append((force, old))
+        for (restore, _, saved), old in zip(steps, before, strict=True):
+            restore(context, saved)
+            done.append((restore, old))
     except Exception:
-        for force, old in done:
-            force._restoreConnectivity(context, old)
+        for restore, old in done:
+            restore(context, old)
         raise
+
+
+def _check_values(name, values: dict) -> None:
+    """Refuse blocks that are not what `save_state` writes, before anything is changed.
+
+    Raises
+    ------
+    ValueError
+        Names the block.
+    """
+    missing = [needed for needed in _NEEDED if needed not in values]
+    if missing:
+        raise ValueError(f"load_state: {name} has no {', '.join(missing)}")
+    for key, value in values.items():
+        try:
+            right = _is_right(key.partition("/")[0], value)
+        except (AttributeError, LookupError, TypeError, ValueError, OverflowError):
+            right = False
+        if not right:
+            raise ValueError(
+                f"load_state: {name} has a block {key} that is not as save_state writes it; save "
+                "the state again"
+            )
+    box_array(values["box"], f"load_state: {name}")
+    if len(values["velocities"]) != len(values["positions"]):
+        raise ValueError(
+            f"load_state: {name} has {len(values['positions'])} positions, but "
+            f"{len(values['velocities'])} velocities"
+        )
+
+
+def _is_right(block: str, value) -> bool:
+    """Whether a block has the type that it should; some errors say that it has not, too."""
+    if block in ("positions", "velocities", "box"):
+        return value.dtype == np.float64 and value.ndim == 2 and value.shape[1] == 3
+    if block == "parameters":
+        return all(isinstance(float.fromhex(text), float) for text in value.values())
+    if block == "clock":
+        float.fromhex(value["time"])
+        return type(value["step"]) is int and abs(value["step"]) < 2**63
+    return isinstance(value, bytes)
 
 
 def tensions_of(context) -> list[MonteCarloMembraneTension]:

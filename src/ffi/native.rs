@@ -21,7 +21,8 @@ pub extern "C" fn Helfrich_Native_source(is_double: c_int) -> *const c_char {
 /// Whether a platform can evaluate a potential, by its number: 1 or 0.
 #[unsafe(no_mangle)]
 pub extern "C" fn Helfrich_Native_canEvaluate(potential: c_int, is_periodic: c_int) -> c_int {
-    c_int::from(native::is_native(REGISTRY[potential as usize], is_periodic != 0))
+    let named = REGISTRY.get(potential as usize);
+    named.is_some_and(|named| native::is_native(*named, is_periodic != 0)).into()
 }
 
 /// Plans for a membrane in one precision.

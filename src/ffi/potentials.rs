@@ -183,7 +183,8 @@ pub extern "C" fn Helfrich_Numbers_takeVersion() -> u64 {
     VertexNumbers::take_version()
 }
 
-/// Let the vertices have each other's numbers, or values of their own that go with these: as many as before.
+/// Let the vertices have each other's numbers, or values of their own that go with these; fails if they are not as many as
+/// before.
 ///
 /// # Safety
 /// `numbers` must come from [`Helfrich_Numbers_create`] and be used by no other thread; `values` must hold `count` numbers.
@@ -193,10 +194,20 @@ pub unsafe extern "C" fn Helfrich_Numbers_rearrange(
     values: *const f64,
     count: i64,
     version: u64,
-) {
-    let numbers = unsafe { &mut *numbers };
-    numbers.values.copy_from_slice(unsafe { slice(values, count as usize) });
-    numbers.version = version;
+) -> c_int {
+    guarded("openmm-helfrich", || {
+        let (numbers, values) = unsafe { (&mut *numbers, slice(values, count as usize)) };
+        if values.len() != numbers.values.len() {
+            return Err(Error::Contract(format!(
+                "vertices have {} numbers, got {}",
+                numbers.values.len(),
+                values.len()
+            )));
+        }
+        numbers.values.copy_from_slice(values);
+        numbers.version = version;
+        Ok(())
+    })
 }
 
 /// End their life; null is allowed.
@@ -210,13 +221,12 @@ pub unsafe extern "C" fn Helfrich_Numbers_destroy(numbers: *mut VertexNumbers) {
     }
 }
 
-/// Whether a potential is one of contacts, so that it may act on several membranes together.
-///
-/// `potential` must be an index that [`Helfrich_Potential_find`] gave.
+/// Whether a potential, by the index that [`Helfrich_Potential_find`] gave, is one of contacts, so that it may act on several
+/// membranes together.
 #[unsafe(no_mangle)]
 pub extern "C" fn Helfrich_Potential_isContact(potential: c_int) -> c_int {
-    let named = REGISTRY[potential as usize];
-    c_int::from([surface_repulsion::NAME, particle_surface::NAME].contains(&named.name()))
+    let contacts = [surface_repulsion::NAME, particle_surface::NAME];
+    REGISTRY.get(potential as usize).is_some_and(|named| contacts.contains(&named.name())).into()
 }
 
 /// The index of a potential in the registry.

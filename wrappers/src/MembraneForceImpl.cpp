@@ -125,7 +125,7 @@ void MembraneForceImpl::rearrange(const vector<uint32_t>& sources, uint64_t vers
     if (hasKinds)
         move(vertexNumbers);
     if (hasChanged)
-        Helfrich_Numbers_rearrange(numbers.get(), vertexNumbers.data(), (int64_t) vertexNumbers.size(), version);
+        check(Helfrich_Numbers_rearrange(numbers.get(), vertexNumbers.data(), (int64_t) vertexNumbers.size(), version));
 }
 
 vector<string> MembraneForceImpl::getKernelNames() {

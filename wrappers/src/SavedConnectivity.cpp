@@ -78,13 +78,14 @@ struct HelfrichPlugin::SavedConnectivity {
     /** By their kinds; empty where there is no mover. */
     string movers[NUM_MOVER_KINDS];
 
-    SavedConnectivity(const string& subject, const string& bytes) : bytes(bytes), at(0) {
+    SavedConnectivity(const string& subject, const string& bytes) : subject(subject), bytes(bytes), at(0), end(0) {
         uint64_t sum = 0;
-        const size_t least = 3 * sizeof(int32_t) + 2 * sizeof(uint32_t) + 2 * sizeof(int64_t) + sizeof(sum);
-        if (bytes.size() >= least)
-            std::memcpy(&sum, bytes.data() + bytes.size() - sizeof(sum), sizeof(sum));
-        if (bytes.size() < least || sum != findChecksum(bytes.data(), bytes.size() - sizeof(sum)))
-            throw OpenMMException(subject + ": the saved connectivity is damaged");
+        if (bytes.size() < sizeof(sum))
+            refuse();
+        end = bytes.size() - sizeof(sum);
+        std::memcpy(&sum, bytes.data() + end, sizeof(sum));
+        if (sum != findChecksum(bytes.data(), end))
+            refuse();
         uint32_t mark = 0, moved = 0;
         take(&mark, 1);
         if (mark != MARK && mark != OLD_MARK)
@@ -94,37 +95,54 @@ struct HelfrichPlugin::SavedConnectivity {
         take(&numTriangles, 1);
         take(&numVertices, 1);
         take(&connectivity.flips, 1);
-        connectivity.corners.resize(3 * (size_t) numTriangles);
-        take(connectivity.corners.data(), connectivity.corners.size());
-        connectivity.order.resize((size_t) numVertices);
-        take(connectivity.order.data(), connectivity.order.size());
+        takeAll(connectivity.corners, 3 * (int64_t) numTriangles);
+        takeAll(connectivity.order, numVertices);
         takeMover(MoverKind::Flips);
-        if (mark == OLD_MARK)
-            return;
-        take(&moved, 1);
-        connectivity.permutation.resize(moved);
-        take(connectivity.permutation.data(), moved);
-        takeMover(MoverKind::Swaps);
+        if (mark == MARK) {
+            take(&moved, 1);
+            takeAll(connectivity.permutation, moved);
+            takeMover(MoverKind::Swaps);
+        }
+        if (at != end)
+            refuse();
     }
 
 private:
+    [[noreturn]] void refuse() const {
+        throw OpenMMException(subject + ": the saved connectivity is damaged");
+    }
+
     template <class T>
     void take(T* values, size_t count) {
-        // The checksum has told that all is there.
+        // A checksum can be right for numbers that do not fit.
+        if (count > (end - at) / sizeof(T))
+            refuse();
         std::memcpy(values, bytes.data() + at, count * sizeof(T));
         at += count * sizeof(T);
+    }
+
+    template <class T>
+    void takeAll(vector<T>& values, int64_t count) {
+        if (count < 0 || (uint64_t) count > (end - at) / sizeof(T))
+            refuse();
+        values.resize((size_t) count);
+        take(values.data(), values.size());
     }
 
     void takeMover(MoverKind kind) {
         uint32_t isThere = 0;
         take(&isThere, 1);
         string& state = movers[(int) kind];
-        state.resize(isThere != 0 ? SurfaceMoverImpl::getStateSize(kind) : 0);
-        take(&state[0], state.size());
+        size_t size = isThere != 0 ? SurfaceMoverImpl::getStateSize(kind) : 0;
+        if (size > end - at)
+            refuse();
+        state.resize(size);
+        take(&state[0], size);
     }
 
+    const string subject;
     const string& bytes;
-    size_t at;
+    size_t at, end;
 };
 
 int SharedMembrane::getSmallestParticle() const {

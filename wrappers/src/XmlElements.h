@@ -10,6 +10,7 @@
 #include <climits>
 #include <cstdlib>
 #include <iterator>
+#include <locale.h>
 #include <set>
 #include <string>
 
@@ -60,11 +61,12 @@ inline std::string text(const std::string& force, const OpenMM::SerializationNod
                                   "\", which is not " + expected);
 }
 
-/** A number to the last character: what is broken shall not become a zero. */
+/** A number to the last character, with a point in any locale: what is broken shall not become a zero. */
 inline double number(const std::string& force, const OpenMM::SerializationNode& node, const std::string& property) {
     std::string value = text(force, node, property);
+    static const locale_t plain = newlocale(LC_ALL_MASK, "C", nullptr);
     char* end = nullptr;
-    double result = std::strtod(value.c_str(), &end);
+    double result = strtod_l(value.c_str(), &end, plain);
     if (value.empty() || *end != '\0')
         refuse(force, node, property, "a number");
     return result;

@@ -64,7 +64,9 @@ def read(
     extension = path.suffix.lower()
     source = Source(path, path.read_bytes(), triangulate)
     if extension in _READERS:
-        vertices, triangles = _READERS[extension](source)
+        # Of numbers that are none, even of those that signal it, the mesh names the vertex.
+        with np.errstate(invalid="ignore"):
+            vertices, triangles = _READERS[extension](source)
     elif extension in other.meshio_extensions():
         vertices, triangles = other.read_meshio(source)
     elif extension in other.trimesh_extensions():

@@ -146,6 +146,19 @@ def _read_header(source: Source) -> list[_Element]:
 
 
 def _check_elements(source: Source, elements: list[_Element]) -> None:
+    _refuse_repeated(source, [entry.name for entry in elements], "elements")
+    for element in elements:
+        _refuse_repeated(
+            source, [entry.name for entry in element.properties], f"properties of {element.name}"
+        )
+        if not element.properties:
+            raise source.error(f"the element {element.name!r} has no property; remove it")
+        for entry in element.properties:
+            if entry.count is not None and "f" in entry.count:
+                raise source.error(
+                    f"the length of the list {entry.name!r} of {element.name} must be of a type of "
+                    "integers"
+                )
     found = {element.name: element for element in elements}
     for name in ("vertex", "face"):
         if name not in found:
@@ -156,6 +169,15 @@ def _check_elements(source: Source, elements: list[_Element]) -> None:
     lists = [entry.name for entry in found["face"].properties if entry.count is not None]
     if not set(_CORNERS) & set(lists):
         raise source.error("faces need a list vertex_indices")
+    for entry in found["face"].properties:
+        if entry.name in _CORNERS and "f" in entry.type:
+            raise source.error(f"{entry.name} must be of a type of integers; convert the file")
+
+
+def _refuse_repeated(source: Source, names: list[str], what: str) -> None:
+    for name in names:
+        if names.count(name) > 1:
+            raise source.error(f"two {what} are called {name!r}; rename one of them")
 
 
 def _read_ascii(source: Source, elements: list[_Element]) -> tuple[np.ndarray, np.ndarray]:

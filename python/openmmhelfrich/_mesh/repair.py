@@ -13,6 +13,8 @@ __all__ = ["doubled", "drop", "hints", "merge"]
 
 # Vertices of no common edge that are nearer than this part of the median edge are worth a hint.
 _NEAR = 1e-2
+# Squares of longer coordinates, nm, overflow soon; no mesh is valid with them.
+_HUGE = 1e100
 # Neighbours per vertex beyond which a distance is no tolerance; pairs would fill the memory.
 _MANY = 100
 
@@ -37,6 +39,9 @@ def merge(
             f"merge={distance:g} joins more than {_MANY} vertices with each; take "
             "a smaller distance"
         )
+    if distance == 0:
+        # The square of a difference can be too small for a number.
+        pairs = pairs[(points[pairs[:, 0]] == points[pairs[:, 1]]).all(axis=1)]
     links = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(points), len(points)))
     _, group = connected_components(links, directed=False)
     _, first = np.unique(group, return_index=True)
@@ -123,4 +128,4 @@ def _in_range(points: np.ndarray, triangles: np.ndarray) -> bool:
 
 def _sound(points: np.ndarray, triangles: np.ndarray) -> bool:
     """Whether distances and indices mean something; if not, the validation says why."""
-    return len(points) > 0 and bool(np.isfinite(points).all()) and _in_range(points, triangles)
+    return len(points) > 0 and bool((abs(points) < _HUGE).all()) and _in_range(points, triangles)

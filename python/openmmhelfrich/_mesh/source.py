@@ -9,7 +9,7 @@ import numpy as np
 from ..errors import MeshError
 from . import polygons
 
-__all__ = ["Source", "merge_repeated", "shorten"]
+__all__ = ["Source", "merge_repeated", "plain", "shorten"]
 
 # The name of the option that a refusal of polygons points to, in Python and on the command line.
 _OPTION = "read it with triangulate=True, or --triangulate of 'openmm-helfrich mesh', to split it"
@@ -124,16 +124,19 @@ class Source:
         if len(words) < 3:
             raise self.error(f"{what} needs 3 coordinates, got {shorten(words) or 'none'}")
         try:
-            return [float(word) for word in words[:3]]
+            return [float(word) for word in plain(words[:3])]
         except ValueError:
             raise self.error(f"{what} needs 3 coordinates, got {shorten(words)}") from None
 
     def integer(self, word: str, what: str) -> int:
         """One integer."""
+        # As in `plain`, for many words.
         try:
-            return int(word)
+            if word.isascii() and "_" not in word:
+                return int(word)
         except ValueError:
-            raise self.error(f"{what} must be an integer, got {word!r}") from None
+            pass
+        raise self.error(f"{what} must be an integer, got {shorten([word])}")
 
     def face(self, words: list[str], face: int, num_vertices: int) -> list[int]:
         """The corners of a face that is written as a count and as many indices."""
@@ -186,6 +189,14 @@ class Source:
             return self.error(f"face {face + first} {reason}", lines[face] if lines else None)
 
         return points, polygons.split(points, faces, fail)
+
+
+def plain(words: list[str]) -> list[str]:
+    """Words that may be numbers; ValueError at what only Python takes for one, such as 1_000."""
+    text = "".join(words)
+    if not text.isascii() or "_" in text:
+        raise ValueError(text)
+    return words
 
 
 def shorten(words: list[str]) -> str:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from .cells import TRIANGLE, Cells, polydata_cells
-from .source import Source, shorten
+from .source import Source, plain, shorten
 
 __all__ = ["read", "write"]
 
@@ -126,6 +126,11 @@ class _Reader:
         wanted = np.float64 if stored.kind == "f" else np.int64
         if self._binary:
             return np.frombuffer(source.take(count * stored.itemsize, what), stored).astype(wanted)
+        # A number and a blank take two bytes: a count that is damaged shall not take all memory.
+        if 2 * count > len(source.data) + 1:
+            raise source.error(
+                f"{what} need {count} numbers, more than the file has room for; is it truncated?"
+            )
         values = np.empty(count, dtype=wanted)
         filled = 0
         while filled < count:
@@ -136,8 +141,8 @@ class _Reader:
                     "counts fit?"
                 )
             try:
-                values[filled : filled + len(words)] = np.array(words, dtype=wanted)
-            except ValueError:
+                values[filled : filled + len(words)] = np.array(plain(words), dtype=wanted)
+            except (ValueError, OverflowError):
                 raise source.error(f"expected numbers of {what}, got {shorten(words)}") from None
             filled += len(words)
         return values

@@ -17,7 +17,7 @@ import numpy as np
 
 from ..errors import MeshError
 from .cells import Cells, polydata_cells
-from .source import Source, shorten
+from .source import Source, plain, shorten
 
 __all__ = ["read"]
 
@@ -106,7 +106,8 @@ class _Reader:
             if announced == "0":
                 continue
             array = self._array(piece, "Points", None, np.float64)
-            if not announced.isdecimal() or len(array) != 3 * int(announced):
+            # Compared as text: Python makes no integer of thousands of digits.
+            if len(array) % 3 or announced.lstrip("0") != str(len(array) // 3):
                 raise self._error(
                     f"{announced or 'no'} points were announced, but there are {len(array)} "
                     "coordinates, not three for each",
@@ -163,7 +164,7 @@ class _Reader:
         text = element.text or ""
         try:
             if form == "ascii":
-                return np.array(text.split(), dtype=wanted)
+                return np.array(plain(text.split()), dtype=wanted)
             if form == "binary":
                 data = self._from_base64("".join(text.split()).encode())
             else:

@@ -65,6 +65,21 @@ class Document:
             found = re.search(r"\(at line (\d+)", said)
             line = found.group(1) if found else len(text.splitlines())
             raise ConfigError(f"{self.path}:{line}: not valid TOML: {said}") from None
+        except RecursionError:
+            depths = [line.count("[") + line.count("{") for line in text.splitlines()]
+            line = depths.index(max(depths)) + 1
+            raise ConfigError(
+                f"{self.path}:{line}: arrays or tables are nested too deeply"
+            ) from None
+        except ValueError:
+            # Python refuses thousands of digits before TOML is asked.
+            digits = [
+                max(map(len, re.findall(r"[\d_]+", line)), default=0) for line in text.splitlines()
+            ]
+            line = digits.index(max(digits)) + 1
+            raise ConfigError(
+                f"{self.path}:{line}: an integer has {max(digits)} digits; write it as a float"
+            ) from None
         self._lines = _lines_of(text)
 
     def line(self, place: Place) -> int:

@@ -99,7 +99,10 @@ class Configuration(vcm.Config):
         self._kinds = [list(membrane.vesicle._forces(0)) for membrane in self.membranes]
         self._terms: dict[str, int] = {}
         # What cannot be built shall be refused when the file is read.
-        self.system()
+        try:
+            self.system()
+        except openmm.OpenMMException as reason:
+            raise ConfigError(f"{self.path}:1: the System cannot be built: {reason}") from None
 
     @property
     def flows(self) -> bool:
@@ -337,5 +340,5 @@ def _vesicle(table: Table, mesh) -> Vesicle:
     given = {name: table[name] for name in names if table[name] is not None}
     try:
         return Vesicle(mesh, **given)
-    except (TypeError, ValueError, MeshError) as reason:
+    except (TypeError, ValueError, openmm.OpenMMException) as reason:
         raise table.error(None, str(reason)) from None

@@ -96,15 +96,15 @@ def signed_energy(value, kT):
     return _finite(value, 'a number in kJ/mol or a string such as "20 kT"')
 
 
-def integer(least: int, most: int | None = None) -> Reader:
-    """An integer in a range."""
+def integer(least: int, most: int = 2**31 - 1) -> Reader:
+    """An integer in a range; OpenMM's have 32 bits."""
 
     def read(value, kT):
         if isinstance(value, bool) or not isinstance(value, int):
             raise ValueError(f"expected an integer, got {value!r}")
         if value < least:
             raise ValueError(f"must be {least} or more, got {value}")
-        if most is not None and value > most:
+        if value > most:
             raise ValueError(f"must be {most} or less, got {value}")
         return value
 

@@ -138,7 +138,8 @@ class Parser:
 
     def _point(self) -> tuple[int, int, int]:
         token = self._next()
-        if token[0] != "p" or not token[1:].isdigit():
+        # More digits than these no particle has, and Python refuses thousands of them.
+        if token[0] != "p" or not token.isascii() or not token[1:].isdigit() or len(token) > 20:
             raise ExpressionError(f"{token!r} is no particle")
         if self._peek() in (",", ")"):
             self._next()

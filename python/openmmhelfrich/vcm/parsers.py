@@ -78,9 +78,16 @@ def _count(words: tuple[str, ...], *counts: int) -> None:
         raise ValueError(f"expected {expected} value{plural}, got {got}")
 
 
+def _plain(word: str) -> str:
+    """A word that may be a number; ValueError at what only Python takes for one, such as 1_000."""
+    if not word.isascii() or "_" in word:
+        raise ValueError(word)
+    return word
+
+
 def _float(word: str) -> float:
     try:
-        value = float(word)
+        value = float(_plain(word))
     except ValueError:
         raise ValueError(f"expected a number, got {word!r}") from None
     if not math.isfinite(value):
@@ -90,7 +97,7 @@ def _float(word: str) -> float:
 
 def _int(word: str) -> int:
     try:
-        return int(word)
+        return int(_plain(word))
     except ValueError:
         raise ValueError(f"expected an integer, got {word!r}") from None
 

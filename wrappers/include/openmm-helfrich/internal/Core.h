@@ -166,7 +166,7 @@ HelfrichNumbers* Helfrich_Numbers_create(const HelfrichNumbers* before, const do
 /** A version of numbers, or of values by vertex that go with them, that no others have. */
 uint64_t Helfrich_Numbers_takeVersion(void);
 /** Set as many as before, in the order that vertices have exchanged theirs to. */
-void Helfrich_Numbers_rearrange(HelfrichNumbers* numbers, const double* values, int64_t count, uint64_t version);
+int Helfrich_Numbers_rearrange(HelfrichNumbers* numbers, const double* values, int64_t count, uint64_t version);
 void Helfrich_Numbers_destroy(HelfrichNumbers* numbers);
 int Helfrich_Membrane_create(const char* subject, const int* triangles, int64_t numTriangles, int64_t numParticles,
                              HelfrichMembrane** membrane);
