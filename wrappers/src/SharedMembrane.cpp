@@ -454,9 +454,11 @@ int64_t SharedMembrane::swap(const string& subject, ContextImpl& context, int gr
                              vector<Vec3>* forceChange) {
     collect(context, groups);
     if (kinds.empty() && !findKinds())
-        throw OpenMMException(subject + ": no force on these triangles has values of single vertices, or domains, so there is "
-                              "nothing to exchange; give a BendingForce one rigidity for each vertex, for instance, or add a "
-                              "LineTensionForce");
+        throw OpenMMException(
+            subject +
+            ": no force on these triangles has values of single vertices, or domains, so there is "
+            "nothing to exchange; give a BendingForce one rigidity for each vertex, for instance, or add a "
+            "LineTensionForce");
     double* change = nullptr;
     if (forceChange != nullptr) {
         forceChange->resize(positions.size());
