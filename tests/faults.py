@@ -4,7 +4,8 @@
 
 Each kind of run is done once in peace. Then it is done over and over, each time in a new folder:
 begun, killed with SIGKILL at a random moment, resumed, killed again, until it has come to its end.
-All its files must have the same bytes as those of the run in peace. Kinds:
+All its files must have the same bytes as those of the run in peace (VTKHDF files of reporters the
+same contents). Kinds:
 
 - toml: a file of ours, with flips, viscosity, frames in VTKHDF, a trajectory and CSV
 - vcm: a configuration of VCM with all of its outputs
@@ -25,6 +26,7 @@ import time
 import traceback
 from pathlib import Path
 
+import h5py
 import numpy as np
 import openmm
 import openmmhelfrich as helfrich
@@ -147,9 +149,24 @@ def attempt(work, folder, seconds=None):
     return True
 
 
+def everything(folder):
+    """All files; of HDF5 what is in them, since a row that was cut off may leave its place empty."""
+    found = results(folder)
+    for name in found:
+        if name.endswith(".vtkhdf") and folder.name.startswith("reporters"):
+            found[name] = {}
+
+            def visit(path, item, into=found[name]):
+                into[path] = item[()].tobytes() if isinstance(item, h5py.Dataset) else ""
+
+            with h5py.File(folder / name) as file:
+                file.visititems(visit)
+    return found
+
+
 def differences(one, other):
     """Names of files that differ."""
-    left, right = results(one), results(other)
+    left, right = everything(one), everything(other)
     differ = {name for name in left.keys() | right.keys() if left.get(name) != right.get(name)}
     # When the last checkpoint but one was saved depends on when the run was stopped.
     return sorted(name for name in differ if not name.endswith("checkpoint-previous.bin"))
