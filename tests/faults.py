@@ -150,7 +150,7 @@ def attempt(work, folder, seconds=None):
 
 
 def everything(folder):
-    """All files; of HDF5 what is in them, since a row that was cut off may leave its place empty."""
+    """All files; of HDF5 what is in them, since a row that was cut off may leave a gap."""
     found = results(folder)
     for name in found:
         if name.endswith(".vtkhdf") and folder.name.startswith("reporters"):
