@@ -121,7 +121,12 @@ def _same(given: str | None, kept: str | None) -> bool:
 
 
 def _evaluate(system: openmm.System) -> None:
-    membrane = _membranes()[round(system.getParticleMass(0)._value) - 50]
+    number = system.getParticleMass(0)._value - 50 if system.getNumParticles() else -1
+    if number not in range(len(_membranes())):
+        return
+    membrane = _membranes()[int(number)]
+    if membrane.num_particles != system.getNumParticles():
+        return
     for name in ("Helfrich", "Reference"):
         platform = openmm.Platform.getPlatformByName(name)
         integrator = openmm.VerletIntegrator(1e-6)
