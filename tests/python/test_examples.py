@@ -42,7 +42,7 @@ def demo(tmp_path_factory):
 
 
 def test_variable_masses(tmp_path):
-    run(EXAMPLES / "variable_mass.py", "energy", "areas", "--quick", "--out", tmp_path)
+    run(EXAMPLES / "variable_mass.py", "energy", "areas", "cost", "--quick", "--out", tmp_path)
     energy, areas = (
         list(csv.DictReader((tmp_path / f"{name}.csv").open(encoding="utf-8")))
         for name in ("energy", "areas")
