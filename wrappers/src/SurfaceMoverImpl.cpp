@@ -27,15 +27,10 @@ const long long NEVER = -2;
 
 /** How many movers of the same kind a System has before this one. */
 uint32_t findNumber(const System& system, const MonteCarloSurfaceMover& owner) {
-    uint32_t number = 0;
-    for (int i = 0; i < system.getNumForces(); i++) {
-        if (&system.getForce(i) == &owner)
-            break;
-        auto* other = dynamic_cast<const MonteCarloSurfaceMover*>(&system.getForce(i));
-        if (other != nullptr && other->getTypeName() == owner.getTypeName())
-            number++;
-    }
-    return number;
+    return countBefore(system, owner, [&](const Force& force) {
+        auto* other = dynamic_cast<const MonteCarloSurfaceMover*>(&force);
+        return other != nullptr && other->getTypeName() == owner.getTypeName();
+    });
 }
 
 /** Refuse triangulated forces on some particles in a force that evaluates others in a Context of its own. */

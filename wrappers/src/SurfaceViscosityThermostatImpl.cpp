@@ -53,13 +53,12 @@ void compare(const SurfaceViscosityThermostat& one, const SurfaceViscosityThermo
 
 /** Compare with all others of a System; returns how many come before. */
 uint32_t findNumber(const System& system, const SurfaceViscosityThermostat& owner) {
-    uint32_t number = 0;
-    for (int i = 0; &system.getForce(i) != &owner; i++)
-        if (auto* other = dynamic_cast<const SurfaceViscosityThermostat*>(&system.getForce(i))) {
+    return countBefore(system, owner, [&](const Force& force) {
+        auto* other = dynamic_cast<const SurfaceViscosityThermostat*>(&force);
+        if (other != nullptr)
             compare(*other, owner);
-            number++;
-        }
-    return number;
+        return other != nullptr;
+    });
 }
 
 /** Whether an integrator has velocities of half a step ago when it updates the state of the Context. */
