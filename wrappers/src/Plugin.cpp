@@ -3,14 +3,11 @@
 #include "MembraneForceImpl.h"
 #include "MembraneForceProxy.h"
 #include "MonteCarloBondFlipImpl.h"
-#include "MonteCarloBondFlipProxy.h"
 #include "MonteCarloDomainSwapImpl.h"
-#include "MonteCarloDomainSwapProxy.h"
 #include "MonteCarloMembraneTensionImpl.h"
-#include "MonteCarloMembraneTensionProxy.h"
+#include "MoverProxy.h"
 #include "PlatformChoice.h"
 #include "SurfaceViscosityThermostatImpl.h"
-#include "SurfaceViscosityThermostatProxy.h"
 #include "VariableMassIntegratorProxy.h"
 #include "VariableMassStepKernel.h"
 
@@ -26,6 +23,11 @@ namespace {
 template <class ForceClass>
 void registerForce(const std::string& name) {
     OpenMM::SerializationProxy::registerProxy(typeid(ForceClass), new MembraneForceProxy(name, makeForce<ForceClass>));
+}
+
+template <class Mover>
+void registerMover() {
+    OpenMM::SerializationProxy::registerProxy(typeid(Mover), new MoverProxy<Mover>());
 }
 
 bool isRightVersion() {
@@ -55,11 +57,10 @@ int helfrich_shim_registerSerialization() {
 #define REGISTER(ForceClass) registerForce<ForceClass>(#ForceClass);
     HELFRICH_FORCES(REGISTER)
 #undef REGISTER
-    OpenMM::SerializationProxy::registerProxy(typeid(MonteCarloBondFlip), new MonteCarloBondFlipProxy());
-    OpenMM::SerializationProxy::registerProxy(typeid(MonteCarloDomainSwap), new MonteCarloDomainSwapProxy());
-    OpenMM::SerializationProxy::registerProxy(typeid(MonteCarloMembraneTension), new MonteCarloMembraneTensionProxy());
-    OpenMM::SerializationProxy::registerProxy(typeid(SurfaceViscosityThermostat),
-                                              new SurfaceViscosityThermostatProxy());
+    registerMover<MonteCarloBondFlip>();
+    registerMover<MonteCarloDomainSwap>();
+    registerMover<MonteCarloMembraneTension>();
+    registerMover<SurfaceViscosityThermostat>();
     OpenMM::SerializationProxy::registerProxy(typeid(VariableMassVerletIntegrator),
                                               new VariableMassVerletIntegratorProxy());
     OpenMM::SerializationProxy::registerProxy(typeid(VariableMassLangevinIntegrator),
