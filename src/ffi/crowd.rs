@@ -1,12 +1,11 @@
 //! The C interface to [`crate::membrane::Crowd`].
 
-use super::membrane::{cell, read_terms};
+use super::membrane::{like_positions, of_terms, with_terms};
 use super::{TurnInput, guarded, slice, text};
 use crate::error::Result;
-use crate::membrane::{Configuration, Crowd, Membrane};
+use crate::membrane::{Crowd, Membrane};
 use crate::team::Team;
 use std::ffi::c_int;
-use std::slice as slices;
 
 /// Make what several membranes need to be evaluated side by side.
 #[unsafe(no_mangle)]
@@ -47,17 +46,15 @@ impl Arrays<'_> {
     /// # Safety
     /// As of [`Helfrich_Crowd_evaluate`].
     unsafe fn evaluate(&self, input: &TurnInput) -> Result<()> {
-        let terms = unsafe { read_terms(input.terms, input.num_terms) };
-        let contributions = match input.contributions.is_null() {
-            true => &mut [],
-            false => unsafe { slices::from_raw_parts_mut(input.contributions, terms.len()) },
-        };
-        let forces = (!self.forces.is_null())
-            .then(|| unsafe { slices::from_raw_parts_mut(self.forces, self.positions.len()) });
-        let cell = unsafe { cell(input.box_vectors) }?;
-        let at = Configuration::new(self.positions, cell.as_ref());
-        let membrane = unsafe { &mut *input.membrane.cast::<Membrane>() };
-        membrane.evaluate(&terms, at, contributions, forces)
+        let given = (input.terms, input.num_terms);
+        let at = (self.positions.as_ptr(), (self.positions.len() / 3) as i64);
+        unsafe {
+            with_terms(given, at, input.box_vectors, |terms, at| {
+                let (sums, forces) =
+                    (of_terms(input.contributions, terms), like_positions(self.forces, &at));
+                (*input.membrane.cast::<Membrane>()).evaluate(terms, at, sums, forces)
+            })
+        }
     }
 }
 

@@ -130,6 +130,49 @@ pub(super) unsafe fn read_terms<'a>(
     inputs.iter().map(|input| unsafe { input.term() }).collect()
 }
 
+/// The terms and the configuration of a call, and what it makes of them.
+///
+/// # Safety
+/// `terms` as of [`read_terms`]; `positions` must hold three values for each particle; `box_vectors` must be readable or
+/// null.
+pub(super) unsafe fn with_terms<R>(
+    (terms, num_terms): (*const TermInput, i64),
+    (positions, num_particles): (*const f64, i64),
+    box_vectors: *const [[f64; 3]; 3],
+    call: impl FnOnce(&[Term], Configuration) -> Result<R>,
+) -> Result<R> {
+    let terms = unsafe { read_terms(terms, num_terms) };
+    let positions = unsafe { slice(positions, 3 * num_particles as usize) };
+    let cell = unsafe { cell(box_vectors) }?;
+    call(&terms, Configuration::new(positions, cell.as_ref()))
+}
+
+/// An array for as many numbers as there are positions; null for none.
+///
+/// # Safety
+/// `numbers` must be null, or hold as many, which nobody else uses.
+pub(super) unsafe fn like_positions<'a>(
+    numbers: *mut f64,
+    at: &Configuration,
+) -> Option<&'a mut [f64]> {
+    let length = at.positions.len();
+    (!numbers.is_null()).then(|| unsafe { slices::from_raw_parts_mut(numbers, length) })
+}
+
+/// One contribution a term; null for none.
+///
+/// # Safety
+/// `contributions` must be null, or hold as many.
+pub(super) unsafe fn of_terms<'a>(
+    contributions: *mut Contribution,
+    terms: &[Term],
+) -> &'a mut [Contribution] {
+    match contributions.is_null() {
+        true => &mut [],
+        false => unsafe { slices::from_raw_parts_mut(contributions, terms.len()) },
+    }
+}
+
 /// Refuse a term that cannot be evaluated on a membrane, or that has no constants of its triangles.
 ///
 /// # Safety
@@ -188,19 +231,12 @@ pub unsafe extern "C" fn Helfrich_Membrane_evaluate(
     contributions: *mut Contribution,
     forces: *mut f64,
 ) -> c_int {
-    guarded(unsafe { text(subject) }, || {
-        let terms = unsafe { read_terms(terms, num_terms) };
-        let contributions = if contributions.is_null() {
-            &mut []
-        } else {
-            unsafe { slices::from_raw_parts_mut(contributions, terms.len()) }
-        };
-        let positions = unsafe { slice(positions, 3 * num_particles as usize) };
-        let forces = (!forces.is_null())
-            .then(|| unsafe { slices::from_raw_parts_mut(forces, positions.len()) });
-        let cell = unsafe { cell(box_vectors) }?;
-        let at = Configuration::new(positions, cell.as_ref());
-        unsafe { &mut *membrane }.evaluate(&terms, at, contributions, forces)
+    let (given, at) = ((terms, num_terms), (positions, num_particles));
+    guarded(unsafe { text(subject) }, || unsafe {
+        with_terms(given, at, box_vectors, |terms, at| {
+            let forces = like_positions(forces, &at);
+            (*membrane).evaluate(terms, at, of_terms(contributions, terms), forces)
+        })
     })
 }
 
@@ -219,12 +255,11 @@ pub unsafe extern "C" fn Helfrich_Membrane_addVirial(
     box_vectors: *const [[f64; 3]; 3],
     virial: *mut f64,
 ) -> c_int {
+    let (given, at) = ((terms, num_terms), (positions, num_particles));
     guarded(unsafe { text(subject) }, || {
-        let terms = unsafe { read_terms(terms, num_terms) };
-        let positions = unsafe { slice(positions, 3 * num_particles as usize) };
-        let cell = unsafe { cell(box_vectors) }?;
-        let at = Configuration::new(positions, cell.as_ref());
-        let found = unsafe { &mut *membrane }.virial(&terms, at)?;
+        let found = unsafe {
+            with_terms(given, at, box_vectors, |terms, at| (*membrane).virial(terms, at))
+        }?;
         let virial = unsafe { slices::from_raw_parts_mut(virial, 9) };
         // Matrices are stored by columns.
         virial.iter_mut().zip(&found.transpose()).for_each(|(sum, part)| *sum += part);

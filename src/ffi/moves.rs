@@ -1,8 +1,8 @@
 //! The C interface to moves of a membrane, and to its connectivity.
 
-use super::membrane::{cell, read_terms};
+use super::membrane::{like_positions, read_terms, with_terms};
 use super::{FollowerInput, TermInput, guarded, slice, text};
-use crate::membrane::{Configuration, Connectivity, Follower, Membrane};
+use crate::membrane::{Connectivity, Follower, Membrane};
 use crate::moves::{FlipRules, FlipState, Round, SwapRound, SwapRules, SwapState};
 use smallvec::SmallVec;
 use std::ffi::{c_char, c_int};
@@ -47,15 +47,10 @@ pub unsafe extern "C" fn Helfrich_Membrane_flip(
     followers: *const FollowerInput,
     num_followers: i64,
 ) -> c_int {
+    let (given, at) = ((terms, num_terms), (positions, num_particles));
     guarded(unsafe { text(subject) }, || {
-        let terms = unsafe { read_terms(terms, num_terms) };
-        let positions = unsafe { slice(positions, 3 * num_particles as usize) };
-        let cell = unsafe { cell(box_vectors) }?;
-        let at = Configuration::new(positions, cell.as_ref());
         let (membrane, rules, state) = unsafe { (&mut *membrane, &*rules, &mut *state) };
         let round = Round { rules, attempts: attempts as u64, state };
-        let change = (!force_change.is_null())
-            .then(|| unsafe { slices::from_raw_parts_mut(force_change, positions.len()) });
         let followers = unsafe { slice(followers, num_followers as usize) };
         let their_terms: SmallVec<[_; 1]> = followers
             .iter()
@@ -69,7 +64,11 @@ pub unsafe extern "C" fn Helfrich_Membrane_flip(
                 terms,
             })
             .collect();
-        let count = membrane.flip(&terms, at, round, change, &mut followers)?;
+        let count = unsafe {
+            with_terms(given, at, box_vectors, |terms, at| {
+                membrane.flip(terms, at, round, like_positions(force_change, &at), &mut followers)
+            })
+        }?;
         unsafe { made.write(count as i64) };
         Ok(())
     })
@@ -100,20 +99,19 @@ pub unsafe extern "C" fn Helfrich_Membrane_swap(
     made: *mut i64,
     force_change: *mut f64,
 ) -> c_int {
+    let (given, at) = ((terms, num_terms), (positions, num_particles));
     guarded(unsafe { text(subject) }, || {
-        let terms = unsafe { read_terms(terms, num_terms) };
-        let positions = unsafe { slice(positions, 3 * num_particles as usize) };
-        let cell = unsafe { cell(box_vectors) }?;
-        let at = Configuration::new(positions, cell.as_ref());
         let (membrane, rules, state) = unsafe { (&mut *membrane, &*rules, &mut *state) };
         let count = membrane.mesh().num_vertices();
         let kinds = unsafe { slice(kinds, count) };
         let sources = unsafe { slices::from_raw_parts_mut(sources, count) };
         sources.iter_mut().zip(0..).for_each(|(source, vertex)| *source = vertex);
         let round = SwapRound { rules, attempts: attempts as u64, state, kinds, sources };
-        let change = (!force_change.is_null())
-            .then(|| unsafe { slices::from_raw_parts_mut(force_change, positions.len()) });
-        let count = membrane.swap(&terms, at, round, version, change)?;
+        let count = unsafe {
+            with_terms(given, at, box_vectors, |terms, at| {
+                membrane.swap(terms, at, round, version, like_positions(force_change, &at))
+            })
+        }?;
         unsafe { made.write(count as i64) };
         Ok(())
     })

@@ -1,10 +1,10 @@
 //! The C interface to [`crate::evaluator::gpu::native`]: evaluations by OpenMM's own GPU platforms.
 
-use super::membrane::{cell, read_terms};
+use super::membrane::{cell, read_terms, with_terms};
 use super::{NativeBuffer, NativePass, NativePlan, TermInput, guarded, slice, text};
 use crate::evaluator::gpu::Precision;
 use crate::evaluator::gpu::native::{self, Native, Wanted};
-use crate::membrane::{Configuration, Membrane};
+use crate::membrane::Membrane;
 use crate::potentials::{MAX_PARAMETERS, REGISTRY};
 use std::ffi::{c_char, c_int};
 
@@ -73,16 +73,14 @@ pub unsafe extern "C" fn Helfrich_Native_look(
     positions: *const f64,
     box_vectors: *const [[f64; 3]; 3],
 ) -> c_int {
-    guarded(unsafe { text(subject) }, || {
-        let terms = unsafe { read_terms(terms, num_terms) };
-        let positions = unsafe { slice(positions, 3 * num_particles as usize) };
-        let (native, membrane) = unsafe { (&mut *native, &mut *membrane) };
-        let mut forces = vec![0.0; positions.len()];
-        let cell = unsafe { cell(box_vectors) }?;
-        let at = Configuration::new(positions, cell.as_ref());
-        membrane.look(&terms, at, &mut forces)?;
-        native.set_unit(membrane.mesh(), at);
-        Ok(())
+    let (given, at) = ((terms, num_terms), (positions, num_particles));
+    guarded(unsafe { text(subject) }, || unsafe {
+        with_terms(given, at, box_vectors, |terms, at| {
+            let (native, membrane) = (&mut *native, &mut *membrane);
+            membrane.look(terms, at, &mut vec![0.0; at.positions.len()])?;
+            native.set_unit(membrane.mesh(), at);
+            Ok(())
+        })
     })
 }
 
