@@ -91,7 +91,7 @@ impl MembraneForce {
         Ok(value)
     }
 
-    /// Set a scalar.
+    /// Set a scalar; values of single elements are given up.
     ///
     /// # Errors
     /// An unknown name, or a value outside its domain.

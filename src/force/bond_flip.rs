@@ -1,7 +1,7 @@
 //! Bond flips for Rust programs.
 
 use super::check;
-use super::owned::{Owned, statistic};
+use super::owned::{Owned, handed_over, setters, statistic, statistics};
 use crate::c_api;
 use crate::error::{Error, Result};
 use crate::ffi::last_error;
@@ -52,28 +52,18 @@ impl MonteCarloBondFlip {
         Ok(Self { force })
     }
 
-    /// Try flips every so many steps, or never if it is 0.
-    ///
-    /// # Errors
-    /// A number below zero.
-    pub fn set_frequency(&mut self, steps: c_int) -> Result<&mut Self> {
-        // SAFETY: the force is alive.
-        check(unsafe {
-            c_api::Helfrich_MonteCarloBondFlip_setFrequency(self.force.as_ptr(), steps)
-        })?;
-        Ok(self)
-    }
+    setters! {
+        /// Try flips every so many steps, or never if it is 0.
+        ///
+        /// # Errors
+        /// A number below zero.
+        fn set_frequency(steps: c_int) = Helfrich_MonteCarloBondFlip_setFrequency;
 
-    /// Try so many flips each time, for each edge.
-    ///
-    /// # Errors
-    /// A number that is not from 0 to 1000.
-    pub fn set_attempts_per_edge(&mut self, attempts: f64) -> Result<&mut Self> {
-        // SAFETY: the force is alive.
-        check(unsafe {
-            c_api::Helfrich_MonteCarloBondFlip_setAttemptsPerEdge(self.force.as_ptr(), attempts)
-        })?;
-        Ok(self)
+        /// Try so many flips each time, for each edge.
+        ///
+        /// # Errors
+        /// A number that is not from 0 to 1000.
+        fn set_attempts_per_edge(attempts: f64) = Helfrich_MonteCarloBondFlip_setAttemptsPerEdge;
     }
 
     /// Leave every vertex with so many neighbours.
@@ -92,57 +82,27 @@ impl MonteCarloBondFlip {
         Ok(self)
     }
 
-    /// Let no new edge be longer than this, nm; 0 for any length.
-    ///
-    /// # Errors
-    /// A length that is not finite, or below zero.
-    pub fn set_max_edge_length(&mut self, length: f64) -> Result<&mut Self> {
-        // SAFETY: the force is alive.
-        check(unsafe {
-            c_api::Helfrich_MonteCarloBondFlip_setMaxEdgeLength(self.force.as_ptr(), length)
-        })?;
-        Ok(self)
+    setters! {
+        /// Let no new edge be longer than this, nm; 0 for any length.
+        ///
+        /// # Errors
+        /// A length that is not finite, or below zero.
+        fn set_max_edge_length(length: f64) = Helfrich_MonteCarloBondFlip_setMaxEdgeLength;
+
+        /// Let a demon pay for flips in place of a bath, or a bath again.
+        ///
+        /// # Errors
+        /// None.
+        fn set_microcanonical(demon: bool) = Helfrich_MonteCarloBondFlip_setEnsemble;
+
+        /// Seed the random numbers; 0 for a seed of its own in each Context.
+        ///
+        /// # Errors
+        /// None.
+        fn set_seed(seed: c_int) = Helfrich_MonteCarloBondFlip_setRandomNumberSeed;
     }
 
-    /// Let a demon pay for flips in place of a bath, or a bath again.
-    ///
-    /// # Errors
-    /// None.
-    pub fn set_microcanonical(&mut self, demon: bool) -> Result<&mut Self> {
-        // SAFETY: the force is alive.
-        check(unsafe {
-            c_api::Helfrich_MonteCarloBondFlip_setEnsemble(self.force.as_ptr(), demon.into())
-        })?;
-        Ok(self)
-    }
-
-    /// Seed the random numbers; 0 for a seed of its own in each Context.
-    ///
-    /// # Errors
-    /// None.
-    pub fn set_seed(&mut self, seed: c_int) -> Result<&mut Self> {
-        // SAFETY: the force is alive.
-        check(unsafe {
-            c_api::Helfrich_MonteCarloBondFlip_setRandomNumberSeed(self.force.as_ptr(), seed)
-        })?;
-        Ok(self)
-    }
-
-    /// One of the statistics of a Context, such as "accepted".
-    ///
-    /// # Errors
-    /// An unknown name, or a Context that the force does not belong to.
-    ///
-    /// # Safety
-    /// `force` must be a MonteCarloBondFlip, and `context` a Context, of OpenMM's C API; both must be alive.
-    pub unsafe fn statistic(
-        force: *mut OpenMM_Force,
-        context: *mut OpenMM_Context,
-        name: &str,
-    ) -> Result<f64> {
-        // SAFETY: the caller's promise.
-        unsafe { statistic(c_api::Helfrich_MonteCarloBondFlip_getStatistic, force, context, name) }
-    }
+    statistics!(Helfrich_MonteCarloBondFlip_getStatistic);
 
     /// The particles at the corners of the triangles in a Context, for any membrane force or mover of it.
     ///
@@ -170,13 +130,5 @@ impl MonteCarloBondFlip {
         Ok(triangles)
     }
 
-    /// The force as OpenMM's C API knows it, to steer it when a System has taken it over.
-    pub fn as_openmm(&self) -> *mut OpenMM_Force {
-        self.force.as_openmm()
-    }
-
-    /// The force for `OpenMM_System_addForce`, which takes it over.
-    pub fn into_openmm(self) -> *mut OpenMM_Force {
-        self.force.into_openmm()
-    }
+    handed_over!();
 }

@@ -1,6 +1,6 @@
 //! Exchanges between neighbours for Rust programs.
 
-use super::owned::{Owned, statistic};
+use super::owned::{Owned, handed_over, setters, statistic, statistics};
 use super::{MonteCarloBondFlip, check};
 use crate::c_api;
 use crate::error::{Error, Result};
@@ -43,70 +43,33 @@ impl MonteCarloDomainSwap {
         Ok(Self { force })
     }
 
-    /// Try exchanges every so many steps, or never if it is 0.
-    ///
-    /// # Errors
-    /// A number below zero.
-    pub fn set_frequency(&mut self, steps: c_int) -> Result<&mut Self> {
-        // SAFETY: the force is alive.
-        check(unsafe {
-            c_api::Helfrich_MonteCarloDomainSwap_setFrequency(self.force.as_ptr(), steps)
-        })?;
-        Ok(self)
+    setters! {
+        /// Try exchanges every so many steps, or never if it is 0.
+        ///
+        /// # Errors
+        /// A number below zero.
+        fn set_frequency(steps: c_int) = Helfrich_MonteCarloDomainSwap_setFrequency;
+
+        /// Try so many exchanges each time, for each edge.
+        ///
+        /// # Errors
+        /// A number that is not from 0 to 1000.
+        fn set_attempts_per_edge(attempts: f64) = Helfrich_MonteCarloDomainSwap_setAttemptsPerEdge;
+
+        /// Let a demon pay for exchanges in place of a bath, or a bath again.
+        ///
+        /// # Errors
+        /// None.
+        fn set_microcanonical(demon: bool) = Helfrich_MonteCarloDomainSwap_setEnsemble;
+
+        /// Seed the random numbers; 0 for a seed of its own in each Context.
+        ///
+        /// # Errors
+        /// None.
+        fn set_seed(seed: c_int) = Helfrich_MonteCarloDomainSwap_setRandomNumberSeed;
     }
 
-    /// Try so many exchanges each time, for each edge.
-    ///
-    /// # Errors
-    /// A number that is not from 0 to 1000.
-    pub fn set_attempts_per_edge(&mut self, attempts: f64) -> Result<&mut Self> {
-        // SAFETY: the force is alive.
-        check(unsafe {
-            c_api::Helfrich_MonteCarloDomainSwap_setAttemptsPerEdge(self.force.as_ptr(), attempts)
-        })?;
-        Ok(self)
-    }
-
-    /// Let a demon pay for exchanges in place of a bath, or a bath again.
-    ///
-    /// # Errors
-    /// None.
-    pub fn set_microcanonical(&mut self, demon: bool) -> Result<&mut Self> {
-        // SAFETY: the force is alive.
-        check(unsafe {
-            c_api::Helfrich_MonteCarloDomainSwap_setEnsemble(self.force.as_ptr(), demon.into())
-        })?;
-        Ok(self)
-    }
-
-    /// Seed the random numbers; 0 for a seed of its own in each Context.
-    ///
-    /// # Errors
-    /// None.
-    pub fn set_seed(&mut self, seed: c_int) -> Result<&mut Self> {
-        // SAFETY: the force is alive.
-        check(unsafe {
-            c_api::Helfrich_MonteCarloDomainSwap_setRandomNumberSeed(self.force.as_ptr(), seed)
-        })?;
-        Ok(self)
-    }
-
-    /// One of the statistics of a Context, such as "accepted".
-    ///
-    /// # Errors
-    /// An unknown name, or a Context that the force does not belong to.
-    ///
-    /// # Safety
-    /// `force` must be a MonteCarloDomainSwap, and `context` a Context, of OpenMM's C API; both must be alive.
-    pub unsafe fn statistic(
-        force: *mut OpenMM_Force,
-        context: *mut OpenMM_Context,
-        name: &str,
-    ) -> Result<f64> {
-        let get = c_api::Helfrich_MonteCarloDomainSwap_getStatistic;
-        // SAFETY: the caller's promise.
-        unsafe { statistic(get, force, context, name) }
-    }
+    statistics!(Helfrich_MonteCarloDomainSwap_getStatistic);
 
     /// For each vertex of a Context, in ascending order of particle index, the one whose values it has now; for any membrane
     /// force or mover of it.
@@ -158,13 +121,5 @@ impl MonteCarloDomainSwap {
         })
     }
 
-    /// The force as OpenMM's C API knows it, to steer it when a System has taken it over.
-    pub fn as_openmm(&self) -> *mut OpenMM_Force {
-        self.force.as_openmm()
-    }
-
-    /// The force for `OpenMM_System_addForce`, which takes it over.
-    pub fn into_openmm(self) -> *mut OpenMM_Force {
-        self.force.into_openmm()
-    }
+    handed_over!();
 }

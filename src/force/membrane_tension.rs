@@ -1,7 +1,7 @@
 //! Constant tension for Rust programs.
 
 use super::check;
-use super::owned::{Owned, statistic};
+use super::owned::{Owned, handed_over, setters, statistic, statistics};
 use crate::c_api;
 use crate::error::Result;
 use crate::openmm::{OpenMM_Context, OpenMM_Force};
@@ -58,82 +58,33 @@ impl MonteCarloMembraneTension {
         Ok(Self { force })
     }
 
-    /// Try a move every so many steps, or never if it is 0.
-    ///
-    /// # Errors
-    /// A number below zero.
-    pub fn set_frequency(&mut self, steps: c_int) -> Result<&mut Self> {
-        // SAFETY: the force is alive.
-        check(unsafe {
-            c_api::Helfrich_MonteCarloMembraneTension_setFrequency(self.force.as_ptr(), steps)
-        })?;
-        Ok(self)
+    setters! {
+        /// Try a move every so many steps, or never if it is 0.
+        ///
+        /// # Errors
+        /// A number below zero.
+        fn set_frequency(steps: c_int) = Helfrich_MonteCarloMembraneTension_setFrequency;
+
+        /// Adapt the width of so many moves.
+        ///
+        /// # Errors
+        /// A number below zero.
+        fn set_adaptive_moves(moves: c_int) = Helfrich_MonteCarloMembraneTension_setAdaptiveMoves;
+
+        /// Move molecules other than periodic membranes by their centres, or scale every particle.
+        ///
+        /// # Errors
+        /// None.
+        fn set_scale_molecules_as_rigid(rigid: bool) = Helfrich_MonteCarloMembraneTension_setScaleMoleculesAsRigid;
+
+        /// Seed the random numbers; 0 for a seed of its own in each Context.
+        ///
+        /// # Errors
+        /// None.
+        fn set_seed(seed: c_int) = Helfrich_MonteCarloMembraneTension_setRandomNumberSeed;
     }
 
-    /// Adapt the width of so many moves.
-    ///
-    /// # Errors
-    /// A number below zero.
-    pub fn set_adaptive_moves(&mut self, moves: c_int) -> Result<&mut Self> {
-        // SAFETY: the force is alive.
-        check(unsafe {
-            c_api::Helfrich_MonteCarloMembraneTension_setAdaptiveMoves(self.force.as_ptr(), moves)
-        })?;
-        Ok(self)
-    }
+    statistics!(Helfrich_MonteCarloMembraneTension_getStatistic);
 
-    /// Move molecules other than periodic membranes by their centres, or scale every particle.
-    ///
-    /// # Errors
-    /// None.
-    pub fn set_scale_molecules_as_rigid(&mut self, rigid: bool) -> Result<&mut Self> {
-        // SAFETY: the force is alive.
-        check(unsafe {
-            c_api::Helfrich_MonteCarloMembraneTension_setScaleMoleculesAsRigid(
-                self.force.as_ptr(),
-                rigid.into(),
-            )
-        })?;
-        Ok(self)
-    }
-
-    /// Seed the random numbers; 0 for a seed of its own in each Context.
-    ///
-    /// # Errors
-    /// None.
-    pub fn set_seed(&mut self, seed: c_int) -> Result<&mut Self> {
-        // SAFETY: the force is alive.
-        check(unsafe {
-            c_api::Helfrich_MonteCarloMembraneTension_setRandomNumberSeed(self.force.as_ptr(), seed)
-        })?;
-        Ok(self)
-    }
-
-    /// One of the statistics of a Context, such as "accepted".
-    ///
-    /// # Errors
-    /// An unknown name, or a Context that the force does not belong to.
-    ///
-    /// # Safety
-    /// `force` must be a MonteCarloMembraneTension, and `context` a Context, of OpenMM's C API; both must be alive.
-    pub unsafe fn statistic(
-        force: *mut OpenMM_Force,
-        context: *mut OpenMM_Context,
-        name: &str,
-    ) -> Result<f64> {
-        // SAFETY: the caller's promise.
-        unsafe {
-            statistic(c_api::Helfrich_MonteCarloMembraneTension_getStatistic, force, context, name)
-        }
-    }
-
-    /// The force as OpenMM's C API knows it, to steer it when a System has taken it over.
-    pub fn as_openmm(&self) -> *mut OpenMM_Force {
-        self.force.as_openmm()
-    }
-
-    /// The force for `OpenMM_System_addForce`, which takes it over.
-    pub fn into_openmm(self) -> *mut OpenMM_Force {
-        self.force.into_openmm()
-    }
+    handed_over!();
 }

@@ -65,3 +65,53 @@ pub(super) unsafe fn statistic(
     check(unsafe { get(force.cast(), context.cast(), name.as_ptr(), &mut value) })?;
     Ok(value)
 }
+
+/// Methods that hand one value over to a function of the C API, which may refuse it.
+macro_rules! setters {
+    ($($(#[$doc:meta])* fn $name:ident($value:ident: $kind:ty) = $setter:ident;)*) => {$(
+        $(#[$doc])*
+        pub fn $name(&mut self, $value: $kind) -> Result<&mut Self> {
+            // SAFETY: the force is alive.
+            check(unsafe { c_api::$setter(self.force.as_ptr(), $value.into()) })?;
+            Ok(self)
+        }
+    )*};
+}
+
+/// The methods that hand the force of a class over to OpenMM.
+macro_rules! handed_over {
+    () => {
+        /// The force as OpenMM's C API knows it, to steer it when a System has taken it over.
+        pub fn as_openmm(&self) -> *mut OpenMM_Force {
+            self.force.as_openmm()
+        }
+
+        /// The force for `OpenMM_System_addForce`, which takes it over.
+        pub fn into_openmm(self) -> *mut OpenMM_Force {
+            self.force.into_openmm()
+        }
+    };
+}
+
+/// The method that reads a statistic of a class of movers.
+macro_rules! statistics {
+    ($get:ident) => {
+        /// One of the statistics of a Context, such as "accepted".
+        ///
+        /// # Errors
+        /// An unknown name, or a Context that the force does not belong to.
+        ///
+        /// # Safety
+        /// `force` must be one of this class, and `context` a Context, of OpenMM's C API; both must be alive.
+        pub unsafe fn statistic(
+            force: *mut OpenMM_Force,
+            context: *mut OpenMM_Context,
+            name: &str,
+        ) -> Result<f64> {
+            // SAFETY: the caller's promise.
+            unsafe { statistic(c_api::$get, force, context, name) }
+        }
+    };
+}
+
+pub(super) use {handed_over, setters, statistics};

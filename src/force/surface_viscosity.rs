@@ -1,6 +1,6 @@
 //! Surface viscosity for Rust programs.
 
-use super::owned::Owned;
+use super::owned::{Owned, handed_over, setters};
 use super::{c_text, check};
 use crate::c_api;
 use crate::error::{Error, Result};
@@ -49,15 +49,12 @@ impl SurfaceViscosityThermostat {
         Ok(Self { force })
     }
 
-    /// Act every so many steps, or never if it is 0.
-    ///
-    /// # Errors
-    /// A number below zero.
-    pub fn set_frequency(&mut self, steps: c_int) -> Result<&mut Self> {
-        let force = self.force.as_ptr();
-        // SAFETY: the force is alive.
-        check(unsafe { c_api::Helfrich_SurfaceViscosityThermostat_setFrequency(force, steps) })?;
-        Ok(self)
+    setters! {
+        /// Act every so many steps, or never if it is 0.
+        ///
+        /// # Errors
+        /// A number below zero.
+        fn set_frequency(steps: c_int) = Helfrich_SurfaceViscosityThermostat_setFrequency;
     }
 
     /// Name the Context parameter that holds the friction.
@@ -76,26 +73,13 @@ impl SurfaceViscosityThermostat {
         Ok(self)
     }
 
-    /// Seed the random numbers; 0 for a seed of its own in each Context.
-    ///
-    /// # Errors
-    /// None.
-    pub fn set_seed(&mut self, seed: c_int) -> Result<&mut Self> {
-        let force = self.force.as_ptr();
-        // SAFETY: the force is alive.
-        check(unsafe {
-            c_api::Helfrich_SurfaceViscosityThermostat_setRandomNumberSeed(force, seed)
-        })?;
-        Ok(self)
+    setters! {
+        /// Seed the random numbers; 0 for a seed of its own in each Context.
+        ///
+        /// # Errors
+        /// None.
+        fn set_seed(seed: c_int) = Helfrich_SurfaceViscosityThermostat_setRandomNumberSeed;
     }
 
-    /// The force as OpenMM's C API knows it, to steer it when a System has taken it over.
-    pub fn as_openmm(&self) -> *mut OpenMM_Force {
-        self.force.as_openmm()
-    }
-
-    /// The force for `OpenMM_System_addForce`, which takes it over.
-    pub fn into_openmm(self) -> *mut OpenMM_Force {
-        self.force.into_openmm()
-    }
+    handed_over!();
 }
