@@ -27,6 +27,7 @@ from platforms import (
     REFERENCE,
     Target,
 )
+from surface_movers import SameBits
 
 EVERYWHERE = [*ON_PROCESSOR, *ON_OPENCL, *ON_GPU, *NATIVE]
 
@@ -308,27 +309,14 @@ class TestRules:
             mover.updateParametersInContext(context)
 
 
-class TestSameBits:
-    @pytest.mark.parametrize("platform", ["Reference", "Helfrich"])
-    def test_of_the_same_seed(self, platform):
-        found = []
-        for threads, seed in (("1", 7), ("1", 7), ("2", 7), ("1", 8)):
-            properties = {"Threads": threads} if platform == "Helfrich" else {}
-            target = Target(platform, platform, 1e-9, properties)
-            # Reference draws random numbers of all Contexts from one stream.
-            context, _ = flowing(target, mm.VerletIntegrator(0.2), seed=seed)
-            context.getIntegrator().step(40)
-            found.append(bits(context))
-        assert found[0] == found[1] == found[2]
-        assert found[0][2] != found[3][2]
+class TestSameBits(SameBits):
+    def made(self, target, integrator, seed):
+        context, _ = flowing(target, integrator, seed=seed)
+        return context
 
-    def test_seed_zero_is_another_each_time(self):
-        found = []
-        for _ in range(2):
-            context, _ = flowing(integrator=mm.VerletIntegrator(0.2), seed=0)
-            context.getIntegrator().step(20)
-            found.append(bits(context)[2])
-        assert found[0] != found[1]
+    def bits(self, context):
+        found = bits(context)
+        return found, found[2]
 
     def test_two_movers_of_one_seed_flip_different_edges(self):
         mesh = start()

@@ -20,15 +20,10 @@ from flowing import (
 )
 from openmm import app
 from platforms import CPU, HELFRICH, NATIVE, ON_OPENCL, REFERENCE, Target
+from surface_movers import ForeignStates, step
 from test_bond_flip import assert_as_fresh, custom_integrator
 
 FOREIGN = "^MonteCarloBondFlip: .*BondFlipConnectivity0.*load_state"
-ELSEWHERE = [REFERENCE, CPU, ON_OPENCL[2], NATIVE[2]]
-
-
-def step(context: mm.Context, count: int) -> mm.Context:
-    context.getIntegrator().step(count)
-    return context
 
 
 class TestCheckpoints:
@@ -95,47 +90,17 @@ class TestCheckpoints:
         assert mover.getStatistics(context)["attempts"] == 7 * 81
 
 
-class TestForeignStates:
-    """Where the connectivity is not saved, that is noticed."""
+class TestForeignStates(ForeignStates):
+    foreign = FOREIGN
 
-    @pytest.mark.parametrize("target", ELSEWHERE, ids=str)
-    @pytest.mark.parametrize("evaluate", [True, False])
-    def test_checkpoints_of_other_platforms(self, target, evaluate):
-        context, mover = flowing(target)
-        checkpoint = step(context, 10).createCheckpoint()
-        triangles = mover.getTrianglesInContext(context)
-        energy = measure(context)[0]
-        # As long as nothing has flipped it is the right one.
-        context.loadCheckpoint(checkpoint)
-        assert measure(context)[0] == pytest.approx(energy, rel=1e-9)
-        step(context, 10)
-        context.loadCheckpoint(checkpoint)
-        with pytest.raises(mm.OpenMMException, match=FOREIGN):
-            measure(context) if evaluate else step(context, 1)
-        # What the message says helps.
-        mover.setTrianglesInContext(context, triangles)
-        assert measure(context)[0] == pytest.approx(energy, rel=1e-9)
-        step(context, 4)
+    def made(self, target):
+        return flowing(target)
 
-    @pytest.mark.parametrize("target", [HELFRICH, *ELSEWHERE], ids=str)
-    def test_states(self, target):
-        context, _ = flowing(target)
-        early = context.getState(getPositions=True, getVelocities=True, getParameters=True)
-        late = step(context, 10).getState(
-            getPositions=True, getVelocities=True, getParameters=True, getEnergy=True
-        )
-        context.setState(late)
-        measure(context)
-        context.setState(early)
-        with pytest.raises(mm.OpenMMException, match=FOREIGN):
-            step(context, 1)
-        context, _ = flowing(target)
-        context.setState(late)
-        with pytest.raises(mm.OpenMMException, match=FOREIGN):
-            measure(context)
-        context, _ = flowing(target)
-        context.setState(early)
-        step(context, 1)
+    def moved(self, context, mover):
+        return mover.getTrianglesInContext(context)
+
+    def put(self, context, mover, moved):
+        mover.setTrianglesInContext(context, moved)
 
     def test_a_simulation_that_loads_its_own(self):
         context, _ = flowing()

@@ -13,6 +13,7 @@ from flowing import TEMPERATURE, langevin, measure, mover_of, start, system_of
 from mixing import TABLE, bits, domains_of, force_in, forces_of, mixing, swap_of
 from openmmhelfrich import _core
 from platforms import CPU, HELFRICH, NATIVE, ON_GPU, ON_OPENCL, ON_PROCESSOR, REFERENCE, Target
+from surface_movers import SameBits
 from test_bond_flip import INTEGRATORS
 
 EVERYWHERE = [*ON_PROCESSOR, *ON_OPENCL, *ON_GPU, *NATIVE]
@@ -345,26 +346,14 @@ class TestRules:
         assert mover.getStatistics(context)["attempts"] == 162 + 540
 
 
-class TestSameBits:
-    @pytest.mark.parametrize("platform", ["Reference", "Helfrich"])
-    def test_of_the_same_seed(self, platform):
-        found = []
-        for threads, seed in (("1", 7), ("1", 7), ("2", 7), ("1", 8)):
-            properties = {"Threads": threads} if platform == "Helfrich" else {}
-            target = Target(platform, platform, 1e-9, properties)
-            context, _ = mixing(target, mm.VerletIntegrator(0.2), seed=seed)
-            context.getIntegrator().step(40)
-            found.append(bits(context))
-        assert found[0] == found[1] == found[2]
-        assert found[0][3] != found[3][3]
+class TestSameBits(SameBits):
+    def made(self, target, integrator, seed):
+        context, _ = mixing(target, integrator, seed=seed)
+        return context
 
-    def test_seed_zero_is_another_each_time(self):
-        found = []
-        for _ in range(2):
-            context, _ = mixing(integrator=mm.VerletIntegrator(0.2), seed=0)
-            context.getIntegrator().step(20)
-            found.append(bits(context)[3])
-        assert found[0] != found[1]
+    def bits(self, context):
+        found = bits(context)
+        return found, found[3]
 
     def test_two_surfaces_go_their_own_ways(self):
         mesh, domains = start(), domains_of(COUNT)

@@ -11,18 +11,13 @@ import pytest
 from flowing import langevin, measure, mover_of, start, system_of
 from mixing import bits, domains_of, force_in, forces_of, mixing, swap_of
 from platforms import CPU, HELFRICH, NATIVE, ON_OPENCL, REFERENCE, Target
+from surface_movers import ELSEWHERE, ForeignStates, step
 from test_bond_flip import custom_integrator
 from test_domain_swap import COUNT, assert_as_fresh
 
 FOREIGN = "^MonteCarloDomainSwap: .*DomainSwapPermutation0.*load_state.*setPermutationInContext"
-ELSEWHERE = [REFERENCE, CPU, ON_OPENCL[2], NATIVE[2]]
 #: Neither a whole number of rounds nor of attempts has been made at step 13.
 UNEVEN = {"frequency": 3, "attemptsPerEdge": 0.2513}
-
-
-def step(context: mm.Context, count: int) -> mm.Context:
-    context.getIntegrator().step(count)
-    return context
 
 
 def both(target: Target = HELFRICH, integrator: mm.Integrator | None = None, seed: int = 7):
@@ -111,44 +106,17 @@ class TestCheckpoints:
         assert bits(context) == before
 
 
-class TestForeignStates:
-    """Where the permutation is not saved, that is noticed."""
+class TestForeignStates(ForeignStates):
+    foreign = FOREIGN
 
-    @pytest.mark.parametrize("target", ELSEWHERE, ids=str)
-    @pytest.mark.parametrize("evaluate", [True, False])
-    def test_checkpoints_of_other_platforms(self, target, evaluate):
-        context, mover = mixing(target)
-        checkpoint = step(context, 10).createCheckpoint()
-        permutation = mover.getPermutationInContext(context)
-        energy = measure(context)[0]
-        # As long as nothing has been exchanged it is the right one.
-        context.loadCheckpoint(checkpoint)
-        assert measure(context)[0] == pytest.approx(energy, rel=1e-9)
-        step(context, 10)
-        context.loadCheckpoint(checkpoint)
-        with pytest.raises(mm.OpenMMException, match=FOREIGN):
-            measure(context) if evaluate else step(context, 1)
-        # What the message says helps.
-        mover.setPermutationInContext(context, permutation)
-        assert measure(context)[0] == pytest.approx(energy, rel=1e-9)
-        step(context, 4)
+    def made(self, target):
+        return mixing(target)
 
-    @pytest.mark.parametrize("target", [HELFRICH, *ELSEWHERE], ids=str)
-    def test_states(self, target):
-        context, _ = mixing(target)
-        early = context.getState(getPositions=True, getVelocities=True, getParameters=True)
-        late = step(context, 10).getState(
-            getPositions=True, getVelocities=True, getParameters=True, getEnergy=True
-        )
-        context.setState(late)
-        measure(context)
-        context.setState(early)
-        with pytest.raises(mm.OpenMMException, match=FOREIGN):
-            step(context, 1)
-        context, _ = mixing(target)
-        context.setState(late)
-        with pytest.raises(mm.OpenMMException, match=FOREIGN):
-            measure(context)
+    def moved(self, context, mover):
+        return mover.getPermutationInContext(context)
+
+    def put(self, context, mover, moved):
+        mover.setPermutationInContext(context, moved)
 
     @pytest.mark.parametrize("target", [REFERENCE, HELFRICH, NATIVE[2]], ids=str)
     def test_not_by_mistake_under_a_custom_integrator(self, target):

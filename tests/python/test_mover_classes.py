@@ -93,6 +93,12 @@ WRONG_XML = [
     ('randomSeed="-17"', 'colour="-17"', "colour"),
     ('temperature="310"', "", "temperature"),
 ]
+WRONG_XML_OF_SURFACES = [
+    *WRONG_XML,
+    ('ensemble="Microcanonical"', 'ensemble="x"', 'ensemble="x".*Canonical or Microcanonical'),
+    ("Triangles>", "Triangels>", "Triangels"),
+    (' p1="', ' p4="', "p4"),
+]
 
 MOVERS = [
     Mover(
@@ -142,16 +148,7 @@ MOVERS = [
             ("setMaxEdgeLength", float("inf")),
             ("setEnsemble", 7),
         ],
-        wrong_xml=[
-            *WRONG_XML,
-            (
-                'ensemble="Microcanonical"',
-                'ensemble="x"',
-                'ensemble="x".*Canonical or Microcanonical',
-            ),
-            ("Triangles>", "Triangels>", "Triangels"),
-            (' p1="', ' p4="', "p4"),
-        ],
+        wrong_xml=WRONG_XML_OF_SURFACES,
         optional_xml=['frequency="10"', 'maxDegree="10"', 'ensemble="Canonical"'],
     ),
     Mover(
@@ -184,16 +181,7 @@ MOVERS = [
             ("setAttemptsPerEdge", float("nan")),
             ("setEnsemble", -1),
         ],
-        wrong_xml=[
-            *WRONG_XML,
-            (
-                'ensemble="Microcanonical"',
-                'ensemble="x"',
-                'ensemble="x".*Canonical or Microcanonical',
-            ),
-            ("Triangles>", "Triangels>", "Triangels"),
-            (' p1="', ' p4="', "p4"),
-        ],
+        wrong_xml=WRONG_XML_OF_SURFACES,
         optional_xml=['frequency="10"', 'attemptsPerEdge=".1"', 'ensemble="Canonical"'],
     ),
     Mover(
