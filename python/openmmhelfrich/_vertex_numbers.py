@@ -11,7 +11,7 @@ from . import _core
 from ._mesh.inputs import box_array
 from ._units import length_array
 
-__all__ = ["accept_vertex_numbers", "vertex_numbers_of"]
+__all__ = ["accept_vertex_numbers", "domain_array", "vertex_numbers_of"]
 
 
 def vertex_numbers_of(force: str) -> str | None:
@@ -50,7 +50,7 @@ def _accept_domains(force: type, give_method) -> None:
         TypeError, ValueError
             If they are not integers in one list.
         """
-        self._setVertexBuffer(_domains(force.__name__, domains).tobytes())
+        self._setVertexBuffer(domain_array(force.__name__, domains).tobytes())
 
     def get_domains(self):
         """The domain of each vertex in ascending order of particle index, (num_vertices,), int."""
@@ -138,17 +138,31 @@ def _reference(force: str, given) -> tuple[np.ndarray, np.ndarray | None]:
     return points, None
 
 
-def _domains(force: str, given) -> np.ndarray:
+def domain_array(caller: str, given) -> np.ndarray:
+    """Numbers of domains as floats, shape (num_vertices,).
+
+    Parameters
+    ----------
+    caller : str
+        What messages begin with.
+    given : array_like of int
+        What the user has given.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If they are not integers in one list.
+    """
     if unit.is_quantity(given):
-        raise TypeError(f"{force}: domains must be integers, got a Quantity in {given.unit}")
+        raise TypeError(f"{caller}: domains must be integers, got a Quantity in {given.unit}")
     try:
         array = np.asarray(given)
     except ValueError:
         raise ValueError(
-            f"{force}: domains must be one list, got lists of unequal length"
+            f"{caller}: domains must be one list, got lists of unequal length"
         ) from None
     if array.size and array.dtype.kind not in "iu":
-        raise TypeError(f"{force}: domains must be integers, got dtype {array.dtype}")
+        raise TypeError(f"{caller}: domains must be integers, got dtype {array.dtype}")
     if array.ndim != 1:
-        raise ValueError(f"{force}: domains must be one list of integers, got {array.shape}")
+        raise ValueError(f"{caller}: domains must be one list of integers, got {array.shape}")
     return array.astype(np.float64)

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 from openmm import unit
 
-from ._values import whole_numbers
+from ._vertex_numbers import domain_array
 
 __all__ = ["values_of_domains"]
 
@@ -46,9 +46,7 @@ def values_of_domains(domains, table: Mapping) -> dict:
         If a vertex has a domain, or a domain lacks a name, that is not in the table, or a value is
         not finite.
     """
-    if unit.is_quantity(domains):
-        raise TypeError("values_of_domains: domains are numbers without a unit")
-    numbers = whole_numbers("values_of_domains", "domains", "domain", domains)
+    numbers = domain_array("values_of_domains", domains).astype(np.int64)
     if not isinstance(table, Mapping):
         raise TypeError(f"values_of_domains: the table needs a mapping of domains, got {table!r}")
     for domain, values in table.items():
