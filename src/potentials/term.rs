@@ -9,7 +9,7 @@ pub type Values = [f64; MAX_PARAMETERS];
 /// A potential with its variant and values.
 #[derive(Clone, Copy)]
 pub struct Term<'a> {
-    /// From the [`REGISTRY`].
+    /// From the [`REGISTRY`](super::REGISTRY).
     pub potential: &'static dyn Potential,
     /// Index into the names of [`Potential::forms`]; 0 if there are none.
     pub form: usize,
