@@ -64,11 +64,14 @@ FRAMES = 50
 BUD = 0.6  # x
 
 
+def rings_of(n):
+    """The number of the ring of each vertex of a disk of n rings."""
+    return np.repeat(np.arange(n + 1), [1, *(6 * np.arange(1, n + 1))])
+
+
 def domains_of(n):
     """1 for the inner n/2 rings of a disk of n rings, 0 for the others."""
-    inner = n // 2
-    ring = np.repeat(np.arange(n + 1), [1, *(6 * np.arange(1, n + 1))])
-    return (ring <= inner).astype(int)
+    return (rings_of(n) <= n // 2).astype(int)
 
 
 def radius_of(n):

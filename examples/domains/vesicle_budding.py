@@ -33,7 +33,7 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize_scalar
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "surfaces"))
-from budding import RIGIDITY, TIME_STEP
+from budding import RIGIDITY, TIME_STEP, rings_of
 from lined_shapes import branch
 from membranes import context_of, positions_of
 from reports import Report
@@ -57,7 +57,7 @@ def share_of(n):
 
 def domains_of(n):
     """1 and 2 for the domains of a mesh of n rings to the equator, 0 for the others."""
-    ring = np.repeat(np.arange(n + 1), [1, *(6 * np.arange(1, n + 1))])
+    ring = rings_of(n)
     inner = ring <= round(INNER * n - 0.5)
     return np.concatenate([inner, 2 * inner[ring < n]]).astype(int)
 

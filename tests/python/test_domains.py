@@ -68,7 +68,7 @@ def test_mistakes_are_named(domains, table, error, words):
     [
         ([0], [{"rigidity": 1}], "the table needs a mapping of domains"),
         ([0], {0: 1.0}, "domain 0 needs a mapping of names to values, got 1.0"),
-        ([0] * unit.nanometer, {0: {"rigidity": 1}}, "domains must be integers, got a Quantity in nanometer"),
+        ([0] * unit.nanometer, {0: {}}, "domains must be integers, got a Quantity in nanometer"),
     ],
 )
 def test_tables_that_are_none(domains, table, message):
