@@ -23,6 +23,7 @@ from . import analysis, backend, config, platforms, vcm  # noqa: E402
 from ._paths import cmake_path, include_path, library_path  # noqa: E402
 from .area_difference import area_difference_parameters  # noqa: E402
 from .backend import adapters, get_backend, set_backend  # noqa: E402
+from .blowup import BlowUpError, BlowUpReporter, stable_time_step  # noqa: E402
 from .domains import values_of_domains  # noqa: E402
 from .errors import MeshError  # noqa: E402
 from .forces import *  # noqa: E402, F403
@@ -44,6 +45,8 @@ from .virials import virial  # noqa: E402
 __version__ = _plugin.version()
 
 __all__ = [
+    "BlowUpError",
+    "BlowUpReporter",
     "MembraneReporter",
     "Mesh",
     "MeshError",
@@ -68,6 +71,7 @@ __all__ = [
     "platforms",
     "save_state",
     "set_backend",
+    "stable_time_step",
     "values_of_domains",
     "vcm",
     "virial",

@@ -12,10 +12,10 @@ from ._present import present_box, present_triangles
 from .analysis._arrays import triangles_of
 from .analysis.tables import open_table
 
-__all__ = ["SurfaceReporter", "TableReporter"]
+__all__ = ["NextReport", "SurfaceReporter", "TableReporter"]
 
 
-class _NextReport(dict):
+class NextReport(dict):
     """What `describeNextReport` returns: the dict of OpenMM 8.1 and later.
 
     Programs that drive reporters themselves may still index the tuple of old (steps, positions,
@@ -61,7 +61,7 @@ class SurfaceReporter:
         # What the file has beyond the step at which the simulation goes on is written again.
         self._open(simulation)
         steps = self._interval - simulation.currentStep % self._interval
-        return _NextReport(steps=steps, periodic=False, include=list(self._include))
+        return NextReport(steps=steps, periodic=False, include=list(self._include))
 
     def report(self, simulation, state):
         """Write a row, or a frame; it is on disk when this returns."""

@@ -145,7 +145,7 @@ class MembraneReporter(TableReporter):
 
     def _columns(self, simulation):
         self._groups = _group_names(simulation.system)
-        self._freedom = _degrees_of_freedom(simulation.system)
+        self._freedom = degrees_of_freedom(simulation.system)
         energies = [*self._groups.values(), "potential", "kinetic"]
         return {
             **{f"{name}_energy": "kJ/mol" for name in energies},
@@ -331,7 +331,7 @@ def _group_names(system):
     return joined
 
 
-def _degrees_of_freedom(system):
+def degrees_of_freedom(system):
     masses = [system.getParticleMass(i) / unit.dalton for i in range(system.getNumParticles())]
     count = 3 * np.count_nonzero(masses) - system.getNumConstraints()
     fixed = any(isinstance(force, openmm.CMMotionRemover) for force in system.getForces())

@@ -15,9 +15,10 @@ from openmm import unit
 from . import _blocks, _writing
 from ._mesh.inputs import box_array
 from ._present import surfaces_of
+from ._snapshots import all_of, tensions_of, thermostats_of
 from .forces import MonteCarloMembraneTension, SurfaceViscosityThermostat
 
-__all__ = ["load_state", "save_state", "tensions_of", "thermostats_of"]
+__all__ = ["load_state", "save_state"]
 
 _KIND = "state"
 #: Newest versions of the blocks of a file.
@@ -124,7 +125,7 @@ def load_state(context, path) -> None:
         ("tension", MonteCarloMembraneTension),
         ("viscosity", SurfaceViscosityThermostat),
     ):
-        states, movers = _in_order(values, block), _all_of(context, cls)
+        states, movers = _in_order(values, block), all_of(context, cls)
         if states and len(states) != len(movers):
             raise ValueError(
                 f"load_state: {name} has {len(states)} {cls.__name__}, but the Context has "
@@ -206,20 +207,6 @@ def _is_right(block: str, value) -> bool:
         float.fromhex(value["time"])
         return type(value["step"]) is int and abs(value["step"]) < 2**63
     return isinstance(value, bytes)
-
-
-def tensions_of(context) -> list[MonteCarloMembraneTension]:
-    """What changes the box of a Context, in its order."""
-    return _all_of(context, MonteCarloMembraneTension)
-
-
-def thermostats_of(context) -> list[SurfaceViscosityThermostat]:
-    """What makes surfaces of a Context viscous, in its order."""
-    return _all_of(context, SurfaceViscosityThermostat)
-
-
-def _all_of(context, cls: type) -> list:
-    return [cls.cast(force) for force in context.getSystem().getForces() if cls.isinstance(force)]
 
 
 def _in_order(values: dict, block: str) -> list[bytes]:

@@ -361,7 +361,7 @@ class TestRefusals:
         result = invoke("run", path, "--platform", "Reference", "--out", out, "--steps", 1000)
         assert result.exit_code == 1
         assert "the simulation broke down" in result.output
-        assert "try a smaller time step" in result.output
+        assert "Time step: 2000 ps is TOO LONG" in result.output
         again = Run(path, out, resume=True)
         assert np.isfinite(again.frame.potential)
         again.close()

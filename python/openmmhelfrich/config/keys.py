@@ -212,6 +212,13 @@ KEYS: tuple[Key, ...] = (
     Key("tension", "axes", choice(_AXES), None,
         "What changes: " + ", ".join(f"`{name}`" for name in _AXES) + ". Default: `XYIsotropic`."),
     Key("tension", "frequency", integer(1), 25, "Steps between moves."),
+    Key("watch", "max_temperature", number(above=0), None,
+        "K: a run whose particles are hotter counts as broken down, and says why. Default: none."),
+    Key("watch", "min_height", number(above=0), None,
+        "nm: so does one in which a triangle is less high. Default: none."),
+    Key("watch", "max_fold", number(above=0), None,
+        "Degrees: so does one in which an edge is bent by more, 0 where it is flat, 180 where its "
+        "triangles lie upon each other. Default: none."),
     Key("repulsion", "strength", energy, REQUIRED,
         "ε, kJ/mol, of ε ((D/d)⁶ − 1)² at a distance d; see `SurfaceRepulsionForce`."),
     Key("repulsion", "distance", number(above=0), REQUIRED, "D, nm, beyond which there is none."),

@@ -13,6 +13,7 @@ from openmm import unit
 
 from .. import platforms, vcm
 from .._placement import NUM_GROUPS
+from ..blowup import Limits
 from ..errors import MeshError
 from ..forces import MonteCarloMembraneTension, SurfaceRepulsionForce
 from ..mesh import Mesh
@@ -27,7 +28,7 @@ from .tables import Table
 
 __all__ = ["Configuration", "VesicleMembrane", "read", "read_any"]
 
-_TABLES = ("simulation", "integrator", "output", "box", "vesicle", "tension", "repulsion")
+_TABLES = ("simulation", "integrator", "output", "box", "vesicle", "tension", "repulsion", "watch")
 _MAX_SEED = 2**31 - 1
 
 
@@ -70,6 +71,8 @@ class Configuration(vcm.Config):
             raise output.error("ply", "give either frames or ply, not both")
         frames = "ply" if output["ply"] else output["frames"]
         self.writes = {"xtc": output["xtc"], "frames": frames}
+        watch = Table(document, ("watch",), "watch")
+        self.limits = Limits(*(watch[name] for name in keys_of("watch")))
         self.box, self.membranes = _vesicles(document, self.kT)
         if self.box is not None:
             # Outputs have a box then.

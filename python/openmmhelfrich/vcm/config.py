@@ -15,6 +15,7 @@ from scipy.spatial.transform import Rotation
 
 from .._mesh import files
 from ..analysis import theory
+from ..blowup import Limits
 from ..errors import MeshError
 from ..mesh import Mesh
 from . import build, interactions
@@ -77,10 +78,13 @@ class Config:
         Attempts to flip a bond for each edge and time step; 0 for none.
     writes : dict
         What a run that is not told writes: "xtc", a bool, and "frames", one of `frames.FRAMES`.
+    limits : Limits
+        Beyond which a run counts as broken down; VCM's files name none.
     """
 
     platform: str | None = None
     writes: Mapping[str, bool | str] = MappingProxyType({"xtc": True, "frames": "none"})
+    limits = Limits()
 
     def __init__(
         self,

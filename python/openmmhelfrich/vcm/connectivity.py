@@ -15,7 +15,7 @@ from .grammar import ConfigError
 if TYPE_CHECKING:
     from .config import Config
 
-__all__ = ["add_movers", "movers", "present_triangles"]
+__all__ = ["add_movers", "present_triangles"]
 
 #: Steps from one round of flips to the next, where only a rate is given.
 FLIP_STEPS = 10
@@ -63,14 +63,6 @@ def add_movers(cfg: Config, system: openmm.System) -> None:
         mover.setName(f"flips {membrane.label}")
         mover.setRandomNumberSeed(cfg.seed)
         system.addForce(mover)
-
-
-def movers(context: openmm.Context) -> list[MonteCarloBondFlip]:
-    """The movers of a Context, in their order."""
-    forces = context.getSystem().getForces()
-    return [
-        MonteCarloBondFlip.cast(force) for force in forces if MonteCarloBondFlip.isinstance(force)
-    ]
 
 
 def present_triangles(cfg: Config, context: openmm.Context) -> tuple[np.ndarray, ...]:

@@ -15,6 +15,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from .._blocks import Block, BlockError, DamagedError, pack, unpack
+from .._snapshots import Snapshot
 from .._writing import describe, naming, replace
 
 __all__ = ["CHECKPOINT", "PREVIOUS", "RunError", "RunFolder", "Saved"]
@@ -49,21 +50,6 @@ class Saved:
     options: dict
     fingerprint: str
     outputs: dict | None
-
-
-@dataclass(frozen=True)
-class State:
-    """A Context at a checkpoint.
-
-    openmm: OpenMM's checkpoint; connectivity: what is saved of each surface whose bonds flip, which
-    OpenMM's checkpoint has on the platform Helfrich only; tension: of what moves the box;
-    viscosity: of what makes surfaces viscous.
-    """
-
-    openmm: bytes
-    connectivity: tuple[bytes, ...] = ()
-    tension: tuple[bytes, ...] = ()
-    viscosity: tuple[bytes, ...] = ()
 
 
 class RunFolder:
@@ -136,7 +122,7 @@ class RunFolder:
             "folder with --out"
         )
 
-    def read(self, previous: bool = False) -> tuple[Saved, State] | None:
+    def read(self, previous: bool = False) -> tuple[Saved, Snapshot] | None:
         """A checkpoint with the state of the Context; None if there is none, and nothing else.
 
         Parameters
@@ -159,7 +145,7 @@ class RunFolder:
         self._saved_step = found[0].step
         return found
 
-    def _unpack(self, name: str) -> tuple[Saved, State]:
+    def _unpack(self, name: str) -> tuple[Saved, Snapshot]:
         path = self.path / name
         try:
             data = path.read_bytes()
@@ -179,7 +165,7 @@ class RunFolder:
             while (key := f"{name}/{len(saved)}") in blocks:
                 saved.append(blocks[key].value)
             movers.append(tuple(saved))
-        return Saved(**blocks["run"].value), State(blocks["openmm"].value, *movers)
+        return Saved(**blocks["run"].value), Snapshot(blocks["openmm"].value, *movers)
 
     def _offer(self, other: str, reason: BlockError) -> str:
         """How to go on from the other checkpoint, if that helps."""
@@ -192,7 +178,7 @@ class RunFolder:
         option = "--resume-previous" if other == PREVIOUS else "--resume"
         return f"; {other} is whole: go on from step {saved.step} with {option}"
 
-    def save(self, saved: Saved, state: State) -> None:
+    def save(self, saved: Saved, state: Snapshot) -> None:
         """Write a checkpoint in place of the last one, which becomes the one before.
 
         Raises

@@ -7,19 +7,20 @@ checkpoint with the outputs cut back to it. `run_folder.py` keeps checkpoints.
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import openmm
 
-from ..states import tensions_of, thermostats_of
+from .._snapshots import Snapshot
+from ..blowup import BlowUpError, Watch
 from . import build
 from .config import Config
-from .connectivity import movers
 from .outputs import Frame, Outputs, report_steps, take_frame
-from .run_folder import CHECKPOINT, RunError, RunFolder, Saved, State
+from .run_folder import CHECKPOINT, RunError, RunFolder, Saved
 
 __all__ = ["CHECKPOINT", "Run", "RunError"]
 
@@ -96,6 +97,7 @@ class Run:
         wanted = {name: given for name, given in asked.items() if given is not None}
         self._options = {**options, **cfg.writes, **wanted}
         self.folder = Path(folder if folder is not None else cfg.name)
+        self._watch: Watch | None = None
         self._folder = RunFolder(self.folder)
         self._folder.enter(resume or resume_previous)
         try:
@@ -149,6 +151,12 @@ class Run:
                 self.outputs.start()
                 self.outputs.write(self.frame)
             self.save()
+        limits = self.cfg.limits
+        self._watch = Watch(
+            self.context, self.simulation.integrator, limits, self.folder / "blow-up"
+        )
+        with self._explaining():
+            self._watch.look()
 
     @property
     def context(self) -> openmm.Context:
@@ -189,7 +197,9 @@ class Run:
         ------
         RunError
             If the simulation breaks down, or a file cannot be written. The last checkpoint is from
-            before; `close` this run and make another with ``resume=True``.
+            before; `close` this run and make another with ``resume=True``. Of one that breaks down
+            the message says why, and the folder ``blow-up`` has its last good frame, see
+            `BlowUpReporter`.
         """
         interval = self.cfg.general["ReportIntervalInFs"]
         due = report_steps(interval, self.cfg.step_size, self.cfg.num_steps)
@@ -197,7 +207,9 @@ class Run:
         saved_at, chunk = time.monotonic(), 1
         while self.step < last_step and not stop():
             end = min(last_step, self.step + chunk, next_report or last_step)
-            chunk = self._run_to(end, chunk)
+            with self._explaining():
+                chunk = self._run_to(end, chunk)
+                self._watch.look(sparing=True)
             progress(self.step)
             if self.step == next_report:
                 self.frame = self._take_frame()
@@ -221,7 +233,9 @@ class Run:
         try:
             self.simulation.integrator.step(steps)
         except openmm.OpenMMException as reason:
-            raise self._broken(f"between steps {self.step} and {end}: {reason}") from None
+            raise self._watch.explain(
+                f"between steps {self.step} and {end}: {reason}", end
+            ) from None
         self.step = end
         elapsed = time.perf_counter() - before
         if steps < chunk:
@@ -230,16 +244,24 @@ class Run:
         return max(1, min(2 * chunk, int(chunk * _CHUNK_SECONDS / max(elapsed, 1e-9))))
 
     def _take_frame(self) -> Frame:
-        try:
-            return take_frame(self.cfg, self.context, self.step)
-        except (FloatingPointError, openmm.OpenMMException) as reason:
-            raise self._broken(str(reason)) from None
+        with self._explaining():
+            try:
+                return take_frame(self.cfg, self.context, self.step)
+            except (FloatingPointError, openmm.OpenMMException) as reason:
+                if self._watch is None:
+                    raise BlowUpError(str(reason)) from None
+                raise self._watch.explain(str(reason), self.step) from None
 
-    def _broken(self, reason: str) -> RunError:
-        return RunError(
-            f"the simulation broke down: {reason}; try a smaller time step, which "
-            "'openmm-helfrich info' compares with what is stable"
-        )
+    @contextlib.contextmanager
+    def _explaining(self) -> Iterator[None]:
+        """What has broken down inside becomes a RunError."""
+        try:
+            yield
+        except BlowUpError as reason:
+            raise RunError(
+                f"the simulation broke down: {reason}\nTo try again, give another folder with "
+                "--out; a mesh of this one, such as blow-up/last-good.ply, may be where it begins"
+            ) from None
 
     def save(self) -> None:
         """Write a checkpoint; the last one becomes the one before."""
@@ -256,12 +278,7 @@ class Run:
             self._fingerprint,
             outputs,
         )
-        moving = movers(self.context)
-        connectivity = tuple(mover._saveConnectivity(self.context) for mover in moving)
-        tension = tuple(mover._saveState(self.context) for mover in tensions_of(self.context))
-        viscosity = tuple(force._saveState(self.context) for force in thermostats_of(self.context))
-        checkpoint = self.context.createCheckpoint()
-        self._folder.save(saved, State(checkpoint, connectivity, tension, viscosity))
+        self._folder.save(saved, Snapshot.take(self.context))
 
     @staticmethod
     def _agree(saved: Saved, platform: str | None, seed: int) -> tuple[str, int]:
@@ -275,18 +292,10 @@ class Run:
             raise RunError(f"the run has the seed {saved.seed}; leave out --seed")
         return saved.platform, saved.seed
 
-    def _load(self, saved: Saved, state: State, previous: bool) -> None:
+    def _load(self, saved: Saved, state: Snapshot, previous: bool) -> None:
         """Bring the Context, and outputs that were begun, back to a checkpoint."""
         try:
-            self.context.loadCheckpoint(state.openmm)
-            moving = movers(self.context)
-            for mover, surface in zip(moving, state.connectivity, strict=True):
-                mover._restoreConnectivity(self.context, surface)
-            of_box = tensions_of(self.context)
-            for mover, moves in zip(of_box, state.tension, strict=True):
-                mover._restoreState(self.context, moves)
-            for force, sweeps in zip(thermostats_of(self.context), state.viscosity, strict=True):
-                force._restoreState(self.context, sweeps)
+            state.restore(self.context)
         except openmm.OpenMMException as reason:
             raise RunError(f"OpenMM cannot go on from {self.folder}: {reason}") from None
         with self._folder.writing():
