@@ -109,43 +109,9 @@ pub fn global() -> Result<Choice> {
 }
 
 /// Change it; Contexts that exist stay as they are.
-///
-/// # Errors
-/// A GPU is asked for and there is none, or it cannot do what is asked.
-pub fn set_global(choice: Choice) -> Result<()> {
-    check(choice)?;
+/// [`check_backend`](crate::evaluator::check_backend) tells whether it can be.
+pub fn set_global(choice: Choice) {
     *global_slot() = Some(choice);
-    Ok(())
-}
-
-/// Refuse a GPU that does not exist.
-///
-/// # Errors
-/// There is none, or it cannot do what is asked.
-#[cfg(feature = "gpu")]
-pub fn check(choice: Choice) -> Result<()> {
-    use crate::evaluator::gpu::{Precision, adapters};
-    if choice.kind == Kind::Auto && choice.adapter.is_some() {
-        adapters::find(choice.adapter)?;
-    }
-    if choice.kind != Kind::Gpu {
-        return Ok(());
-    }
-    let precision = if choice.double == Some(true) { Precision::Double } else { Precision::Single };
-    adapters::find(choice.adapter)?.1.check(precision)
-}
-
-/// Refuse any GPU.
-///
-/// # Errors
-/// This build knows none.
-#[cfg(not(feature = "gpu"))]
-pub fn check(choice: Choice) -> Result<()> {
-    if choice.kind != Kind::Gpu {
-        return Ok(());
-    }
-    let found = "openmm-helfrich was built without its feature \"gpu\"".to_owned();
-    Err(Error::NoAdapter { found })
 }
 
 /// Evaluations on the processor, on GPUs and by OpenMM's GPU platforms since the process began.

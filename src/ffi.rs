@@ -6,6 +6,8 @@
 
 #![allow(non_snake_case, reason = "names follow OpenMM's C API")]
 
+mod backend;
+pub mod c_api;
 mod crowd;
 mod dynamics;
 #[cfg(test)]
@@ -20,6 +22,7 @@ mod records;
 mod variable_mass;
 mod viscosity;
 
+pub use backend::*;
 pub use crowd::*;
 pub use membrane::*;
 pub use mesh::*;

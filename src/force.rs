@@ -1,7 +1,7 @@
 //! The OpenMM force classes for Rust programs, beside OpenMM's C API in [`crate::openmm`].
 
-use crate::c_api;
 use crate::error::{Error, Result};
+use crate::ffi::c_api;
 use crate::ffi::last_error;
 use crate::openmm::OpenMM_Force;
 use crate::potentials;
@@ -251,7 +251,7 @@ impl MembraneForce {
     }
 
     /// The force as OpenMM's C API knows it. Keep it to steer a force that a System has taken over, with the
-    /// functions of [`crate::c_api`]; it lives as long as the System.
+    /// functions of [`crate::ffi::c_api`]; it lives as long as the System.
     pub fn as_openmm(&self) -> *mut OpenMM_Force {
         self.force.as_openmm()
     }

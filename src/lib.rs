@@ -30,14 +30,13 @@
 #![warn(missing_docs)]
 
 pub mod backend;
-pub mod c_api;
 pub mod contact;
 pub mod dynamics;
 pub mod error;
 pub mod evaluator;
 pub mod ffi;
-pub mod ffi_backend;
 pub mod force;
+mod lanes;
 pub mod membrane;
 pub mod mesh;
 pub mod moves;

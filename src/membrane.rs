@@ -3,7 +3,7 @@
 use crate::backend::Choice;
 use crate::contact::{Contacts, is_contact};
 use crate::error::{Error, Result};
-use crate::mesh::{Cell, Topology, Triangulation};
+use crate::mesh::{Configuration, Topology, Triangulation};
 use crate::moves::local::LocalEnergy;
 use crate::potentials::{Contribution, Term};
 use crate::remembered::Remembered;
@@ -31,22 +31,6 @@ static ALIVE: AtomicI64 = AtomicI64::new(0);
 /// The number of membranes that exist in this process.
 pub fn count() -> i64 {
     ALIVE.load(Ordering::Relaxed)
-}
-
-/// Where all particles of a System are.
-#[derive(Debug, Clone, Copy)]
-pub struct Configuration<'a> {
-    /// x y z of one after the other, nm.
-    pub positions: &'a [f64],
-    /// The periodic box, if there is one; edges connect nearest images in it.
-    pub cell: Option<&'a Cell>,
-}
-
-impl<'a> Configuration<'a> {
-    /// Positions in a periodic box or none.
-    pub fn new(positions: &'a [f64], cell: Option<&'a Cell>) -> Self {
-        Self { positions, cell }
-    }
 }
 
 /// A mesh with the buffers to evaluate any terms on it, and to change its connectivity.

@@ -1,7 +1,12 @@
 //! Numbers that a formula can be written for once: one `f64`, or a processor's whole register of them.
 
-use crate::potentials::{CONSTANTS, Constants};
 use std::ops::{Add, Div, Mul, Sub};
+
+/// Numbers in a [`Record`].
+pub const RECORD: usize = 8;
+
+/// Numbers of one element that are loaded together.
+pub type Record = [f64; RECORD];
 
 /// A real number, or several side by side (lanes) that go through the same formula.
 ///
@@ -48,7 +53,7 @@ pub trait Real:
     fn map(self, function: impl FnMut(f64) -> f64) -> Self;
 
     /// A record for each lane, number by number: those at some places, of which lanes beyond repeat the last.
-    fn gather(self, records: &[Constants], places: &[u32]) -> [Self; CONSTANTS];
+    fn gather(self, records: &[Record], places: &[u32]) -> [Self; RECORD];
 
     /// 0 in every lane.
     #[inline(always)]
@@ -107,7 +112,7 @@ impl Real for f64 {
     }
 
     #[inline(always)]
-    fn gather(self, records: &[Constants], places: &[u32]) -> [Self; CONSTANTS] {
+    fn gather(self, records: &[Record], places: &[u32]) -> [Self; RECORD] {
         records[places[0] as usize]
     }
 }

@@ -28,11 +28,13 @@
 //! ```
 
 mod parts;
+mod sharing;
 #[cfg(test)]
 mod tests;
 mod waiting;
 
 pub use parts::Parts;
+pub(crate) use sharing::Sharing;
 
 use std::any::Any;
 use std::cell::UnsafeCell;

@@ -1,7 +1,7 @@
 //! Pairs whose nearest points are found together, in lanes.
 
-use super::closest::{BLOCK, nearest, nearest_of_edges};
-use crate::dynamics::instructions::{Arithmetic, Kernel, run};
+use crate::lanes::{Arithmetic, Kernel, run};
+use crate::mesh::closest::{BLOCK, nearest, nearest_of_edges};
 use crate::mesh::geometry::Vec3;
 
 /// Some pairs of edges, or of vertices and triangles.

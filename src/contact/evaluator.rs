@@ -3,10 +3,10 @@
 use super::particles::ParticleContacts;
 use super::surface::SurfaceContacts;
 use crate::error::{Error, Result};
-use crate::evaluator::simd::Choice;
 use crate::mesh::triangulation::Quad;
 use crate::mesh::{Cell, Triangulation};
 use crate::potentials::{Contribution, Needs, Term, particle_surface};
+use crate::team::Sharing;
 use crate::team::{Team, default_threads};
 use nalgebra::Matrix3;
 use smallvec::SmallVec;
@@ -23,7 +23,7 @@ pub struct Contacts {
     /// Made when there is enough to do; the number that it may have, 0 for as many as there are.
     team: Option<Team>,
     threads: usize,
-    choice: Choice,
+    sharing: Sharing,
 }
 
 impl Default for Contacts {
@@ -34,7 +34,7 @@ impl Default for Contacts {
             alone: Team::new(1).expect("no thread is made for a team of one"),
             team: None,
             threads: 0,
-            choice: Choice::new(),
+            sharing: Sharing::new(),
         }
     }
 }
@@ -61,7 +61,7 @@ impl Contacts {
     /// Let so many threads share the work where that is faster; 0 for as many as there are.
     pub fn set_threads(&mut self, threads: usize) {
         (self.threads, self.team) = (threads, None);
-        self.choice = Choice::new();
+        self.sharing = Sharing::new();
     }
 
     /// Other triangles have come, not by flips.
@@ -125,7 +125,7 @@ impl Contacts {
         }
         let count: usize = particles.iter().map(|(_, term)| term.particles.len()).sum();
         let worth_it = count + self.surface.work() >= PARALLEL_FROM;
-        let attempt = worth_it.then(|| self.choice.next());
+        let attempt = worth_it.then(|| self.sharing.next());
         if worth_it && self.team.is_none() {
             let threads = if self.threads == 0 { default_threads() } else { self.threads };
             self.team = Team::new(threads).ok();
@@ -166,7 +166,7 @@ impl Contacts {
             }
         }
         if let Some(attempt) = attempt {
-            self.choice.done(&attempt);
+            self.sharing.done(&attempt);
         }
         Ok(())
     }

@@ -1,12 +1,12 @@
 //! Lists after flips, and what is near at present while flips go on.
 
-use super::closest::{Arms, crossing};
 use super::inner::sort;
 use super::lists::{Far, Lists, Made, Pair, ascending, lowest_first};
 use super::outer::{both, limits, triangle_sphere};
 use super::rough::Rough;
 use super::spheres::{Edge, Search, Sphere};
 use crate::mesh::Triangulation;
+use crate::mesh::closest::{Arms, crossing};
 use crate::mesh::triangulation::Quad;
 
 /// After so many flips the edges are sorted into boxes anew.

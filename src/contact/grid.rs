@@ -1,6 +1,6 @@
 //! A grid of cells over some points, or over a periodic box.
 
-use crate::dynamics::instructions::{Arithmetic, Kernel, run};
+use crate::lanes::{Arithmetic, Kernel, run};
 use crate::mesh::Cell;
 use crate::mesh::cell::MOST_BOXES;
 use crate::mesh::geometry::Vec3;
@@ -282,7 +282,7 @@ pub fn bounds<'a>(points: impl IntoIterator<Item = &'a Vec3>) -> [Vec3; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::closest::difference;
+    use crate::mesh::closest::difference;
     use crate::test_meshes::noise;
 
     /// All points nearer than the reach are found, each once.

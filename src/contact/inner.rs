@@ -1,9 +1,9 @@
 //! The inner list, which is chosen from the outer one.
 
-use super::closest::{Arms, edge_arms};
 use super::lists::{Far, Lists, Made, Pair, Scratch, usual};
 use super::rough::Rough;
 use crate::mesh::Cell;
+use crate::mesh::closest::{Arms, edge_arms};
 use crate::mesh::geometry::Vec3;
 use crate::team::{Parts, Team};
 

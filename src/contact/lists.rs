@@ -8,8 +8,8 @@
 //! on when lists were made. After flips, pairs of what is gone are taken out and those of what is new are added (`following.rs`).
 
 use super::spheres::{Search, Sphere, Spheres};
-use crate::dynamics::instructions::{Arithmetic, Kernel, run};
 use crate::error::Result;
+use crate::lanes::{Arithmetic, Kernel, run};
 use crate::mesh::cell::check_places;
 use crate::mesh::geometry::Vec3;
 use crate::mesh::{Cell, Triangulation};

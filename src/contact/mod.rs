@@ -6,7 +6,6 @@
 //! or of particles and then triangles: so neither the age of lists nor the number of threads shows in the bits.
 
 mod block;
-pub mod closest;
 mod evaluator;
 mod following;
 mod grid;

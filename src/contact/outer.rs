@@ -1,12 +1,12 @@
 //! The outer list, from spheres in boxes.
 
-use super::closest::{difference, in_one_piece};
 use super::grid::bounds;
 use super::inner::INNER;
 use super::lists::{Cost, Far, Lists, Made, Pair, Scratch, ascending, lowest_first, usual};
 use super::rough::Rough;
 use super::spheres::{Search, Sphere};
 use crate::error::{Error, Result};
+use crate::mesh::closest::{difference, in_one_piece};
 use crate::mesh::geometry::Vec3;
 use crate::mesh::triangulation::next;
 use crate::mesh::{Cell, Triangulation};

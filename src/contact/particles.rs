@@ -3,11 +3,11 @@
 //! The boxes of a grid know the triangles near them, and are renewed when a vertex has moved by the skin. Particles
 //! themselves are not remembered: each looks into its box, which for most of a million is empty.
 
-use super::closest::{Arms, difference, in_one_piece};
 use super::grid::{Grid, NOWHERE, TOGETHER, bounds};
 use super::reach::{Map, Reach, SKIN};
 use crate::error::{Error, Result};
 use crate::mesh::cell::{check_places, nowhere};
+use crate::mesh::closest::{Arms, difference, in_one_piece};
 use crate::mesh::geometry::Vec3;
 use crate::mesh::{Cell, Triangulation};
 use crate::potentials::particle_surface::{self, RADIUS};

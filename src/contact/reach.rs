@@ -1,7 +1,7 @@
 //! How far particles reach, and which triangles are near the boxes that they may be in.
 
-use super::closest::in_one_piece;
 use super::grid::{Grid, bounds};
+use crate::mesh::closest::in_one_piece;
 use crate::mesh::geometry::Vec3;
 use crate::mesh::{Cell, Triangulation};
 use crate::potentials::Term;

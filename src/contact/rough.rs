@@ -4,7 +4,7 @@
 //! The formulas here are such that distances grow by no more than δ sin θ, and no more than by what the ends or
 //! sides are farther, L sin θ; so by no more than √(e |r| L). [`MARGIN`] is taken off for that.
 
-use crate::dynamics::instructions::{Arithmetic, Kernel, run};
+use crate::lanes::{Arithmetic, Kernel, run};
 use std::cmp::Ordering;
 
 /// Pairs that are looked at together.
@@ -132,7 +132,7 @@ fn of_triangle(r: [f32; 3], u: [f32; 3], v: [f32; 3]) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::closest::{nearest, nearest_of_edges};
+    use crate::mesh::closest::{nearest, nearest_of_edges};
     use proptest::prelude::*;
 
     proptest! {

@@ -4,9 +4,9 @@ mod search;
 
 pub use search::Search;
 
-use super::closest::difference;
 use super::grid::{Grid, bounds};
 use crate::mesh::Cell;
+use crate::mesh::closest::difference;
 use crate::mesh::geometry::Vec3;
 
 /// What positions in single precision may be off by, as a share of how far they are from the origin.

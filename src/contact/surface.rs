@@ -1,11 +1,11 @@
 //! The repulsion of a surface; `src/potentials/surface_repulsion.rs` has the formula.
 
 use super::block::Block;
-use super::closest::{Arms, Nearest, crossing, edge_arms};
 use super::inner::arms;
 use super::lists::{Lists, Pair, ascending, lowest_first};
 use super::spheres::Search;
 use crate::error::Result;
+use crate::mesh::closest::{Arms, Nearest, crossing, edge_arms};
 use crate::mesh::geometry::Vec3;
 use crate::mesh::triangulation::Quad;
 use crate::mesh::{Cell, Triangulation};

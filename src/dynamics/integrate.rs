@@ -5,8 +5,8 @@
 //! groups of [`GROUP`], each with its own random numbers; threads share groups, so that the results do not
 //! depend on their number.
 
-use super::instructions::{Arithmetic, Kernel, run};
 use super::random::{GROUP, Stream, fill_group};
+use crate::lanes::{Arithmetic, Kernel, run};
 use crate::team::{Parts, Team};
 use std::ops::Range;
 
@@ -279,8 +279,8 @@ pub fn clear(team: Option<&mut Team>, forces: &mut [f64]) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::instructions::{Fused, Plain};
     use super::*;
+    use crate::lanes::kernels::{Fused, Plain};
 
     const SIZE: usize = 100;
     const STEP: f64 = 0.003;

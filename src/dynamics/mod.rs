@@ -1,7 +1,6 @@
 //! Time steps: the schemes of OpenMM's integrators and of masses that follow plaquettes, random numbers, and what else
 //! changes velocities.
 
-pub mod instructions;
 pub mod integrate;
 pub mod plaquettes;
 pub mod random;

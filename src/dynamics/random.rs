@@ -10,7 +10,7 @@
 //! ±8.49, beyond which lies a probability of 2e-17. Logarithm, sine and cosine are polynomials, without any
 //! branch, so that the compiler can compute as many at once as the processor allows.
 
-use super::instructions::{Arithmetic, Kernel, run};
+use crate::lanes::{Arithmetic, Kernel, run};
 
 /// Normals are made in groups of this many: 64 particles with three components each.
 pub const GROUP: usize = 192;
@@ -177,7 +177,7 @@ pub fn normals(stream: &mut Stream, out: &mut [f64]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dynamics::instructions::Plain;
+    use crate::lanes::kernels::Plain;
 
     /// Random123's `kat_vectors`, the lines of philox4x32 with 10 rounds.
     #[test]
@@ -205,7 +205,7 @@ mod tests {
         let more = (1..200_000).map(|i| f64::from(i) / 200_000.0);
         for x in ends.into_iter().chain(many).chain(more) {
             let exact = x.ln();
-            for found in [ln::<Plain>(x), ln::<crate::dynamics::instructions::Fused>(x)] {
+            for found in [ln::<Plain>(x), ln::<crate::lanes::kernels::Fused>(x)] {
                 assert!(
                     (found - exact).abs() <= 2.0 * f64::EPSILON * exact.abs(),
                     "{x}: {found} {exact}"

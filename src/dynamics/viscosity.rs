@@ -17,9 +17,9 @@
 //! exp(−γ Δt / μ) is the product of exp(−γ Δt w) and exp(−γ Δt w'): vertices have exponentials, and edges none. Edge
 //! after edge it is one thread's work; directions and random numbers are computed before, many at once.
 
-use super::instructions::{Arithmetic, Kernel, run};
 use super::random::{GROUP, Stream, fill_group};
 use crate::error::{Error, Result};
+use crate::lanes::{Arithmetic, Kernel, run};
 use crate::mesh::cell::nowhere;
 use crate::mesh::geometry::Vec3;
 use crate::mesh::triangulation::next;

@@ -19,6 +19,36 @@ use std::sync::Arc;
 /// and an evaluation there no longer than the way to a GPU and back.
 pub const LEAST_VERTICES_FOR_GPU: usize = 20_000;
 
+/// Refuse a GPU that does not exist.
+///
+/// # Errors
+/// There is none, or it cannot do what is asked.
+#[cfg(feature = "gpu")]
+pub fn check_backend(choice: Choice) -> Result<()> {
+    use super::gpu::adapters;
+    if choice.kind == Kind::Auto && choice.adapter.is_some() {
+        adapters::find(choice.adapter)?;
+    }
+    if choice.kind != Kind::Gpu {
+        return Ok(());
+    }
+    let precision = if choice.double == Some(true) { Precision::Double } else { Precision::Single };
+    adapters::find(choice.adapter)?.1.check(precision)
+}
+
+/// Refuse any GPU.
+///
+/// # Errors
+/// This build knows none.
+#[cfg(not(feature = "gpu"))]
+pub fn check_backend(choice: Choice) -> Result<()> {
+    if choice.kind != Kind::Gpu {
+        return Ok(());
+    }
+    let found = "openmm-helfrich was built without its feature \"gpu\"".to_owned();
+    Err(Error::NoAdapter { found })
+}
+
 /// Either evaluator, made when it is first needed.
 pub struct ChosenEvaluator {
     /// Threads of the processor that may share the work; 0 for as many as there are.
@@ -98,7 +128,7 @@ impl ChosenEvaluator {
         if self.choice == Some(choice) {
             return Ok(());
         }
-        backend::check(choice)?;
+        check_backend(choice)?;
         self.choice = Some(choice);
         self.settled_on_cpu = matches!(choice.kind, Kind::Cpu | Kind::Native)
             || choice.kind == Kind::Auto && !Self::is_worth_a_look(mesh);

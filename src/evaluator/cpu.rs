@@ -1,8 +1,9 @@
 //! The evaluator on the processor, and the choice of what it computes with.
 
 use super::Survey;
-use super::simd::{Level, SimdEvaluator};
+use super::simd::SimdEvaluator;
 use crate::error::Result;
+use crate::lanes::Level;
 use crate::mesh::numbering::breadth_first;
 use crate::mesh::{Cell, Topology, Triangulation};
 use crate::potentials::{Contribution, Term};

@@ -12,7 +12,7 @@ pub(crate) mod simd;
 mod survey;
 
 pub use borders::{BorderEvaluator, place};
-pub use chosen::{ChosenEvaluator, LEAST_VERTICES_FOR_GPU, Present};
+pub use chosen::{ChosenEvaluator, LEAST_VERTICES_FOR_GPU, Present, check_backend};
 pub use cpu::{CpuEvaluator, InstructionSet};
 pub use reference::ReferenceEvaluator;
 pub use survey::{Survey, SurveyedTriangle, SurveyedVertex};

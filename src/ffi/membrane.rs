@@ -2,8 +2,9 @@
 
 use super::{TermInput, guarded, slice, text};
 use crate::error::Result;
-use crate::membrane::{self, Configuration, Membrane};
+use crate::membrane::{self, Membrane};
 use crate::mesh::Cell;
+use crate::mesh::Configuration;
 use crate::mesh::triangulation::next;
 use crate::potentials::{Contribution, REGISTRY, Term, TriangleConstants, VertexNumbers};
 use smallvec::SmallVec;

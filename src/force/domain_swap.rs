@@ -2,8 +2,8 @@
 
 use super::owned::{Owned, handed_over, setters, statistic, statistics};
 use super::{MonteCarloBondFlip, check};
-use crate::c_api;
 use crate::error::{Error, Result};
+use crate::ffi::c_api;
 use crate::openmm::{OpenMM_Context, OpenMM_Force};
 use std::collections::BTreeSet;
 use std::ffi::c_int;

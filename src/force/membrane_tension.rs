@@ -2,8 +2,8 @@
 
 use super::check;
 use super::owned::{Owned, handed_over, setters, statistic, statistics};
-use crate::c_api;
 use crate::error::Result;
+use crate::ffi::c_api;
 use crate::openmm::{OpenMM_Context, OpenMM_Force};
 use std::ffi::c_int;
 

@@ -1,8 +1,8 @@
 //! What all forces have in common for Rust programs.
 
 use super::{c_text, check};
-use crate::c_api;
 use crate::error::{Error, Result};
+use crate::ffi::c_api;
 use crate::ffi::last_error;
 use crate::openmm::{OpenMM_Context, OpenMM_Force};
 use std::ffi::{c_char, c_double, c_int, c_void};

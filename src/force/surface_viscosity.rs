@@ -2,8 +2,8 @@
 
 use super::owned::{Owned, handed_over, setters};
 use super::{c_text, check};
-use crate::c_api;
 use crate::error::{Error, Result};
+use crate::ffi::c_api;
 use crate::openmm::OpenMM_Force;
 use std::ffi::c_int;
 

@@ -1,16 +1,16 @@
 //! Several membranes that are evaluated side by side, each by one thread.
 
-use crate::evaluator::simd::Choice;
+use crate::team::Sharing;
 use crate::team::{Parts, Team};
 
 /// Whether several threads are faster for some membranes, each of which is evaluated by one of them.
 pub struct Crowd {
-    choice: Choice,
+    sharing: Sharing,
 }
 
 impl Default for Crowd {
     fn default() -> Self {
-        Self { choice: Choice::new() }
+        Self { sharing: Sharing::new() }
     }
 }
 
@@ -24,7 +24,7 @@ impl Crowd {
         size: impl Fn(&M) -> usize,
         evaluate: impl Fn(&mut M) + Sync,
     ) {
-        let attempt = self.choice.next();
+        let attempt = self.sharing.next();
         match team.filter(|team| attempt.together && team.size() > 1) {
             None => membranes.iter_mut().for_each(evaluate),
             Some(team) => {
@@ -38,7 +38,7 @@ impl Crowd {
                 });
             }
         }
-        self.choice.done(&attempt);
+        self.sharing.done(&attempt);
     }
 }
 

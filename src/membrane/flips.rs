@@ -1,8 +1,9 @@
 //! Flips of a membrane, and of those that follow it.
 
-use super::{Configuration, Membrane};
+use super::Membrane;
 use crate::contact::is_contact;
 use crate::error::Result;
+use crate::mesh::Configuration;
 use crate::moves::{Round, Touched, flips};
 use crate::potentials::Term;
 use smallvec::SmallVec;

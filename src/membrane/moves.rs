@@ -1,9 +1,10 @@
 //! What moves of a membrane begin with, and what leapfrogs want to know after them.
 
+use super::Membrane;
 use super::surface::check_references;
-use super::{Configuration, Membrane};
 use crate::contact::is_contact;
 use crate::error::{Error, Result};
+use crate::mesh::Configuration;
 use crate::potentials::Term;
 
 impl Membrane {

@@ -1,10 +1,10 @@
 //! A surface with the evaluators of its geometry.
 
-use super::Configuration;
 use crate::error::{Error, Result};
 use crate::evaluator::{
     BorderEvaluator, ChosenEvaluator, Present, ReferenceEvaluator, Survey, place,
 };
+use crate::mesh::Configuration;
 use crate::mesh::cell::Image;
 use crate::mesh::numbering::breadth_first;
 use crate::mesh::orientation::is_inside_out;

@@ -1,7 +1,8 @@
 //! Exchanges between neighbours of a membrane.
 
-use super::{Configuration, Membrane};
+use super::Membrane;
 use crate::error::Result;
+use crate::mesh::Configuration;
 use crate::moves::{SwapRound, swaps};
 use crate::potentials::{MAX_PARAMETERS, MadeOf, Term, VertexNumbers};
 use smallvec::SmallVec;

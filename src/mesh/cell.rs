@@ -127,6 +127,22 @@ pub fn check_places(cell: Option<&Cell>, particles: &[u32], positions: &[Vec3]) 
     all.find_map(|(at, particle)| nowhere(cell, *particle, at)).map_or(Ok(()), Err)
 }
 
+/// Where all particles of a System are.
+#[derive(Debug, Clone, Copy)]
+pub struct Configuration<'a> {
+    /// x y z of one after the other, nm.
+    pub positions: &'a [f64],
+    /// The periodic box, if there is one; edges connect nearest images in it.
+    pub cell: Option<&'a Cell>,
+}
+
+impl<'a> Configuration<'a> {
+    /// Positions in a periodic box or none.
+    pub fn new(positions: &'a [f64], cell: Option<&'a Cell>) -> Self {
+        Self { positions, cell }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -2,6 +2,8 @@
 
 pub mod borders;
 pub mod cell;
+pub mod closest;
+mod culprit;
 mod flip;
 pub mod geometry;
 pub mod numbering;
@@ -13,7 +15,8 @@ pub mod triangulation;
 pub mod unfolding;
 pub mod vertex_vectors;
 
-pub use cell::Cell;
+pub use cell::{Cell, Configuration};
+pub(crate) use culprit::culprit;
 pub use topology::{NONE, Topology};
 pub use triangulation::Triangulation;
 pub use unfolding::Unfolding;

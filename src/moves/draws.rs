@@ -1,7 +1,7 @@
 //! The random numbers of attempts, which are functions of the key and of the number of the attempt.
 
-use crate::dynamics::instructions::{Arithmetic, Kernel, run};
 use crate::dynamics::random;
+use crate::lanes::{Arithmetic, Kernel, run};
 
 /// Attempts whose random numbers are made together.
 pub(super) const BLOCK: usize = 64;

@@ -1,6 +1,6 @@
 //! Dihedral angles of the few edges around a flip, all at once.
 
-use crate::dynamics::instructions::{Arithmetic, Kernel, run};
+use crate::lanes::{Arithmetic, Kernel, run};
 use crate::mesh::geometry::{EdgeGeometry, TriangleGeometry, Vec3, bend, is_small, small_bend};
 
 /// Room for ten edges, in whole registers.

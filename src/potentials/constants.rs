@@ -6,12 +6,14 @@ use crate::error::{Error, Result};
 use crate::mesh::Triangulation;
 use crate::mesh::cell::Cell;
 use crate::mesh::geometry::{TriangleGeometry, Vec3};
+use crate::real::{RECORD, Record};
 use std::f64::consts::TAU;
 use std::ffi::CStr;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The constants of a triangle for one potential, used or not.
-pub type Constants = [f64; CONSTANTS];
+pub type Constants = Record;
+const _: () = assert!(CONSTANTS == RECORD);
 
 /// What a potential wants to know of each vertex, and its constants of a triangle: by what there is at the corners and by
 /// which sides are borders.

@@ -13,6 +13,7 @@ mod edge_tension;
 mod elements;
 mod enclosed_volume;
 mod gaussian_curvature;
+mod in_lanes;
 mod lim;
 mod line_tension;
 mod linear_elastic;

@@ -15,7 +15,7 @@ use super::surface_repulsion::core;
 use super::{
     Attraction, Contribution, Domain, Element, MAX_PARAMETERS, Needs, Parameter, Potential, Term,
 };
-use crate::contact::closest::Arms;
+use crate::mesh::closest::Arms;
 use crate::mesh::geometry::Vec3;
 use std::ffi::CStr;
 

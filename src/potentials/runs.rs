@@ -4,7 +4,8 @@ use super::{
     Constants, Contribution, EdgeFormula, Place, Sums, Term, Triangle, TriangleFormula,
     TriangleSlopes, Vertex, VertexFormula,
 };
-use crate::evaluator::simd::{BLOCK, EdgeBlock, Level, TriangleTile, VertexTile};
+use crate::lanes::tiles::{EdgeBlock, TriangleTile, VertexTile};
+use crate::lanes::{BLOCK, Level};
 use crate::mesh::NONE;
 use crate::mesh::geometry::{
     EdgeGeometry, EdgePartials, TriangleGeometry, TrianglePartials, VertexGeometry, VertexPartials,
@@ -194,7 +195,7 @@ impl Edges<'_> {
         let (names, in_lanes) = match &self {
             Self::Energies { names, .. } => (*names, None),
             Self::Plain { names, .. } => (*names, None),
-            Self::Lanes(block) => (&[] as &[u32], Some(block.names())),
+            Self::Lanes(block) => (&[] as &[u32], Some((block.names)())),
         };
         let named = |name: u32| (name != NONE).then_some(name);
         let of_lane = |step: usize, lane: usize| named(in_lanes?[step][lane]);

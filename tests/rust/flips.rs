@@ -8,10 +8,10 @@ mod support;
 use openmm_helfrich::evaluator::{
     BorderEvaluator, CpuEvaluator, InstructionSet, ReferenceEvaluator,
 };
-use openmm_helfrich::membrane::{Configuration, Membrane};
+use openmm_helfrich::membrane::Membrane;
 use openmm_helfrich::mesh::numbering::breadth_first;
 use openmm_helfrich::mesh::triangulation::Turn;
-use openmm_helfrich::mesh::{NONE, Topology, Triangulation};
+use openmm_helfrich::mesh::{Configuration, NONE, Topology, Triangulation};
 use openmm_helfrich::moves::local::{Flipped, LocalEnergy};
 use openmm_helfrich::moves::{FlipRules, FlipState, Round};
 use openmm_helfrich::potentials::{Contribution, Term};

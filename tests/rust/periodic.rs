@@ -5,8 +5,8 @@ mod support;
 
 use openmm_helfrich::error::Error;
 use openmm_helfrich::evaluator::{BorderEvaluator, ReferenceEvaluator};
-use openmm_helfrich::membrane::{Configuration, Membrane};
-use openmm_helfrich::mesh::{Cell, Topology, Unfolding};
+use openmm_helfrich::membrane::Membrane;
+use openmm_helfrich::mesh::{Cell, Configuration, Topology, Unfolding};
 use openmm_helfrich::moves::{FlipRules, FlipState, Round};
 use openmm_helfrich::potentials::{Contribution, Term, VertexNumbers};
 use proptest::prelude::*;

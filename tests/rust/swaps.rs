@@ -6,8 +6,8 @@
 mod support;
 
 use openmm_helfrich::evaluator::{BorderEvaluator, ReferenceEvaluator};
-use openmm_helfrich::membrane::{Configuration, Membrane};
-use openmm_helfrich::mesh::{Topology, Triangulation};
+use openmm_helfrich::membrane::Membrane;
+use openmm_helfrich::mesh::{Configuration, Topology, Triangulation};
 use openmm_helfrich::moves::{SwapRound, SwapRules, SwapState};
 use openmm_helfrich::potentials::{Contribution, Term, VertexNumbers};
 use std::collections::{BTreeSet, HashMap};

@@ -81,7 +81,7 @@ int guarded(Body body) {
 
 } // namespace
 
-// What the C functions of the Rust core (src/c_api.rs) do with force objects.
+// What the C functions of the Rust core (src/ffi/c_api.rs) do with force objects.
 extern "C" {
 
 void* helfrich_shim_createForce(const char* type, const int* triangles, int numTriangles, const double* values,

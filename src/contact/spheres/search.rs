@@ -2,7 +2,7 @@
 
 use super::{Brick, Spheres};
 use crate::contact::grid::Around;
-use crate::dynamics::instructions::{Arithmetic, Kernel, run};
+use crate::lanes::{Arithmetic, Kernel, run};
 use crate::mesh::geometry::Vec3;
 
 /// How many are looked at together.

@@ -11,8 +11,8 @@ mod passes;
 pub use layout::{Layout, Sheet, Tile};
 
 use crate::error::{Error, Result};
-use crate::evaluator::checks::culprit;
 use crate::mesh::Cell;
+use crate::mesh::culprit;
 use crate::mesh::geometry::Vec3;
 use crate::mesh::topology::NONE;
 use crate::team::{Parts, Team};

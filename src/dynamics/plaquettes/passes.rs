@@ -5,7 +5,7 @@
 
 use super::layout::Layout;
 use super::{LANES, Lanes, THIRD, Vectors};
-use crate::dynamics::instructions::{Arithmetic, Kernel, run};
+use crate::lanes::{Arithmetic, Kernel, run};
 use crate::mesh::Cell;
 use crate::mesh::geometry::Vec3;
 use std::ops::Range;

@@ -1,8 +1,8 @@
 //! The passes of a time step over vertices, in lanes.
 
-use crate::dynamics::instructions::{Arithmetic, Kernel, run};
 use crate::dynamics::plaquettes::{LANES, Lanes, Layout, THIRD, Vectors};
 use crate::dynamics::random::{GROUP, Stream, fill_group};
+use crate::lanes::{Arithmetic, Kernel, run};
 use std::ops::Range;
 
 /// How far an iterate is from the one before, and how large it is, by their largest components.

@@ -10,7 +10,7 @@ use super::lattice::{Scale, connected_parts};
 use super::layout::{Pass, connectivity, items, passes};
 use super::{Bytes, Precision, Sink, shaders};
 use crate::error::{Error, Result};
-use crate::membrane::Configuration;
+use crate::mesh::Configuration;
 use crate::mesh::geometry::Vec3;
 use crate::mesh::{Cell, Topology, Triangulation};
 use crate::potentials::{MAX_PARAMETERS, Needs, Potential, Term, Total};

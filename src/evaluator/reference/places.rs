@@ -1,10 +1,10 @@
 //! Where the corners of triangles are, of which some are images of their vertices where a mesh spans a periodic box.
 
 use crate::error::Error;
-use crate::evaluator::checks::culprit;
 use crate::evaluator::passes::{Nothing, fill};
 use crate::mesh::Topology;
 use crate::mesh::cell::{Cell, Image};
+use crate::mesh::culprit;
 use crate::mesh::geometry::Vec3;
 use std::sync::Arc;
 

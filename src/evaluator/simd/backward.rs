@@ -2,10 +2,9 @@
 
 use super::arrays::Arrays;
 use super::forward::{CONSECUTIVE, NORMALS, VECTORS, VORONOI};
-use super::instructions::WithLanes;
-use super::lanes::Lane;
 use super::layout::Layout;
-use super::records::{BLOCK, Records};
+use crate::lanes::{BLOCK, Records};
+use crate::lanes::{Lane, WithLanes};
 use crate::mesh::geometry::TotalPartials;
 use crate::mesh::vertex_vectors::COT_60;
 use crate::real::{Real, cross, dot, minus, minus_scaled, plus, plus_scaled, scaled};

@@ -2,11 +2,11 @@
 //! potentials of vertices make of them.
 
 use super::arrays::Arrays;
-use super::instructions::WithLanes;
-use super::lanes::Lane;
-use super::layout::{Layout, TILE};
-use super::records::{BLOCK, Records};
-use super::tiles::{VertexTile, load3};
+use super::layout::Layout;
+use crate::lanes::tiles::TILE;
+use crate::lanes::tiles::{VertexTile, load3};
+use crate::lanes::{BLOCK, Records};
+use crate::lanes::{Lane, WithLanes};
 use crate::mesh::geometry::{Vec3, arctan_over_argument};
 use crate::mesh::vertex_vectors::COT_60;
 use crate::real::{Real, cross, dot, minus, plus, plus_scaled};

@@ -6,7 +6,7 @@
 
 use super::arrays::{Arrays, Numbers};
 use super::layout::Layout;
-use super::records::BLOCK;
+use crate::lanes::BLOCK;
 use crate::mesh::Triangulation;
 use crate::mesh::cell::{Cell, Image, minus};
 use crate::mesh::geometry::Vec3;

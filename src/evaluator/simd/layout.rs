@@ -6,17 +6,13 @@
 //! the vertices. The user's order is kept outside: `particles`, `vertex_ids` and `triangle_ids` translate.
 
 use super::ghosts::Ghosts;
-use super::records::BLOCK;
+use crate::lanes::BLOCK;
+use crate::lanes::tiles::TILE;
 use crate::mesh::geometry::Vec3;
 use crate::mesh::triangulation::{next, previous};
 use crate::mesh::{NONE, Triangulation};
 use std::ops::Range;
 use std::sync::OnceLock;
-
-/// Elements that are handled together: what a tile needs between passes stays in the nearest cache. Sums
-/// are formed within tiles and then over tiles in order, whatever the number of threads, so this number is
-/// part of what decides the last bits.
-pub const TILE: usize = 128;
 
 /// The renumbered mesh. All offsets count numbers, not records.
 ///

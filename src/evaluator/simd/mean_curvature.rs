@@ -5,7 +5,7 @@
 
 use super::arrays::Arrays;
 use super::layout::Layout;
-use super::records::BLOCK;
+use crate::lanes::BLOCK;
 use crate::mesh::geometry::{EdgeTension, TotalPartials, TriangleGeometry, Vec3, corner_forces};
 use std::ops::Range;
 

@@ -12,34 +12,25 @@
 
 mod arrays;
 mod backward;
-mod choice;
 mod forward;
 mod ghosts;
-mod instructions;
-mod lanes;
 mod layout;
 mod mean_curvature;
-mod records;
 mod survey;
 mod sweep;
-mod tiles;
 mod triangles;
-#[cfg(target_arch = "x86_64")]
-mod x86;
 
-pub use choice::Choice;
-pub use instructions::Level;
 pub use layout::Layout;
-pub use records::BLOCK;
-pub use tiles::{EdgeBlock, TriangleTile, VertexTile};
 
 use super::Survey;
-use super::checks::{check_energies, check_totals, culprit};
+use super::checks::{check_energies, check_totals};
 use crate::error::{Error, Result};
+use crate::lanes::tiles::{TriangleTile, VertexTile};
+use crate::lanes::{BLOCK, Level};
 use crate::mesh::geometry::{TotalPartials, Totals};
-use crate::mesh::{Cell, Triangulation};
+use crate::mesh::{Cell, Triangulation, culprit};
 use crate::potentials::{Contribution, Needs, Term};
-use crate::team::{Parts, Team};
+use crate::team::{Parts, Sharing, Team};
 use arrays::Arrays;
 use backward::Forces;
 use mean_curvature::{add_mean_curvature, release_borders};
@@ -58,7 +49,7 @@ pub struct SimdEvaluator {
     /// The calling thread, and the team that it belongs to where that is worth a try.
     alone: Team,
     team: Option<Team>,
-    choice: Choice,
+    sharing: Sharing,
     scratch: Vec<Scratch>,
     triangle_sums: Vec<TriangleSums>,
     /// For each tile of vertices the sum of their curvatures, where a term wants the total.
@@ -86,7 +77,7 @@ impl SimdEvaluator {
             layout,
             alone: Team::new(1).expect("no thread is made for a team of one"),
             team: None,
-            choice: Choice::new(),
+            sharing: Sharing::new(),
             scratch: Vec::new(),
             has_slopes: false,
         };
@@ -112,7 +103,7 @@ impl SimdEvaluator {
     /// Let so many threads share the work where that is faster, or as many as the system has left.
     pub fn set_threads(&mut self, threads: usize) {
         self.team = if threads > 1 { Team::new(threads).ok() } else { None };
-        self.choice = Choice::new();
+        self.sharing = Sharing::new();
         self.make_scratch();
     }
 
@@ -147,10 +138,10 @@ impl SimdEvaluator {
                 "needs positions and forces of {particles} particles or more and one contribution a term, or none"
             )));
         }
-        let attempt = self.choice.next();
+        let attempt = self.sharing.next();
         let outcome =
             self.attempt(terms, positions, contributions, forces, survey, attempt.together);
-        self.choice.done(&attempt);
+        self.sharing.done(&attempt);
         outcome
     }
 

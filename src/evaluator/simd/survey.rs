@@ -1,8 +1,8 @@
 //! From the passes' tiles to a [`Survey`], whose elements have the order of the mesh.
 
 use super::sweep::Sweep;
-use super::tiles::{Column, TriangleTile, VertexTile};
 use crate::evaluator::{Survey, SurveyedTriangle, SurveyedVertex};
+use crate::lanes::tiles::{Column, TriangleTile, VertexTile};
 use crate::mesh::geometry::{TriangleGeometry, Vec3, VertexGeometry};
 use crate::mesh::vertex_vectors::VertexVectors;
 use crate::potentials::Needs;

@@ -5,12 +5,13 @@
 use super::arrays::{self, Arrays};
 use super::backward::{Backward, Forces};
 use super::forward::{self, NORMALS, VECTORS, VORONOI};
-use super::instructions::{Level, dispatch};
-use super::layout::{Layout, TILE};
-use super::records::BLOCK;
+use super::layout::Layout;
 use super::survey::Findings;
-use super::tiles::{EdgeBlock, TriangleTile, VertexTile};
 use super::triangles::{self, TriangleSums};
+use crate::lanes::BLOCK;
+use crate::lanes::tiles::TILE;
+use crate::lanes::tiles::{EdgeBlock, TriangleTile, VertexTile};
+use crate::lanes::{Level, dispatch};
 use crate::mesh::geometry::TotalPartials;
 use crate::potentials::{Contribution, Edges, Needs, Term, Triangles, Vertices};
 use crate::team::{Member, Parts};
@@ -252,9 +253,8 @@ impl Sweep<'_, '_> {
                 if term.potential.needs(term).contains(Needs::EDGES) {
                     let lanes = BLOCK.min(vertices.end - first);
                     let moments = &mut *moments;
-                    let first_step = steps.start;
-                    let block =
-                        EdgeBlock { bends, lengths_squared, moments, lanes, layout, first_step };
+                    let names = &|| &layout.edge_names()[steps.clone()];
+                    let block = EdgeBlock { bends, lengths_squared, moments, lanes, names };
                     *contribution += term.potential.edges(term, Edges::Lanes(block));
                 }
             }

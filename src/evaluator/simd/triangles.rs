@@ -1,11 +1,11 @@
 //! The first pass: the geometry of triangles, and what their potentials make of it.
 
 use super::arrays::Arrays;
-use super::instructions::WithLanes;
-use super::lanes::Lane;
-use super::layout::{Layout, TILE};
-use super::records::{BLOCK, Records};
-use super::tiles::{TriangleTile, load3};
+use super::layout::Layout;
+use crate::lanes::tiles::TILE;
+use crate::lanes::tiles::{COUNTS, TriangleTile, load3};
+use crate::lanes::{BLOCK, Records};
+use crate::lanes::{Lane, WithLanes};
 use crate::mesh::geometry::corner_angle;
 use crate::real::{Real, cross, dot, minus, plus, plus_scaled, scaled};
 use std::ops::AddAssign;
@@ -49,17 +49,6 @@ pub struct Forward<'a, const POTENTIALS: bool, const ANGLES: bool> {
     pub index: usize,
     pub tile: &'a mut TriangleTile,
 }
-
-/// Which lanes of a last block that is not full count: as many ones from `BLOCK` − that many on, then zeros.
-pub static COUNTS: [f64; 2 * BLOCK] = {
-    let mut counts = [0.0; 2 * BLOCK];
-    let mut lane = 0;
-    while lane < BLOCK {
-        counts[lane] = 1.0;
-        lane += 1;
-    }
-    counts
-};
 
 impl<const POTENTIALS: bool, const ANGLES: bool> WithLanes for Forward<'_, POTENTIALS, ANGLES> {
     type Output = TriangleSums;

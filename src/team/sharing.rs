@@ -12,8 +12,8 @@ const TRIAL: u32 = 16;
 /// Evaluations from one trial to the next.
 const PERIOD: u32 = 5000;
 
-/// The choice for one mesh.
-pub struct Choice {
+/// Whether the members of a team share an evaluation of one mesh.
+pub struct Sharing {
     evaluation: u32,
     /// The shortest times of the present trial, alone and together.
     shortest: [Duration; 2],
@@ -27,7 +27,7 @@ pub struct Attempt {
     start: Option<Instant>,
 }
 
-impl Choice {
+impl Sharing {
     /// Nothing known yet.
     pub fn new() -> Self {
         Self { evaluation: 0, shortest: [Duration::MAX; 2], together: false }
@@ -62,26 +62,26 @@ impl Choice {
 mod tests {
     use super::*;
 
-    fn trial(choice: &mut Choice, alone: Duration, together: Duration) {
+    fn trial(sharing: &mut Sharing, alone: Duration, together: Duration) {
         for _ in 0..TRIAL {
-            let mut attempt = choice.next();
+            let mut attempt = sharing.next();
             let taken = if attempt.together { together } else { alone };
             attempt.start = Instant::now().checked_sub(taken);
-            choice.done(&attempt);
+            sharing.done(&attempt);
         }
     }
 
     #[test]
     fn the_faster_way_is_taken_until_the_next_trial() {
         let (short, long) = (Duration::from_millis(1), Duration::from_millis(900));
-        let mut choice = Choice::new();
-        trial(&mut choice, long, short);
+        let mut sharing = Sharing::new();
+        trial(&mut sharing, long, short);
         for _ in TRIAL..PERIOD {
-            let attempt = choice.next();
+            let attempt = sharing.next();
             assert!(attempt.together && attempt.start.is_none());
-            choice.done(&attempt);
+            sharing.done(&attempt);
         }
-        trial(&mut choice, short, long);
-        assert!(!choice.next().together);
+        trial(&mut sharing, short, long);
+        assert!(!sharing.next().together);
     }
 }

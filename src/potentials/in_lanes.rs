@@ -1,136 +1,14 @@
-//! What passes hand to potentials: the quantities of some elements, column by column.
-//!
-//! A potential gets a whole tile by one dynamic call, or a block of rings where it acts on angles.
+//! Formulas over the tiles of the fast evaluator, in the lanes of the instruction set that the processor has.
 
-use super::instructions::{Level, WithLanes, dispatch};
-use super::lanes::Lane;
-use super::layout::{Layout, TILE};
-use super::records::{BLOCK, Records};
-use super::triangles::COUNTS;
-use crate::potentials::{
+use super::{
     Contribution, Needs, Place, Sums, Term, Triangle, TriangleFormula, TriangleSlopes, Vertex,
     VertexFormula,
 };
+use crate::lanes::tiles::{COUNTS, Column, TriangleTile, VertexColumns, VertexTile, load3};
+use crate::lanes::{BLOCK, Lane, Level, Records, WithLanes, dispatch};
 use crate::real::Real;
 
-/// One quantity of the elements of a tile.
-#[derive(Clone, Copy)]
-#[repr(align(64))]
-pub struct Column(pub [f64; TILE]);
-
-impl Column {
-    /// 0 everywhere.
-    pub const ZERO: Self = Self([0.0; TILE]);
-
-    #[inline(always)]
-    pub fn load<S: Records>(&self, simd: S, index: usize) -> Lane<S> {
-        debug_assert!(index + Lane::<S>::COUNT <= TILE);
-        // SAFETY: tiles are whole blocks, and lanes divide blocks.
-        unsafe { Lane::load(simd, self.0.as_ptr().add(index)) }
-    }
-
-    #[inline(always)]
-    pub fn store<S: Records>(&mut self, index: usize, value: Lane<S>) {
-        debug_assert!(index + Lane::<S>::COUNT <= TILE);
-        // SAFETY: as in `load`.
-        unsafe { value.store(self.0.as_mut_ptr().add(index)) };
-    }
-}
-
-/// The three components of a vector.
-#[inline(always)]
-pub fn load3<S: Records>(simd: S, columns: &[Column; 3], index: usize) -> [Lane<S>; 3] {
-    [columns[0].load(simd, index), columns[1].load(simd, index), columns[2].load(simd, index)]
-}
-
-/// Triangles, and the derivatives of the energy with respect to them.
-pub struct TriangleTile {
-    pub twice_area: Column,
-    pub dots: [Column; 3],
-    pub by_area: Column,
-    pub by_length_squared: [Column; 3],
-    /// Whether no formula has acted, so that the derivatives are zero.
-    pub silent: bool,
-    pub energies: Energies,
-}
-
-/// The quantities of vertices, or the derivatives of the energy with respect to them.
-pub struct VertexColumns {
-    pub area: Column,
-    pub voronoi_area: Column,
-    pub curvature: Column,
-    pub cotangent: [Column; 3],
-    pub umbrella: [Column; 3],
-    pub normal_sum: [Column; 3],
-}
-
-/// The energy of each element, if somebody wants to know.
-pub struct Energies {
-    pub wanted: bool,
-    pub sum: Column,
-}
-
-impl Energies {
-    const UNWANTED: Self = Self { wanted: false, sum: Column::ZERO };
-
-    /// Begin a tile.
-    pub fn begin(&mut self, wanted: bool) {
-        self.wanted = wanted;
-        if wanted {
-            self.sum = Column::ZERO;
-        }
-    }
-
-    #[inline(always)]
-    fn add<S: Records>(&mut self, simd: S, index: usize, energy: Lane<S>) {
-        if self.wanted {
-            self.sum.store(index, self.sum.load(simd, index) + energy);
-        }
-    }
-}
-
-/// Vertices, and the derivatives of the energy with respect to them.
-pub struct VertexTile {
-    pub energies: Energies,
-    pub known: VertexColumns,
-    pub slopes: VertexColumns,
-    /// tan(φ/2) / l and l² of the edges of a block, step by step.
-    pub ring: Vec<[[f64; BLOCK]; 2]>,
-}
-
-/// The edges at a block of vertices, step by step of their rings.
-pub struct EdgeBlock<'a> {
-    /// φ / l, 1/nm.
-    pub bends: &'a [[f64; BLOCK]],
-    /// l², nm².
-    pub lengths_squared: &'a [[f64; BLOCK]],
-    /// (∂E/∂φ) / l, kJ/mol/nm, to be added to.
-    pub moments: &'a mut [[f64; BLOCK]],
-    /// How many of the lanes count; the rest repeat other vertices.
-    pub lanes: usize,
-    /// The mesh, and where in it the block's steps begin.
-    pub layout: &'a Layout,
-    pub first_step: usize,
-}
-
-impl<'a> EdgeBlock<'a> {
-    /// The places of the edges among the values of edges; [`NONE`](crate::mesh::NONE) where there is no dihedral angle.
-    pub fn names(&self) -> &'a [[u32; BLOCK]] {
-        &self.layout.edge_names()[self.first_step..][..self.bends.len()]
-    }
-}
-
 impl TriangleTile {
-    /// Nothing.
-    pub const EMPTY: Self = Self {
-        twice_area: Column::ZERO,
-        dots: [Column::ZERO; 3],
-        by_area: Column::ZERO,
-        by_length_squared: [Column::ZERO; 3],
-        silent: true,
-        energies: Energies::UNWANTED,
-    };
-
     /// Apply a formula to the elements with these indices; returns the sum.
     pub fn apply<F: TriangleFormula>(
         &mut self,
@@ -143,16 +21,20 @@ impl TriangleTile {
     }
 }
 
-impl VertexColumns {
-    const ZERO: Self = Self {
-        area: Column::ZERO,
-        voronoi_area: Column::ZERO,
-        curvature: Column::ZERO,
-        cotangent: [Column::ZERO; 3],
-        umbrella: [Column::ZERO; 3],
-        normal_sum: [Column::ZERO; 3],
-    };
+impl VertexTile {
+    /// Apply a formula to the elements with these indices; returns the sum.
+    pub fn apply<F: VertexFormula>(
+        &mut self,
+        level: Level,
+        term: &Term,
+        ids: &[u32],
+        formula: &F,
+    ) -> Contribution {
+        dispatch(level, InLanes { term, ids, tile: self, formula })
+    }
+}
 
+impl VertexColumns {
     /// Set the columns of so many vertices to 0, as far as somebody needs them.
     pub fn clear(&mut self, needs: Needs, count: usize) {
         let clear = |column: &mut Column| column.0[..count.next_multiple_of(BLOCK)].fill(0.0);
@@ -215,26 +97,6 @@ impl VertexColumns {
                 self.normal_sum[k].store(index, vertex.normal_sum[k]);
             }
         }
-    }
-}
-
-impl VertexTile {
-    /// For rings of so many steps.
-    pub fn new(steps: usize) -> Self {
-        let (known, slopes) = (VertexColumns::ZERO, VertexColumns::ZERO);
-        let energies = Energies::UNWANTED;
-        Self { energies, known, slopes, ring: vec![[[0.0; BLOCK]; 2]; steps] }
-    }
-
-    /// Apply a formula to the elements with these indices; returns the sum.
-    pub fn apply<F: VertexFormula>(
-        &mut self,
-        level: Level,
-        term: &Term,
-        ids: &[u32],
-        formula: &F,
-    ) -> Contribution {
-        dispatch(level, InLanes { term, ids, tile: self, formula })
     }
 }
 

@@ -2,9 +2,18 @@
 //!
 //! The crate `pulp` has the arithmetic of each; here are operators on it, so that formulas read as formulas.
 
-use super::records::{BLOCK, Records};
-use crate::potentials::{CONSTANTS, Constants};
-use crate::real::Real;
+mod instructions;
+pub mod kernels;
+mod records;
+pub mod tiles;
+#[cfg(target_arch = "x86_64")]
+mod x86;
+
+pub use instructions::{Level, WithLanes, dispatch};
+pub use kernels::{Arithmetic, Kernel, run};
+pub use records::{BLOCK, Records};
+
+use crate::real::{RECORD, Real, Record};
 use pulp::Simd;
 use pulp::bytemuck::cast;
 use std::ops::{Add, Div, Mul, Sub};
@@ -269,14 +278,14 @@ impl<S: Records> Real for Lane<S> {
     }
 
     #[inline(always)]
-    fn gather(self, records: &[Constants], places: &[u32]) -> [Self; CONSTANTS] {
+    fn gather(self, records: &[Record], places: &[u32]) -> [Self; RECORD] {
         // Offsets count numbers.
-        assert!(records.len() <= u32::MAX as usize / CONSTANTS, "no mesh is that large");
+        assert!(records.len() <= u32::MAX as usize / RECORD, "no mesh is that large");
         let mut offsets = [0; BLOCK];
         for (lane, offset) in offsets[..Self::COUNT].iter_mut().enumerate() {
             let place = places[lane.min(places.len() - 1)];
             assert!((place as usize) < records.len(), "there is a record for each");
-            *offset = CONSTANTS as u32 * place;
+            *offset = RECORD as u32 * place;
         }
         let base = records.as_ptr().cast::<f64>();
         // SAFETY: the offsets are of records that are there, each of twice four numbers.

@@ -4,6 +4,7 @@
 
 use crate::backend::{self, Choice, Kind};
 use crate::error::Error;
+use crate::evaluator::check_backend;
 use crate::ffi::{copy_out, guarded, text};
 use crate::membrane::Membrane;
 use std::ffi::{c_char, c_int};
@@ -15,7 +16,12 @@ use std::ffi::{c_char, c_int};
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn Helfrich_setBackend(choice: *const c_char) -> c_int {
     let choice = unsafe { text(choice) };
-    guarded("set_backend", || backend::set_global(choice.parse()?))
+    guarded("set_backend", || {
+        let choice = choice.parse()?;
+        check_backend(choice)?;
+        backend::set_global(choice);
+        Ok(())
+    })
 }
 
 /// Copy the choice for the process into a buffer; returns its length, or −1 if the environment variable
