@@ -7,7 +7,7 @@
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use openmm_helfrich::evaluator::{CpuEvaluator, InstructionSet, ReferenceEvaluator};
 use openmm_helfrich::mesh::Topology;
-use openmm_helfrich::potentials::Term;
+use openmm_helfrich::potentials::{Evaluator, Request, Term};
 use std::f64::consts::PI;
 use std::hint::black_box;
 use std::sync::Arc;
@@ -63,16 +63,14 @@ const CONTENDERS: [Contender; 6] = [
 fn plain(topology: Arc<Topology>) -> Evaluate {
     let mut evaluator = ReferenceEvaluator::new(topology);
     Box::new(move |terms, positions, forces| {
-        let terms: Vec<_> = terms.iter().collect();
-        evaluator.evaluate(&terms, positions, &mut [], Some(forces)).unwrap();
+        evaluator.evaluate(Request::new(terms, positions).with_forces(forces)).unwrap();
     })
 }
 
 fn lanes(topology: Arc<Topology>, set: InstructionSet, threads: usize) -> Evaluate {
     let mut evaluator = CpuEvaluator::with(topology, set, threads);
     Box::new(move |terms, positions, forces| {
-        let terms: Vec<_> = terms.iter().collect();
-        evaluator.evaluate(&terms, positions, &mut [], Some(forces)).unwrap();
+        evaluator.evaluate(Request::new(terms, positions).with_forces(forces)).unwrap();
     })
 }
 

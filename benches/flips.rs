@@ -9,7 +9,7 @@ use openmm_helfrich::mesh::numbering::breadth_first;
 use openmm_helfrich::mesh::{Topology, Triangulation};
 use openmm_helfrich::moves::local::LocalEnergy;
 use openmm_helfrich::moves::{FlipRules, FlipState, Round, flips};
-use openmm_helfrich::potentials::Term;
+use openmm_helfrich::potentials::{Evaluator, Request, Term};
 use std::f64::consts::PI;
 use std::hint::black_box;
 use std::time::Instant;
@@ -61,11 +61,10 @@ fn main() {
         let order = breadth_first(&mesh);
         let mut evaluator = CpuEvaluator::of(&mesh, &order, InstructionSet::Best, 1);
         let mut forces = vec![0.0; positions.len()];
-        let terms_in_use: Vec<_> = terms.iter().collect();
         // From here on the mesh is that of a fluid.
         let fill = |mesh: &Triangulation, local: &mut LocalEnergy, evaluator: &mut CpuEvaluator| {
             let survey =
-                |survey: &mut Survey| evaluator.survey(&terms_in_use, &positions, None, survey);
+                |survey: &mut Survey| evaluator.survey(Request::new(&terms, &positions), survey);
             local.fill(mesh, &terms, None, survey).unwrap();
         };
         fill(&mesh, &mut local, &mut evaluator);
@@ -110,7 +109,9 @@ fn main() {
         let layout = shortest(runs, || timed(|| evaluator.lay_out(&mesh, &order)));
         let evaluation = shortest(runs, || {
             timed(|| {
-                evaluator.evaluate(&terms_in_use, &positions, &mut [], Some(&mut forces)).unwrap()
+                evaluator
+                    .evaluate(Request::new(&terms, &positions).with_forces(&mut forces[..]))
+                    .unwrap()
             })
         });
         println!(

@@ -5,7 +5,7 @@
 use openmm_helfrich::evaluator::CpuEvaluator;
 use openmm_helfrich::evaluator::gpu::{GpuEvaluator, Precision, Timings, adapters};
 use openmm_helfrich::mesh::Topology;
-use openmm_helfrich::potentials::{Contribution, Term};
+use openmm_helfrich::potentials::{Contribution, Evaluator, Request, Term};
 use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -94,12 +94,15 @@ fn microseconds(time: Duration) -> f64 {
 fn on_processor(topology: &Arc<Topology>, positions: &[f64]) -> Duration {
     let mut evaluator = CpuEvaluator::new(topology.clone());
     let (terms, mut found) = (terms(), [Contribution::default(); 4]);
-    let terms = terms.each_ref();
     let mut forces = vec![0.0; positions.len()];
     shortest(|| {
         let start = Instant::now();
         evaluator
-            .evaluate(&terms, positions, &mut found, Some(&mut forces))
+            .evaluate(
+                Request::new(&terms, positions)
+                    .with_energies(&mut found)
+                    .with_forces(&mut forces[..]),
+            )
             .expect("a sphere has forces");
         (start.elapsed(), ())
     })
@@ -112,7 +115,9 @@ fn on_device(evaluator: &mut GpuEvaluator, positions: &[f64]) -> (Duration, Timi
     evaluator.measure();
     shortest(|| {
         let start = Instant::now();
-        let done = evaluator.evaluate(&terms, positions, &mut found, Some(&mut forces));
+        let done = evaluator.evaluate(
+            Request::new(&terms, positions).with_energies(&mut found).with_forces(&mut forces[..]),
+        );
         assert_eq!(done, Ok(true));
         (start.elapsed(), evaluator.timings().unwrap_or_default())
     })

@@ -10,7 +10,9 @@
 //! Units are OpenMM's (nm, ps, amu, kJ/mol). Orientation and signs are stated in [`mesh::geometry`].
 //!
 //! ```
-//! use openmm_helfrich::{evaluator::CpuEvaluator, mesh::Topology, potentials::{Contribution, Term}};
+//! use openmm_helfrich::evaluator::CpuEvaluator;
+//! use openmm_helfrich::mesh::Topology;
+//! use openmm_helfrich::potentials::{Contribution, Evaluator, Request, Term};
 //! use std::sync::Arc;
 //!
 //! // A regular octahedron of area 4√3 that would rather have half of it.
@@ -20,7 +22,9 @@
 //! let topology = Arc::new(Topology::new(&triangles, 6)?);
 //! let area = Term::new("SurfaceAreaForce", 0, &[1.0, 2.0 * 3f64.sqrt()])?;
 //! let (mut energy, mut forces) = ([Contribution::default()], [0.0; 18]);
-//! CpuEvaluator::new(topology).evaluate(&[&area], &positions, &mut energy, Some(&mut forces))?;
+//! let terms = [area];
+//! let request = Request::new(&terms, &positions).with_energies(&mut energy);
+//! CpuEvaluator::new(topology).evaluate(request.with_forces(&mut forces[..]))?;
 //! assert!((energy[0].energy - 3f64.sqrt()).abs() < 1e-12);
 //! assert!(forces[0] < 0.0);
 //! # Ok::<(), openmm_helfrich::error::Error>(())

@@ -3,9 +3,9 @@
 use crate::backend::Choice;
 use crate::contact::{Contacts, is_contact};
 use crate::error::{Error, Result};
-use crate::mesh::{Configuration, Topology, Triangulation};
+use crate::mesh::{Cell, Configuration, Topology, Triangulation};
 use crate::moves::local::LocalEnergy;
-use crate::potentials::{Contribution, Term};
+use crate::potentials::{Contribution, Request, Term};
 use crate::remembered::Remembered;
 use nalgebra::Matrix3;
 use std::sync::atomic::{AtomicI64, Ordering};
@@ -108,32 +108,24 @@ impl Membrane {
     /// Those of the evaluators and of [`Unfolding::unfold`](crate::mesh::Unfolding::unfold), triangles that are turned
     /// inside out where a term needs an outside, and a parameter outside its domain, as a Context parameter can come to
     /// be.
-    pub fn evaluate(
-        &mut self,
-        terms: &[Term],
-        at: Configuration,
-        contributions: &mut [Contribution],
-        mut forces: Option<&mut [f64]>,
-    ) -> Result<()> {
-        let length = 3 * self.num_particles;
-        let fits = forces.as_ref().is_none_or(|forces| forces.len() == length);
-        let counts = contributions.is_empty() || contributions.len() == terms.len();
-        if at.positions.len() != length || !fits || !counts {
+    pub fn evaluate(&mut self, mut request: Request, cell: Option<&Cell>) -> Result<()> {
+        if request.positions.len() != 3 * self.num_particles {
             return Err(Error::Contract(format!(
-                "needs positions and forces of {} particles and one contribution a term, or none",
+                "needs positions of {} particles",
                 self.num_particles
             )));
         }
+        request.check(self.num_particles)?;
+        let Request { terms, positions, .. } = request;
         for term in terms {
             self.check(term)?;
         }
-        let Configuration { positions, cell } = at;
-        if let (true, Some(forces)) = (contributions.is_empty(), &mut forces)
+        if let (true, Some(forces)) = (request.energies.is_empty(), &mut request.forces)
             && self.remembered.add_once(terms, positions, cell, forces)
         {
             return Ok(());
         }
-        contributions.fill(Contribution::default());
+        request.energies.fill(Contribution::default());
         let surface = &mut self.surface;
         let equipped;
         let terms = match need_constants(terms) {
@@ -143,13 +135,14 @@ impl Membrane {
                 &equipped
             }
         };
+        let mut request = Request { terms, ..request };
         // A surface that only contacts act on may be in no condition for the others.
         if terms.is_empty() || !terms.iter().all(is_contact) {
-            let mut placed = surface.place(at)?;
+            let mut placed = surface.place(Configuration { positions, cell })?;
             placed.look_for_outside(terms)?;
-            placed.evaluate(terms, contributions, forces.as_deref_mut())?;
+            placed.evaluate(request.again())?;
         }
-        self.contacts.evaluate(&surface.mesh, cell, terms, positions, contributions, forces)
+        self.contacts.evaluate(&surface.mesh, cell, request)
     }
 
     /// Whether [`Self::look`] has to come before terms are evaluated elsewhere: one of them needs an outside, and nobody
@@ -192,7 +185,7 @@ impl Membrane {
     /// Those of [`Self::evaluate`].
     pub fn virial(&mut self, terms: &[Term], at: Configuration) -> Result<Matrix3<f64>> {
         // What this refuses, nothing below has to.
-        self.evaluate(terms, at, &mut [], None)?;
+        self.evaluate(Request::new(terms, at.positions), at.cell)?;
         let surface = &mut self.surface;
         let of_contacts = self.contacts.virial(&surface.mesh, at.cell, terms, at.positions)?;
         if terms.iter().all(is_contact) {

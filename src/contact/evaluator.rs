@@ -5,7 +5,7 @@ use super::surface::SurfaceContacts;
 use crate::error::{Error, Result};
 use crate::mesh::triangulation::Quad;
 use crate::mesh::{Cell, Triangulation};
-use crate::potentials::{Contribution, Needs, Term, particle_surface};
+use crate::potentials::{Contribution, Needs, Request, Term, particle_surface};
 use crate::team::Sharing;
 use crate::team::{Team, default_threads};
 use nalgebra::Matrix3;
@@ -86,12 +86,9 @@ impl Contacts {
         &mut self,
         mesh: &Triangulation,
         cell: Option<&Cell>,
-        terms: &[Term],
-        positions: &[f64],
-        contributions: &mut [Contribution],
-        forces: Option<&mut [f64]>,
+        request: Request,
     ) -> Result<()> {
-        self.evaluate_all(mesh, cell, terms, positions, contributions, (forces, None))
+        self.evaluate_all(mesh, cell, request, None)
     }
 
     /// ∂E/∂ε for a homogeneous strain ε of all positions and of the periodic box, kJ/mol.
@@ -106,7 +103,7 @@ impl Contacts {
         positions: &[f64],
     ) -> Result<Matrix3<f64>> {
         let mut virial = Matrix3::zeros();
-        self.evaluate_all(mesh, cell, terms, positions, &mut [], (None, Some(&mut virial)))?;
+        self.evaluate_all(mesh, cell, Request::new(terms, positions), Some(&mut virial))?;
         Ok(virial)
     }
 
@@ -114,11 +111,10 @@ impl Contacts {
         &mut self,
         mesh: &Triangulation,
         cell: Option<&Cell>,
-        terms: &[Term],
-        positions: &[f64],
-        contributions: &mut [Contribution],
-        (mut forces, mut virial): (Option<&mut [f64]>, Option<&mut Matrix3<f64>>),
+        request: Request,
+        mut virial: Option<&mut Matrix3<f64>>,
     ) -> Result<()> {
+        let Request { terms, positions, energies: contributions, mut forces } = request;
         let [surface, particles] = sorted(terms);
         if surface.is_empty() && particles.is_empty() {
             return Ok(());

@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::mesh::borders::{BorderPartials, Borders};
 use crate::mesh::geometry::Vec3;
 use crate::mesh::{Cell, Triangulation};
-use crate::potentials::{Contribution, Needs, Term};
+use crate::potentials::{Contribution, Needs, Request, Term};
 use nalgebra::Matrix3;
 use smallvec::SmallVec;
 
@@ -57,8 +57,7 @@ impl BorderEvaluator {
             .collect();
         // Of positions that are not finite the other evaluator names the culprit.
         if totals.length.is_finite() && totals.turning.is_finite() {
-            let terms: SmallVec<[&Term; 8]> = terms.iter().collect();
-            check_energies(terms.iter(), &contributions)?;
+            check_energies(terms, &contributions)?;
         }
         Ok(Some(OnBorders { contributions, partials }))
     }
@@ -90,14 +89,13 @@ impl BorderEvaluator {
     pub fn add(
         &self,
         mesh: &Triangulation,
-        positions: &[f64],
         cell: Option<&Cell>,
         found: Option<OnBorders>,
-        contributions: &mut [Contribution],
-        forces: Option<&mut [f64]>,
+        request: Request,
     ) {
         let (Some(found), Some(borders)) = (found, &self.borders) else { return };
-        for (sum, part) in contributions.iter_mut().zip(found.contributions) {
+        let Request { positions, energies, forces, .. } = request;
+        for (sum, part) in energies.iter_mut().zip(found.contributions) {
             *sum += part;
         }
         if let Some(forces) = forces {

@@ -5,11 +5,8 @@ use crate::mesh::geometry::TotalPartials;
 use crate::potentials::{Contribution, Term};
 
 /// Refuse an energy that is not finite; names the force.
-pub fn check_energies<'a>(
-    terms: impl IntoIterator<Item = &'a &'a Term<'a>>,
-    contributions: &[Contribution],
-) -> Result<()> {
-    for (term, contribution) in terms.into_iter().zip(contributions) {
+pub fn check_energies(terms: &[Term], contributions: &[Contribution]) -> Result<()> {
+    for (term, contribution) in terms.iter().zip(contributions) {
         if !contribution.energy.is_finite() {
             let (force, energy) = (term.potential.name(), contribution.energy);
             return Err(Error::NonFiniteEnergy { force, energy });

@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 #[cfg(feature = "gpu")]
 use crate::mesh::Topology;
 use crate::mesh::{Cell, Triangulation};
-use crate::potentials::{Contribution, Term};
+use crate::potentials::{Contribution, Evaluator, Request, Term};
 #[cfg(feature = "gpu")]
 use crate::team::default_threads;
 use smallvec::SmallVec;
@@ -162,32 +162,25 @@ impl ChosenEvaluator {
         }
     }
 
-    /// Evaluate terms, as [`CpuEvaluator::evaluate`] does.
+    /// Evaluate terms, as [`Evaluator::evaluate`] does.
     ///
     /// # Errors
     /// Its errors, and those of a GPU that was asked for. Nothing has been added to the forces then.
-    pub fn evaluate(
-        &mut self,
-        present: Present,
-        terms: &[Term],
-        positions: &[f64],
-        contributions: &mut [Contribution],
-        forces: Option<&mut [f64]>,
-    ) -> Result<()> {
+    pub fn evaluate(&mut self, present: Present, request: Request) -> Result<()> {
         if self.choice.is_none() {
             self.choose(present.mesh, None)?;
         }
         // What spans a periodic box is for the processor.
         if self.settled_on_cpu || !present.mesh.images().is_empty() {
-            return self.on_cpu(present, terms, positions, contributions, forces);
+            return self.on_cpu(present, request);
         }
-        self.on_gpu(present, terms, positions, contributions, forces)
+        self.on_gpu(present, request)
     }
 
     /// See what the processor says of some positions, whatever has been chosen.
     ///
     /// # Errors
-    /// Those of [`CpuEvaluator::evaluate`].
+    /// Those of [`Evaluator::evaluate`].
     pub fn look(
         &mut self,
         present: Present,
@@ -195,23 +188,15 @@ impl ChosenEvaluator {
         positions: &[f64],
         forces: &mut [f64],
     ) -> Result<()> {
-        let terms: SmallVec<[&Term; 8]> = terms.iter().collect();
         // It says of energies only if somebody wants to know them.
-        let mut contributions = vec![Contribution::default(); terms.len()];
-        self.cpu(present).evaluate(&terms, positions, &mut contributions, Some(forces))
+        let mut energies = vec![Contribution::default(); terms.len()];
+        let request = Request::new(terms, positions).with_energies(&mut energies);
+        self.cpu(present).evaluate(request.with_forces(forces))
     }
 
-    fn on_cpu(
-        &mut self,
-        present: Present,
-        terms: &[Term],
-        positions: &[f64],
-        contributions: &mut [Contribution],
-        forces: Option<&mut [f64]>,
-    ) -> Result<()> {
+    fn on_cpu(&mut self, present: Present, request: Request) -> Result<()> {
         backend::count_evaluation(Kind::Cpu);
-        let terms: SmallVec<[&Term; 8]> = terms.iter().collect();
-        self.cpu(present).evaluate(&terms, positions, contributions, forces)
+        self.cpu(present).evaluate(request)
     }
 
     /// Evaluate terms on the processor, whatever has been chosen, and note what is known of every element.
@@ -221,13 +206,10 @@ impl ChosenEvaluator {
     pub fn survey(
         &mut self,
         present: Present,
-        terms: &[Term],
-        positions: &[f64],
-        forces: Option<&mut [f64]>,
+        request: Request,
         survey: &mut Survey,
     ) -> Result<()> {
-        let terms: SmallVec<[&Term; 8]> = terms.iter().collect();
-        self.cpu(present).survey(&terms, positions, forces, survey)
+        self.cpu(present).survey(request, survey)
     }
 
     fn cpu(&mut self, present: Present) -> &mut CpuEvaluator {
@@ -255,15 +237,8 @@ impl ChosenEvaluator {
         false
     }
 
-    fn on_gpu(
-        &mut self,
-        present: Present,
-        terms: &[Term],
-        positions: &[f64],
-        contributions: &mut [Contribution],
-        forces: Option<&mut [f64]>,
-    ) -> Result<()> {
-        self.on_cpu(present, terms, positions, contributions, forces)
+    fn on_gpu(&mut self, present: Present, request: Request) -> Result<()> {
+        self.on_cpu(present, request)
     }
 }
 
@@ -279,46 +254,34 @@ impl ChosenEvaluator {
         GpuEvaluator::new(Arc::new(Topology::of(mesh)), choice.adapter, precision)
     }
 
-    fn on_gpu(
-        &mut self,
-        present: Present,
-        terms: &[Term],
-        positions: &[f64],
-        contributions: &mut [Contribution],
-        mut forces: Option<&mut [f64]>,
-    ) -> Result<()> {
+    fn on_gpu(&mut self, present: Present, mut request: Request) -> Result<()> {
         let auto = self.choice.is_none_or(|choice| choice.kind == Kind::Auto);
         // Energies that nobody wants come at no cost, and tell whether the device could compute.
         let mut unwanted: SmallVec<[Contribution; 8]> = SmallVec::new();
-        unwanted.resize(terms.len(), Contribution::default());
-        let known = if contributions.is_empty() { &mut unwanted } else { &mut *contributions };
-        let tried = self.try_gpu(present, terms, positions, known, forces.as_deref_mut());
-        match tried {
+        unwanted.resize(request.terms.len(), Contribution::default());
+        let mut known = request.again();
+        if known.energies.is_empty() {
+            known = known.with_energies(&mut unwanted);
+        }
+        match self.try_gpu(present, known) {
             Ok(true) => {
                 backend::count_evaluation(Kind::Gpu);
                 Ok(())
             }
             // Here the processor names the culprit, or computes what single precision cannot.
-            Ok(false) => self.on_cpu(present, terms, positions, contributions, forces),
+            Ok(false) => self.on_cpu(present, request),
             Err(error) if auto && error.is_of_device() => {
                 self.gpu = None;
                 self.settled_on_cpu = true;
                 warn_once(&error);
-                self.on_cpu(present, terms, positions, contributions, forces)
+                self.on_cpu(present, request)
             }
             Err(error) => Err(error),
         }
     }
 
     /// Whether the GPU has computed; false if it is not to, or cannot.
-    fn try_gpu(
-        &mut self,
-        present: Present,
-        terms: &[Term],
-        positions: &[f64],
-        contributions: &mut [Contribution],
-        forces: Option<&mut [f64]>,
-    ) -> Result<bool> {
+    fn try_gpu(&mut self, present: Present, request: Request) -> Result<bool> {
         if self.gpu.is_none() {
             let choice = self.choice.map_or_else(backend::global, Ok)?;
             if choice.kind == Kind::Auto && !calibration::has_candidate(choice.adapter) {
@@ -327,7 +290,7 @@ impl ChosenEvaluator {
             }
             let mut gpu = Self::start_gpu(present.mesh, choice)?;
             if choice.kind == Kind::Auto
-                && !self.gpu_is_faster(present, &mut gpu, terms, positions)?
+                && !self.gpu_is_faster(present, &mut gpu, request.terms, request.positions)?
             {
                 self.settled_on_cpu = true;
                 return Ok(false);
@@ -340,7 +303,7 @@ impl ChosenEvaluator {
         if !std::mem::replace(&mut self.gpu_is_current, true) {
             gpu.set_topology(Arc::new(Topology::of(present.mesh)));
         }
-        gpu.evaluate(terms, positions, contributions, forces)
+        gpu.evaluate(request)
     }
 
     /// What an earlier measurement says, or else one on this mesh.
@@ -359,12 +322,12 @@ impl ChosenEvaluator {
         if let Some(known) = calibration::recall(&key) {
             return Ok(known.gpu < known.cpu);
         }
-        let mut contributions = vec![Contribution::default(); terms.len()];
+        let mut energies = vec![Contribution::default(); terms.len()];
         let mut forces = vec![0.0; positions.len()];
         let mut cpu_fails = None;
         let cpu = calibration::fastest(|| {
-            let forces = Some(forces.as_mut_slice());
-            cpu_fails = self.on_cpu(present, terms, positions, &mut contributions, forces).err();
+            let request = Request::new(terms, positions).with_energies(&mut energies);
+            cpu_fails = self.on_cpu(present, request.with_forces(&mut forces[..])).err();
         });
         if cpu_fails.is_some() {
             // The real evaluation will say so.
@@ -372,8 +335,8 @@ impl ChosenEvaluator {
         }
         let mut computed = Ok(true);
         let on_gpu = calibration::fastest(|| {
-            let forces = Some(forces.as_mut_slice());
-            computed = gpu.evaluate(terms, positions, &mut contributions, forces);
+            let request = Request::new(terms, positions).with_energies(&mut energies);
+            computed = gpu.evaluate(request.with_forces(&mut forces[..]));
         });
         if !computed? {
             // What it cannot compute says nothing about its speed, so nothing is remembered.

@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::lanes::Level;
 use crate::mesh::numbering::breadth_first;
 use crate::mesh::{Cell, Topology, Triangulation};
-use crate::potentials::{Contribution, Term};
+use crate::potentials::{Evaluator, Request};
 use crate::team::default_threads;
 use std::sync::Arc;
 
@@ -81,35 +81,17 @@ impl CpuEvaluator {
         self.simd.set_threads(if small { 1 } else { threads });
     }
 
-    /// Evaluate terms at the positions of all particles, x y z of one after the other, nm.
-    ///
-    /// `contributions` gets the energy of each term; it can be empty if nobody wants to know. Forces, if
-    /// wanted, are **added**, kJ/mol/nm, in the layout of the positions.
-    ///
-    /// # Errors
-    /// A position of the mesh that is not finite; a triangle without area; an energy that overflows, if
-    /// energies are wanted; arrays of wrong length. Nothing has been added to the forces then.
-    pub fn evaluate(
-        &mut self,
-        terms: &[&Term],
-        positions: &[f64],
-        contributions: &mut [Contribution],
-        forces: Option<&mut [f64]>,
-    ) -> Result<()> {
-        self.simd.evaluate(terms, positions, contributions, forces, None)
-    }
-
     /// Evaluate terms, and note what is known of every element. Forces, if wanted, are **added**.
     ///
     /// # Errors
-    /// Those of [`Self::evaluate`]; what is in the survey then is not to be used.
-    pub fn survey(
-        &mut self,
-        terms: &[&Term],
-        positions: &[f64],
-        forces: Option<&mut [f64]>,
-        survey: &mut Survey,
-    ) -> Result<()> {
-        self.simd.evaluate(terms, positions, &mut [], forces, Some(survey))
+    /// Those of [`Evaluator::evaluate`]; what is in the survey then is not to be used.
+    pub fn survey(&mut self, request: Request, survey: &mut Survey) -> Result<()> {
+        self.simd.evaluate(request, Some(survey))
+    }
+}
+
+impl Evaluator for CpuEvaluator {
+    fn evaluate(&mut self, request: Request) -> Result<()> {
+        self.simd.evaluate(request, None)
     }
 }

@@ -10,7 +10,7 @@ use crate::mesh::geometry::{
 };
 use crate::mesh::vertex_vectors::{VertexVectors, add_corner, corner_stress};
 use crate::mesh::{NONE, Topology};
-use crate::potentials::{Contribution, Needs, Term};
+use crate::potentials::{Contribution, Evaluator, Needs, Request, Term};
 use nalgebra::Matrix3;
 use std::ops::AddAssign;
 use std::sync::Arc;
@@ -68,6 +68,18 @@ impl AddAssign for TriangleSums {
     }
 }
 
+impl Evaluator for ReferenceEvaluator {
+    fn evaluate(&mut self, request: Request) -> Result<()> {
+        let Request { terms, positions, energies, forces } = request;
+        let (needs, _, partials) = self.forward(terms, positions, energies)?;
+        if let Some(forces) = forces {
+            self.backward(needs, &partials);
+            self.add_forces(forces);
+        }
+        Ok(())
+    }
+}
+
 impl ReferenceEvaluator {
     /// Buffers for a mesh.
     pub fn new(topology: Arc<Topology>) -> Self {
@@ -101,30 +113,14 @@ impl ReferenceEvaluator {
         self.places.set_images(images, cell);
     }
 
-    /// As [`super::CpuEvaluator::evaluate`].
-    pub fn evaluate(
-        &mut self,
-        terms: &[&Term],
-        positions: &[f64],
-        contributions: &mut [Contribution],
-        forces: Option<&mut [f64]>,
-    ) -> Result<()> {
-        let (needs, _, partials) = self.forward(terms, positions, contributions)?;
-        if let Some(forces) = forces {
-            self.backward(needs, &partials);
-            self.add_forces(forces);
-        }
-        Ok(())
-    }
-
     /// The derivative of the energy with respect to a homogeneous strain of positions and periodic box, kJ/mol: with r
     /// → r + ε r it is ∂E/∂ε, the sum of −F ⊗ (r − r₀) over the corners of every triangle, r₀ being its first. What the
     /// total volume does to corners is left out there, since it does not sum to zero in a triangle; it gives
     /// (∂E/∂V) V 1.
     ///
     /// # Errors
-    /// Those of [`Self::evaluate`].
-    pub fn virial(&mut self, terms: &[&Term], positions: &[f64]) -> Result<Matrix3<f64>> {
+    /// Those of [`Evaluator::evaluate`].
+    pub fn virial(&mut self, terms: &[Term], positions: &[f64]) -> Result<Matrix3<f64>> {
         let (needs, totals, partials) = self.forward(terms, positions, &mut [])?;
         self.backward(needs, &TotalPartials { volume: 0.0, ..partials });
         let mut virial = Matrix3::identity() * (partials.volume * totals.volume);
@@ -141,7 +137,7 @@ impl ReferenceEvaluator {
     /// Geometry and potentials: what the terms need, the totals, and the energy's derivatives with respect to these.
     fn forward(
         &mut self,
-        terms: &[&Term],
+        terms: &[Term],
         positions: &[f64],
         contributions: &mut [Contribution],
     ) -> Result<(Needs, Totals, TotalPartials)> {

@@ -4,6 +4,7 @@ use super::membrane::{like_positions, of_terms, with_terms};
 use super::{TurnInput, guarded, slice, text};
 use crate::error::Result;
 use crate::membrane::{Crowd, Membrane};
+use crate::potentials::Request;
 use crate::team::Team;
 use std::ffi::c_int;
 
@@ -52,7 +53,9 @@ impl Arrays<'_> {
             with_terms(given, at, input.box_vectors, |terms, at| {
                 let (sums, forces) =
                     (of_terms(input.contributions, terms), like_positions(self.forces, &at));
-                (*input.membrane.cast::<Membrane>()).evaluate(terms, at, sums, forces)
+                let request =
+                    Request::new(terms, at.positions).with_energies(sums).with_forces(forces);
+                (*input.membrane.cast::<Membrane>()).evaluate(request, at.cell)
             })
         }
     }

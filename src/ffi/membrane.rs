@@ -6,7 +6,7 @@ use crate::membrane::{self, Membrane};
 use crate::mesh::Cell;
 use crate::mesh::Configuration;
 use crate::mesh::triangulation::next;
-use crate::potentials::{Contribution, REGISTRY, Term, TriangleConstants, VertexNumbers};
+use crate::potentials::{Contribution, REGISTRY, Request, Term, TriangleConstants, VertexNumbers};
 use smallvec::SmallVec;
 use std::ffi::{c_char, c_int};
 use std::slice as slices;
@@ -236,7 +236,10 @@ pub unsafe extern "C" fn Helfrich_Membrane_evaluate(
     guarded(unsafe { text(subject) }, || unsafe {
         with_terms(given, at, box_vectors, |terms, at| {
             let forces = like_positions(forces, &at);
-            (*membrane).evaluate(terms, at, of_terms(contributions, terms), forces)
+            let energies = of_terms(contributions, terms);
+            let request =
+                Request::new(terms, at.positions).with_energies(energies).with_forces(forces);
+            (*membrane).evaluate(request, at.cell)
         })
     })
 }

@@ -5,7 +5,7 @@ use crate::contact::is_contact;
 use crate::error::Result;
 use crate::mesh::Configuration;
 use crate::moves::{Round, Touched, flips};
-use crate::potentials::Term;
+use crate::potentials::{Request, Term};
 use smallvec::SmallVec;
 
 /// A membrane that has all triangles of another one among its own, and the terms of contacts on it: the other one's flips
@@ -53,7 +53,11 @@ impl Membrane {
         for Follower { membrane, first_triangle, terms } in &mut *followers {
             let (contacts, mesh) = (&mut membrane.contacts, &mut membrane.surface.mesh);
             if let Some(before) = &mut before {
-                contacts.evaluate(mesh, cell, terms, positions, &mut [], Some(before))?;
+                contacts.evaluate(
+                    mesh,
+                    cell,
+                    Request::new(terms, positions).with_forces(&mut **before),
+                )?;
             }
             contacts.prepare_flips(mesh, cell, terms, positions)?;
             let first_half = 3 * *first_triangle as u32;
@@ -72,7 +76,11 @@ impl Membrane {
                 self.compare_forces(terms, at, change)?;
                 for Follower { membrane, terms, .. } in followers {
                     let (contacts, mesh) = (&mut membrane.contacts, &membrane.surface.mesh);
-                    contacts.evaluate(mesh, cell, terms, positions, &mut [], Some(change))?;
+                    contacts.evaluate(
+                        mesh,
+                        cell,
+                        Request::new(terms, positions).with_forces(&mut *change),
+                    )?;
                 }
             }
         }

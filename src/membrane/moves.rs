@@ -5,7 +5,7 @@ use super::surface::check_references;
 use crate::contact::is_contact;
 use crate::error::{Error, Result};
 use crate::mesh::Configuration;
-use crate::potentials::Term;
+use crate::potentials::{Request, Term};
 
 impl Membrane {
     /// Note the energy and the geometry of every element at some positions, and, if they are wanted, the forces.
@@ -39,9 +39,14 @@ impl Membrane {
         let mut placed = surface.place(at)?;
         check_references(placed.present.mesh, terms)?;
         let (mesh, into) = (placed.present.mesh, before.as_deref_mut());
-        self.local.fill(mesh, terms, cell, |survey| placed.survey(&equipped, into, survey))?;
+        let request = Request::new(&equipped, positions).with_forces(into);
+        self.local.fill(mesh, terms, cell, |survey| placed.survey(request, survey))?;
         if terms.iter().any(is_contact) {
-            self.contacts.evaluate(mesh, cell, terms, positions, &mut [], before)?;
+            self.contacts.evaluate(
+                mesh,
+                cell,
+                Request::new(terms, positions).with_forces(before),
+            )?;
         }
         Ok(())
     }
@@ -58,15 +63,9 @@ impl Membrane {
         let equipped = self.workshop.equip(&surface.mesh, surface.generation, terms)?;
         let mut placed = surface.place(at)?;
         let after = self.remembered.fill(terms, positions, cell, |forces| {
-            placed.evaluate(&equipped, &mut [], Some(&mut *forces))?;
-            self.contacts.evaluate(
-                placed.present.mesh,
-                cell,
-                terms,
-                positions,
-                &mut [],
-                Some(forces),
-            )
+            placed.evaluate(Request::new(&equipped, positions).with_forces(&mut *forces))?;
+            let request = Request::new(terms, positions).with_forces(forces);
+            self.contacts.evaluate(placed.present.mesh, cell, request)
         })?;
         for ((change, after), before) in change.iter_mut().zip(after).zip(&self.before) {
             *change = after - before;

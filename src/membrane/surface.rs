@@ -9,7 +9,7 @@ use crate::mesh::cell::Image;
 use crate::mesh::numbering::breadth_first;
 use crate::mesh::orientation::is_inside_out;
 use crate::mesh::{Topology, Triangulation, Unfolding};
-use crate::potentials::{Contribution, MadeOf, Term};
+use crate::potentials::{MadeOf, Request, Term};
 use nalgebra::Matrix3;
 use std::sync::Arc;
 
@@ -96,24 +96,37 @@ impl Surface {
 }
 
 impl Placed<'_> {
-    /// Evaluate all terms but those of contacts. Contributions, which may be empty, are set; forces are added.
+    /// Evaluate all terms but those of contacts; the positions are those of this.
     ///
     /// # Errors
     /// Those of [`ChosenEvaluator::evaluate`] and of [`BorderEvaluator::forward`].
-    pub fn evaluate(
+    pub fn evaluate(&mut self, request: Request) -> Result<()> {
+        self.with_borders(request, ChosenEvaluator::evaluate)
+    }
+
+    /// Note what all terms but those of contacts find of every element. Forces are added.
+    ///
+    /// # Errors
+    /// Those of [`Self::evaluate`].
+    pub fn survey(&mut self, request: Request, survey: &mut Survey) -> Result<()> {
+        self.with_borders(request, |evaluator, present, request| {
+            evaluator.survey(present, request, survey)
+        })
+    }
+
+    fn with_borders(
         &mut self,
-        terms: &[Term],
-        contributions: &mut [Contribution],
-        mut forces: Option<&mut [f64]>,
+        request: Request,
+        evaluate: impl FnOnce(&mut ChosenEvaluator, Present, Request) -> Result<()>,
     ) -> Result<()> {
         let &mut Self { present, positions, .. } = self;
         let Present { mesh, cell, .. } = present;
+        let terms = request.terms;
+        let mut request = Request { positions, ..request };
         let on_borders = self.borders.forward(mesh, terms, positions, cell)?;
-        let into = forces.as_deref_mut();
-        self.evaluator
-            .evaluate(present, terms, positions, contributions, into)
+        evaluate(self.evaluator, present, request.again())
             .map_err(|error| self.explained(error, terms))?;
-        self.borders.add(mesh, positions, cell, on_borders, contributions, forces);
+        self.borders.add(mesh, cell, on_borders, request);
         Ok(())
     }
 
@@ -159,27 +172,6 @@ impl Placed<'_> {
         })
     }
 
-    /// Note what all terms but those of contacts find of every element. Forces are added.
-    ///
-    /// # Errors
-    /// Those of [`Self::evaluate`].
-    pub fn survey(
-        &mut self,
-        terms: &[Term],
-        mut forces: Option<&mut [f64]>,
-        survey: &mut Survey,
-    ) -> Result<()> {
-        let &mut Self { present, positions, .. } = self;
-        let Present { mesh, cell, .. } = present;
-        let on_borders = self.borders.forward(mesh, terms, positions, cell)?;
-        let into = forces.as_deref_mut();
-        self.evaluator
-            .survey(present, terms, positions, into, survey)
-            .map_err(|error| self.explained(error, terms))?;
-        self.borders.add(mesh, positions, cell, on_borders, &mut [], forces);
-        Ok(())
-    }
-
     /// What all terms but those of contacts give to the virial, by the readable evaluator.
     ///
     /// # Errors
@@ -190,7 +182,7 @@ impl Placed<'_> {
         if let Some(cell) = cell {
             evaluator.set_images(mesh.images(), cell);
         }
-        let of_geometry = evaluator.virial(&terms.iter().collect::<Vec<_>>(), positions)?;
+        let of_geometry = evaluator.virial(terms, positions)?;
         Ok(of_geometry + self.borders.virial(mesh, terms, positions, cell)?)
     }
 

@@ -6,7 +6,7 @@ mod support;
 use openmm_helfrich::error::Error;
 use openmm_helfrich::evaluator::{CpuEvaluator, InstructionSet, ReferenceEvaluator};
 use openmm_helfrich::mesh::Topology;
-use openmm_helfrich::potentials::{Contribution, REGISTRY, Term};
+use openmm_helfrich::potentials::{Contribution, Evaluator, REGISTRY, Request, Term};
 use proptest::prelude::*;
 use std::sync::Arc;
 use support::{Mesh, beside, border_terms, open_meshes, open_terms, random, spheroid, terms_on};
@@ -22,8 +22,13 @@ fn evaluate(
 ) -> (Vec<Contribution>, Vec<f64>) {
     let mut contributions = vec![Contribution::default(); terms.len()];
     let mut forces = vec![0.0; positions.len()];
-    let borrowed: Vec<_> = terms.iter().collect();
-    evaluator.evaluate(&borrowed, positions, &mut contributions, Some(&mut forces)).unwrap();
+    evaluator
+        .evaluate(
+            Request::new(terms, positions)
+                .with_energies(&mut contributions)
+                .with_forces(&mut forces[..]),
+        )
+        .unwrap();
     (contributions, forces)
 }
 
@@ -174,16 +179,28 @@ fn instruction_sets_agree(mesh: &Mesh, with: &[Term], without: &[Term], pairs: b
     let mut reference = ReferenceEvaluator::new(topology.clone());
     let sets = [InstructionSet::Best, InstructionSet::Avx2, InstructionSet::Scalar];
     let mut evaluators = sets.map(|set| CpuEvaluator::with(topology.clone(), set, 1));
-    let mut check = |terms: &[&Term]| {
+    let mut check = |terms: &[Term]| {
         let mut expected = vec![Contribution::default(); terms.len()];
         let mut expected_forces = vec![0.0; mesh.0.len()];
-        reference.evaluate(terms, &mesh.0, &mut expected, Some(&mut expected_forces)).unwrap();
+        reference
+            .evaluate(
+                Request::new(terms, &mesh.0)
+                    .with_energies(&mut expected)
+                    .with_forces(&mut expected_forces[..]),
+            )
+            .unwrap();
         let largest = expected_forces.iter().fold(0.0, |m: f64, f| m.max(f.abs()));
         let near = |a: f64, b: f64, scale: f64| (a - b).abs() <= 1e-12 * scale;
         for (set, evaluator) in sets.iter().zip(&mut evaluators) {
             let mut found = vec![Contribution::default(); terms.len()];
             let mut forces = vec![0.0; mesh.0.len()];
-            evaluator.evaluate(terms, &mesh.0, &mut found, Some(&mut forces)).unwrap();
+            evaluator
+                .evaluate(
+                    Request::new(terms, &mesh.0)
+                        .with_energies(&mut found)
+                        .with_forces(&mut forces[..]),
+                )
+                .unwrap();
             for ((term, a), b) in terms.iter().zip(&expected).zip(&found) {
                 let what = format!("{} {} {set:?}", term.potential.name(), term.form);
                 assert!(near(a.energy, b.energy, a.energy.abs()), "{what}: {a:?} {b:?}");
@@ -200,13 +217,13 @@ fn instruction_sets_agree(mesh: &Mesh, with: &[Term], without: &[Term], pairs: b
             }
             // Without energies the forces are the same.
             let mut again = vec![0.0; mesh.0.len()];
-            evaluator.evaluate(terms, &mesh.0, &mut [], Some(&mut again)).unwrap();
+            evaluator.evaluate(Request::new(terms, &mesh.0).with_forces(&mut again[..])).unwrap();
             assert_eq!(forces, again);
         }
     };
     for terms in [with, without] {
-        terms.iter().for_each(|term| check(&[term]));
-        check(&terms.iter().collect::<Vec<_>>());
+        terms.iter().for_each(|term| check(&[*term]));
+        check(terms);
     }
     if !pairs {
         return;
@@ -215,7 +232,7 @@ fn instruction_sets_agree(mesh: &Mesh, with: &[Term], without: &[Term], pairs: b
     // a curvature asks for nothing else.
     let each = || with.iter().chain(without).filter(|term| term.values[1] >= 0.0);
     for one in each() {
-        each().for_each(|other| check(&[one, other]));
+        each().for_each(|other| check(&[*one, *other]));
     }
 }
 
@@ -278,7 +295,9 @@ fn a_refused_evaluation_leaves_no_repulsions_behind() {
         let mut lost = mesh.0.clone();
         lost[3 * vertex] = f64::NAN;
         let mut forces = vec![0.0; lost.len()];
-        assert!(evaluator.evaluate(&[&term], &lost, &mut [], Some(&mut forces)).is_err());
+        assert!(
+            evaluator.evaluate(Request::new(&[term], &lost).with_forces(&mut forces[..])).is_err()
+        );
         assert!(evaluate(&mut evaluator, &[term], &mesh.0) == expected);
     }
     assert!(expected.1.iter().any(|force| *force != 0.0));
@@ -290,17 +309,20 @@ fn degenerate_and_lost_meshes_are_named_and_change_nothing() {
     let mesh = spheroid(5, 7, &mut random(7));
     let mut evaluator = evaluator(&mesh);
     let terms = terms_on(&mesh, true);
-    let terms: Vec<_> = terms.iter().collect();
     let mut contributions = vec![Contribution::default(); terms.len()];
     let mut forces = vec![1.0; mesh.0.len()];
 
     let mut lost = mesh.0.clone();
     lost[3 * 11 + 1] = f64::INFINITY;
-    let result = evaluator.evaluate(&terms, &lost, &mut contributions, Some(&mut forces));
+    let result = evaluator.evaluate(
+        Request::new(&terms, &lost).with_energies(&mut contributions).with_forces(&mut forces[..]),
+    );
     assert!(matches!(result, Err(Error::NonFinitePosition { particle: 11, .. })), "{result:?}");
 
     let huge: Vec<f64> = mesh.0.iter().map(|x| x * 1e200).collect();
-    let result = evaluator.evaluate(&terms, &huge, &mut contributions, Some(&mut forces));
+    let result = evaluator.evaluate(
+        Request::new(&terms, &huge).with_energies(&mut contributions).with_forces(&mut forces[..]),
+    );
     assert!(matches!(result, Err(Error::OverflownTriangle { .. })), "{result:?}");
 
     let mut flat = mesh.0.clone();
@@ -311,19 +333,26 @@ fn degenerate_and_lost_meshes_are_named_and_change_nothing() {
         flat[3 * b + axis] = 2.0;
         flat[3 * c + axis] = 4.0;
     }
-    let result = evaluator.evaluate(&terms, &flat, &mut contributions, Some(&mut forces));
+    let result = evaluator.evaluate(
+        Request::new(&terms, &flat).with_energies(&mut contributions).with_forces(&mut forces[..]),
+    );
     assert!(matches!(result, Err(Error::DegenerateTriangle { triangle: 4, .. })), "{result:?}");
     assert!(forces.iter().all(|force| *force == 1.0));
 
     // Nothing of what was refused is left in later evaluations.
     forces.fill(0.0);
-    let fine = evaluator.evaluate(&terms, &mesh.0, &mut contributions, Some(&mut forces));
+    let fine = evaluator.evaluate(
+        Request::new(&terms, &mesh.0)
+            .with_energies(&mut contributions)
+            .with_forces(&mut forces[..]),
+    );
     assert_eq!(fine, Ok(()));
     let expected = evaluate(&mut self::evaluator(&mesh), &terms_on(&mesh, true), &mesh.0);
     assert!(expected == (contributions.clone(), forces.clone()));
 
     let few = &mut forces[..3];
-    let result = evaluator.evaluate(&terms, &mesh.0, &mut contributions, Some(few));
+    let result = evaluator
+        .evaluate(Request::new(&terms, &mesh.0).with_energies(&mut contributions).with_forces(few));
     assert!(matches!(result, Err(Error::Contract(_))), "{result:?}");
 }
 

@@ -14,7 +14,7 @@ use openmm_helfrich::mesh::triangulation::Turn;
 use openmm_helfrich::mesh::{Configuration, NONE, Topology, Triangulation};
 use openmm_helfrich::moves::local::{Flipped, LocalEnergy};
 use openmm_helfrich::moves::{FlipRules, FlipState, Round};
-use openmm_helfrich::potentials::{Contribution, Term};
+use openmm_helfrich::potentials::{Contribution, Evaluator, Request, Term};
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 use support::{
@@ -37,9 +37,10 @@ fn energies(triangles: &[[i64; 3]], terms: &[Term], positions: &[f64]) -> Vec<f6
     let mesh = Triangulation::new(&topology);
     let mut borders = BorderEvaluator::default();
     let on_borders = borders.forward(&mesh, terms, positions, None).unwrap();
-    let terms: Vec<_> = terms.iter().collect();
-    ReferenceEvaluator::new(topology).evaluate(&terms, positions, &mut sums, None).unwrap();
-    borders.add(&mesh, positions, None, on_borders, &mut sums, None);
+    ReferenceEvaluator::new(topology)
+        .evaluate(Request::new(&terms, positions).with_energies(&mut sums))
+        .unwrap();
+    borders.add(&mesh, None, on_borders, Request::new(&terms, positions).with_energies(&mut sums));
     sums.iter().map(|sum| sum.energy).collect()
 }
 
@@ -61,9 +62,8 @@ fn walk(
     let mut local = LocalEnergy::default();
     let fill = |local: &mut LocalEnergy, mesh: &Triangulation| {
         let equipped = equipped(&corners(mesh), count, terms);
-        let terms_in_use: Vec<_> = equipped.iter().collect();
         let mut evaluator = CpuEvaluator::of(mesh, &breadth_first(mesh), InstructionSet::Best, 1);
-        let survey = |survey: &mut _| evaluator.survey(&terms_in_use, positions, None, survey);
+        let survey = |survey: &mut _| evaluator.survey(Request::new(&equipped, positions), survey);
         local.fill(mesh, terms, None, survey).unwrap();
     };
     fill(&mut local, &mesh);
@@ -201,7 +201,7 @@ fn flip_often((positions, triangles): &Mesh, terms: &[Term], flips: u64) {
     let mut state = seeded(5);
     let hot = FlipRules { temperature: 1e6, ..ANY };
     // That the surface is not inside out is settled before it is crumpled.
-    membrane.evaluate(terms, Configuration::new(positions, None), &mut [], None).unwrap();
+    membrane.evaluate(Request::new(terms, positions), None).unwrap();
     let mut made = 0;
     for round in 0.. {
         made += membrane
@@ -221,14 +221,22 @@ fn flip_often((positions, triangles): &Mesh, terms: &[Term], flips: u64) {
             let mut sums = vec![Contribution::default(); terms.len()];
             let mut forces = vec![0.0; positions.len()];
             membrane
-                .evaluate(terms, Configuration::new(positions, None), &mut sums, Some(&mut forces))
+                .evaluate(
+                    Request::new(terms, positions)
+                        .with_energies(&mut sums)
+                        .with_forces(&mut forces[..]),
+                    None,
+                )
                 .unwrap();
             let topology = Arc::new(Topology::new(&mesh, count).unwrap());
             let (mut expected, mut exact) = (sums.clone(), vec![0.0; positions.len()]);
             let equipped = equipped(&mesh, count, terms);
-            let borrowed: Vec<_> = equipped.iter().collect();
             ReferenceEvaluator::new(topology)
-                .evaluate(&borrowed, positions, &mut expected, Some(&mut exact))
+                .evaluate(
+                    Request::new(&equipped, positions)
+                        .with_energies(&mut expected)
+                        .with_forces(&mut exact[..]),
+                )
                 .unwrap();
             for (found, expected) in sums.iter().zip(&expected) {
                 let error = (found.energy - expected.energy).abs();
@@ -267,7 +275,12 @@ fn what_was_saved_goes_on_with_the_same_bits() {
         let mut sums = vec![Contribution::default(); terms.len()];
         let mut forces = vec![0.0; positions.len()];
         membrane
-            .evaluate(&terms, Configuration::new(&positions, None), &mut sums, Some(&mut forces))
+            .evaluate(
+                Request::new(&terms, &positions)
+                    .with_energies(&mut sums)
+                    .with_forces(&mut forces[..]),
+                None,
+            )
             .unwrap();
         (membrane.connectivity(), sums, forces)
     };
@@ -628,7 +641,7 @@ fn the_change_of_forces_is_that_of_two_evaluations() {
     let forces_of = |membrane: &mut Membrane, terms: &[Term], positions: &[f64]| {
         let mut forces = vec![0.0; positions.len()];
         membrane
-            .evaluate(terms, Configuration::new(positions, None), &mut [], Some(&mut forces))
+            .evaluate(Request::new(terms, positions).with_forces(&mut forces[..]), None)
             .unwrap();
         forces
     };

@@ -10,7 +10,7 @@ mod support;
 use openmm_helfrich::evaluator::CpuEvaluator;
 use openmm_helfrich::evaluator::gpu::{GpuEvaluator, Precision, adapters};
 use openmm_helfrich::mesh::Topology;
-use openmm_helfrich::potentials::{Contribution, Term};
+use openmm_helfrich::potentials::{Contribution, Evaluator, Request, Term};
 use std::sync::Arc;
 use support::{Mesh, open_meshes, open_terms, random, spheroid, terms_on};
 
@@ -42,15 +42,26 @@ fn on_processor(mesh: &Mesh, terms: &[Term]) -> Found {
     let mut evaluator = CpuEvaluator::new(topology(mesh));
     let mut contributions = vec![Contribution::default(); terms.len()];
     let mut forces = vec![0.0; mesh.0.len()];
-    let borrowed: Vec<_> = terms.iter().collect();
-    evaluator.evaluate(&borrowed, &mesh.0, &mut contributions, Some(&mut forces)).unwrap();
+    evaluator
+        .evaluate(
+            Request::new(terms, &mesh.0)
+                .with_energies(&mut contributions)
+                .with_forces(&mut forces[..]),
+        )
+        .unwrap();
     (contributions, forces)
 }
 
 fn on_device(evaluator: &mut GpuEvaluator, mesh: &Mesh, terms: &[Term]) -> Found {
     let mut contributions = vec![Contribution::default(); terms.len()];
     let mut forces = vec![0.0; mesh.0.len()];
-    let done = evaluator.evaluate(terms, &mesh.0, &mut contributions, Some(&mut forces)).unwrap();
+    let done = evaluator
+        .evaluate(
+            Request::new(terms, &mesh.0)
+                .with_energies(&mut contributions)
+                .with_forces(&mut forces[..]),
+        )
+        .unwrap();
     assert!(done, "the device gave up");
     (contributions, forces)
 }
@@ -123,7 +134,10 @@ fn terms_together_are_those_alone() {
         on_device(&mut evaluator, &mesh, &terms[..1]);
         assert_eq!(on_device(&mut evaluator, &mesh, &terms), found);
         let mut energies = vec![Contribution::default(); terms.len()];
-        assert_eq!(evaluator.evaluate(&terms, &mesh.0, &mut energies, None), Ok(true));
+        assert_eq!(
+            evaluator.evaluate(Request::new(&terms, &mesh.0).with_energies(&mut energies)),
+            Ok(true)
+        );
         assert_eq!(energies, found.0);
     }
 }
@@ -163,7 +177,10 @@ fn check_together(evaluator: &mut GpuEvaluator, mesh: &Mesh, some: &[&Alone], to
     assert!(worst.into_iter().all(|error| error < tolerance), "{}: {worst:?}", names());
     if some.len() == 2 {
         let mut energies = vec![Contribution::default(); terms.len()];
-        assert_eq!(evaluator.evaluate(&terms, &mesh.0, &mut energies, None), Ok(true));
+        assert_eq!(
+            evaluator.evaluate(Request::new(&terms, &mesh.0).with_energies(&mut energies)),
+            Ok(true)
+        );
         assert_eq!(energies, found.0, "{}", names());
     }
 }
@@ -266,7 +283,11 @@ fn what_the_device_cannot_say_is_left_to_the_processor() {
         }
         let mut forces = vec![1.0; mesh.0.len()];
         for positions in [lost, huge, flat] {
-            let done = evaluator.evaluate(&terms, &positions, &mut found, Some(&mut forces));
+            let done = evaluator.evaluate(
+                Request::new(&terms, &positions)
+                    .with_energies(&mut found)
+                    .with_forces(&mut forces[..]),
+            );
             assert_eq!(done, Ok(false));
             assert!(forces.iter().all(|force| *force == 1.0));
         }

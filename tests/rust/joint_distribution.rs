@@ -15,7 +15,7 @@ use openmm_helfrich::evaluator::ReferenceEvaluator;
 use openmm_helfrich::membrane::Membrane;
 use openmm_helfrich::mesh::{Configuration, Topology};
 use openmm_helfrich::moves::{FlipRules, FlipState, Round};
-use openmm_helfrich::potentials::{Contribution, Term};
+use openmm_helfrich::potentials::{Contribution, Evaluator, Request, Term};
 use std::sync::Arc;
 use support::{Mesh, random, spheroid};
 
@@ -62,8 +62,9 @@ fn statistics(samples: &[Sample]) -> Vec<(f64, f64)> {
 fn energies(mesh: &Mesh, terms: &[Term]) -> Vec<f64> {
     let topology = Arc::new(Topology::new(&mesh.1, mesh.0.len() / 3).unwrap());
     let mut sums = vec![Contribution::default(); terms.len()];
-    let terms: Vec<_> = terms.iter().collect();
-    match ReferenceEvaluator::new(topology).evaluate(&terms, &mesh.0, &mut sums, None) {
+    match ReferenceEvaluator::new(topology)
+        .evaluate(Request::new(&terms, &mesh.0).with_energies(&mut sums))
+    {
         Ok(()) => sums.iter().map(|sum| sum.energy).collect(),
         Err(_) => vec![f64::INFINITY],
     }
@@ -163,7 +164,12 @@ fn dynamics_with_flips(mesh: &Mesh, steps: usize) -> Vec<Sample> {
         let wanted = step % 10 == 0 && step > steps / 20;
         let energies = if wanted { &mut sums[..] } else { &mut [] };
         membrane
-            .evaluate(&terms, Configuration::new(&positions, None), energies, Some(&mut forces))
+            .evaluate(
+                Request::new(&terms, &positions)
+                    .with_energies(energies)
+                    .with_forces(&mut forces[..]),
+                None,
+            )
             .unwrap();
         if wanted {
             let energies: Vec<f64> = sums.iter().map(|sum| sum.energy).collect();

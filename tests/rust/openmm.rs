@@ -5,7 +5,7 @@ use openmm_helfrich::evaluator::CpuEvaluator;
 use openmm_helfrich::ffi::registerKernelFactories;
 use openmm_helfrich::mesh::Topology;
 use openmm_helfrich::openmm::*;
-use openmm_helfrich::potentials::{Contribution, Term};
+use openmm_helfrich::potentials::{Contribution, Evaluator, Request, Term};
 use std::ffi::CString;
 use std::sync::Arc;
 
@@ -114,10 +114,9 @@ fn directly(terms: &[Term]) -> (f64, Vec<[f64; 3]>) {
     let mut forces = [[0.0; 3]; NUM_PARTICLES];
     CpuEvaluator::new(topology)
         .evaluate(
-            &terms.iter().collect::<Vec<_>>(),
-            POSITIONS.as_flattened(),
-            &mut contributions,
-            Some(forces.as_flattened_mut()),
+            Request::new(&terms, POSITIONS.as_flattened())
+                .with_energies(&mut contributions)
+                .with_forces(forces.as_flattened_mut()),
         )
         .unwrap();
     (contributions.iter().map(|part| part.energy).sum(), forces.to_vec())

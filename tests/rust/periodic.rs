@@ -8,7 +8,7 @@ use openmm_helfrich::evaluator::{BorderEvaluator, ReferenceEvaluator};
 use openmm_helfrich::membrane::Membrane;
 use openmm_helfrich::mesh::{Cell, Configuration, Topology, Unfolding};
 use openmm_helfrich::moves::{FlipRules, FlipState, Round};
-use openmm_helfrich::potentials::{Contribution, Term, VertexNumbers};
+use openmm_helfrich::potentials::{Contribution, Evaluator, Request, Term, VertexNumbers};
 use proptest::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -144,7 +144,12 @@ fn evaluated(
     let mut energies = vec![Contribution::default(); terms.len()];
     let mut forces = vec![0.0; positions.len()];
     membrane
-        .evaluate(terms, Configuration::new(positions, cell), &mut energies, Some(&mut forces))
+        .evaluate(
+            Request::new(terms, positions)
+                .with_energies(&mut energies)
+                .with_forces(&mut forces[..]),
+            cell,
+        )
         .unwrap();
     (energies.iter().map(|part| part.energy).collect(), forces)
 }
@@ -170,11 +175,15 @@ fn reference(
     evaluator.set_images(mesh.images(), cell);
     let mut energies = vec![Contribution::default(); terms.len()];
     let mut forces = vec![0.0; positions.len()];
-    let borrowed: Vec<_> = terms.iter().collect();
-    evaluator.evaluate(&borrowed, unfolded, &mut energies, Some(&mut forces)).unwrap();
+    evaluator
+        .evaluate(
+            Request::new(terms, unfolded).with_energies(&mut energies).with_forces(&mut forces[..]),
+        )
+        .unwrap();
     let mut borders = BorderEvaluator::default();
     let found = borders.forward(&mesh, terms, unfolded, Some(cell)).unwrap();
-    borders.add(&mesh, unfolded, Some(cell), found, &mut energies, Some(&mut forces));
+    let request = Request::new(terms, unfolded).with_energies(&mut energies);
+    borders.add(&mesh, Some(cell), found, request.with_forces(&mut forces[..]));
     (energies.iter().map(|part| part.energy).collect(), forces)
 }
 
@@ -375,16 +384,12 @@ fn long_edges_and_lost_particles_are_named() {
     let fine = evaluated(&mut here, &[term], &mesh.0, Some(&cell));
     let kept = mesh.0.clone();
     mesh.0[3 * 10 + 2] += 21.0;
-    let refused = here
-        .evaluate(&[term], Configuration::new(&mesh.0, Some(&cell)), &mut [], None)
-        .unwrap_err();
+    let refused = here.evaluate(Request::new(&[term], &mesh.0), Some(&cell)).unwrap_err();
     let Error::LongEdge { edge, length, limit, .. } = &refused else { panic!("{refused}") };
     assert!(edge.contains(&10) && *limit == 20.0 && *length > 20.0, "{refused}");
     assert!(refused.to_string().contains("[40.0, 0.0, 0.0]"), "{refused}");
     mesh.0[3 * 10 + 2] = f64::NAN;
-    let refused = here
-        .evaluate(&[term], Configuration::new(&mesh.0, Some(&cell)), &mut [], None)
-        .unwrap_err();
+    let refused = here.evaluate(Request::new(&[term], &mesh.0), Some(&cell)).unwrap_err();
     assert!(matches!(refused, Error::NonFinitePosition { particle: 10, .. }), "{refused}");
     assert_eq!(evaluated(&mut here, &[term], &kept, Some(&cell)), fine);
     // Two vertices around the box: one edge goes either way.
@@ -392,11 +397,7 @@ fn long_edges_and_lost_particles_are_named() {
     assert!(Membrane::new(&narrow.1, 14).is_err());
     // Three of them may be near enough.
     let narrow = sheet(&cell, 3, 7, &mut || 0.0);
-    assert!(
-        membrane(&narrow)
-            .evaluate(&[term], Configuration::new(&narrow.0, Some(&cell)), &mut [], None)
-            .is_ok()
-    );
+    assert!(membrane(&narrow).evaluate(Request::new(&[term], &narrow.0), Some(&cell)).is_ok());
 }
 
 /// All triangles are stretched alike, whatever their images: only the box of the reference counts, and how it is wrapped
@@ -424,7 +425,7 @@ fn a_reference_is_in_a_box_of_its_own() {
                 Term { numbers: &numbers, ..Term::new("SkalakForce", 0, &[2.0, 3.0]).unwrap() };
             let mut energies = [Contribution::default()];
             membrane(&mesh)
-                .evaluate(&[term], Configuration::new(positions, cell), &mut energies, None)
+                .evaluate(Request::new(&[term], positions).with_energies(&mut energies), cell)
                 .map(|()| energies[0].energy)
         };
         for values in [rows(&mesh.0), rows(&wrapped(&mesh.0, &cell, 3.0, 5))] {
@@ -448,9 +449,8 @@ fn what_spans_the_box_has_no_volume() {
     let cell = Cell::new(BOXES[0]).unwrap();
     let mesh = tube(&cell, 7, 9, &mut random(3));
     let term = Term::new("EnclosedVolumeForce", 0, &[1.0, 100.0]).unwrap();
-    let refused = membrane(&mesh)
-        .evaluate(&[term], Configuration::new(&mesh.0, Some(&cell)), &mut [], None)
-        .unwrap_err();
+    let refused =
+        membrane(&mesh).evaluate(Request::new(&[term], &mesh.0), Some(&cell)).unwrap_err();
     assert!(matches!(refused, Error::Spanning { force: "EnclosedVolumeForce", .. }), "{refused}");
 }
 
@@ -467,9 +467,8 @@ fn a_triangle_without_area_across_a_face_is_named() {
         mesh.0[3 * third + k] = 0.5 * (a[k] + b[k] + shift);
     }
     let term = Term::new("SurfaceAreaForce", 0, &[1.0, 100.0]).unwrap();
-    let refused = membrane(&mesh)
-        .evaluate(&[term], Configuration::new(&mesh.0, Some(&cell)), &mut [], None)
-        .unwrap_err();
+    let refused =
+        membrane(&mesh).evaluate(Request::new(&[term], &mesh.0), Some(&cell)).unwrap_err();
     let Error::DegenerateTriangle { corners, .. } = &refused else { panic!("{refused}") };
     assert!([0, 35, third as u32].iter().all(|v| corners.contains(v)), "{refused}");
 }

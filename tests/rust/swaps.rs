@@ -9,7 +9,7 @@ use openmm_helfrich::evaluator::{BorderEvaluator, ReferenceEvaluator};
 use openmm_helfrich::membrane::Membrane;
 use openmm_helfrich::mesh::{Configuration, Topology, Triangulation};
 use openmm_helfrich::moves::{SwapRound, SwapRules, SwapState};
-use openmm_helfrich::potentials::{Contribution, Term, VertexNumbers};
+use openmm_helfrich::potentials::{Contribution, Evaluator, Request, Term, VertexNumbers};
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 use support::{Mesh, border_terms, equipped, open_meshes, open_terms, random, spheroid, terms_on};
@@ -89,9 +89,10 @@ fn energy((positions, triangles): &Mesh, terms: &[Term]) -> f64 {
     let mesh = Triangulation::new(&topology);
     let mut borders = BorderEvaluator::default();
     let on_borders = borders.forward(&mesh, terms, positions, None).unwrap();
-    let borrowed: Vec<_> = terms.iter().collect();
-    ReferenceEvaluator::new(topology).evaluate(&borrowed, positions, &mut sums, None).unwrap();
-    borders.add(&mesh, positions, None, on_borders, &mut sums, None);
+    ReferenceEvaluator::new(topology)
+        .evaluate(Request::new(terms, positions).with_energies(&mut sums))
+        .unwrap();
+    borders.add(&mesh, None, on_borders, Request::new(terms, positions).with_energies(&mut sums));
     sums.iter().map(|sum| sum.energy).sum()
 }
 
@@ -326,7 +327,9 @@ fn the_change_of_forces_is_that_of_two_evaluations() {
             let terms = [&values.terms(depends, 0), &more[..]].concat();
             let mut forces = vec![0.0; mesh.0.len()];
             let mut membrane = Membrane::new(&mesh.1, 56).unwrap();
-            membrane.evaluate(&terms, at, &mut [], Some(&mut forces)).unwrap();
+            membrane
+                .evaluate(Request::new(&terms, at.positions).with_forces(&mut forces[..]), at.cell)
+                .unwrap();
             forces
         };
         let before = forces(&mixture.kinds);
@@ -357,7 +360,9 @@ fn evaluations_after_exchanges_have_the_new_values() {
             values.domains.version = round;
             let terms = values.terms(Depends::All, 0);
             let mut forces = vec![0.0; mesh.0.len()];
-            membrane.evaluate(&terms, at, &mut [], Some(&mut forces)).unwrap();
+            membrane
+                .evaluate(Request::new(&terms, at.positions).with_forces(&mut forces[..]), at.cell)
+                .unwrap();
             forces
         };
         let found = evaluate(&mut membrane, &kinds, Some(77));

@@ -10,7 +10,7 @@ use super::layout::passes;
 use super::{Bytes, Precision, Reals};
 use crate::error::{Error, Result};
 use crate::mesh::Topology;
-use crate::potentials::{Contribution, Term};
+use crate::potentials::{Contribution, Request, Term};
 use std::sync::{Arc, mpsc};
 use std::time::{Duration, Instant};
 
@@ -113,7 +113,7 @@ impl GpuEvaluator {
     }
 
     /// Evaluate terms at the positions of all particles, as
-    /// [`CpuEvaluator::evaluate`](super::super::CpuEvaluator::evaluate) does.
+    /// [`Evaluator::evaluate`](crate::potentials::Evaluator::evaluate) does.
     ///
     /// Returns false, with nothing added to the forces, where the device cannot say what there is to be said:
     /// positions that are not finite, a triangle without area, or too thin for the device's precision, values or
@@ -121,13 +121,8 @@ impl GpuEvaluator {
     ///
     /// # Errors
     /// Of the device: it was lost, or has not enough memory.
-    pub fn evaluate(
-        &mut self,
-        terms: &[Term],
-        positions: &[f64],
-        contributions: &mut [Contribution],
-        forces: Option<&mut [f64]>,
-    ) -> Result<bool> {
+    pub fn evaluate(&mut self, request: Request) -> Result<bool> {
+        let Request { terms, positions, energies: contributions, forces } = request;
         if terms.is_empty() {
             return Ok(true);
         }

@@ -17,7 +17,7 @@ impl ReferenceEvaluator {
     /// Derivatives with respect to totals that are not finite.
     pub(super) fn potentials(
         &mut self,
-        terms: &[&Term],
+        terms: &[Term],
         needs: Needs,
         totals: &Totals,
         contributions: &mut [Contribution],
@@ -35,7 +35,7 @@ impl ReferenceEvaluator {
         if needs.contains(Needs::VECTORS) {
             self.vector_partials.fill(VertexVectors::default());
         }
-        for (&term, contribution) in terms.iter().zip(contributions) {
+        for (term, contribution) in terms.iter().zip(contributions) {
             let (potential, needs) = (term.potential, term.potential.needs(term));
             *contribution = Contribution::default();
             if needs.contains(Needs::TOTALS) {

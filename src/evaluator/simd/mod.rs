@@ -24,12 +24,12 @@ pub use layout::Layout;
 
 use super::Survey;
 use super::checks::{check_energies, check_totals};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::lanes::tiles::{TriangleTile, VertexTile};
 use crate::lanes::{BLOCK, Level};
 use crate::mesh::geometry::{TotalPartials, Totals};
 use crate::mesh::{Cell, Triangulation, culprit};
-use crate::potentials::{Contribution, Needs, Term};
+use crate::potentials::{Contribution, Needs, Request, Term};
 use crate::team::{Parts, Sharing, Team};
 use arrays::Arrays;
 use backward::Forces;
@@ -120,27 +120,11 @@ impl SimdEvaluator {
         self.layout.ghosts.set_cell(cell);
     }
 
-    /// As [`super::CpuEvaluator::evaluate`] and [`super::CpuEvaluator::survey`].
-    pub fn evaluate(
-        &mut self,
-        terms: &[&Term],
-        positions: &[f64],
-        contributions: &mut [Contribution],
-        forces: Option<&mut [f64]>,
-        survey: Option<&mut Survey>,
-    ) -> Result<()> {
-        let particles = self.particles;
-        let (length, fits) =
-            (positions.len(), |forces: &&mut [f64]| forces.len() == positions.len());
-        let counts = contributions.is_empty() || contributions.len() == terms.len();
-        if length < 3 * particles || !forces.as_ref().is_none_or(fits) || !counts {
-            return Err(Error::Contract(format!(
-                "needs positions and forces of {particles} particles or more and one contribution a term, or none"
-            )));
-        }
+    /// Evaluate terms, and note what is known of every element if somebody wants to know.
+    pub fn evaluate(&mut self, request: Request, survey: Option<&mut Survey>) -> Result<()> {
+        request.check(self.particles)?;
         let attempt = self.sharing.next();
-        let outcome =
-            self.attempt(terms, positions, contributions, forces, survey, attempt.together);
+        let outcome = self.attempt(request, survey, attempt.together);
         self.sharing.done(&attempt);
         outcome
     }
@@ -148,13 +132,11 @@ impl SimdEvaluator {
     /// An evaluation, by the team or by this thread alone.
     fn attempt(
         &mut self,
-        terms: &[&Term],
-        positions: &[f64],
-        contributions: &mut [Contribution],
-        forces: Option<&mut [f64]>,
+        request: Request,
         mut survey: Option<&mut Survey>,
         together: bool,
     ) -> Result<()> {
+        let Request { terms, positions, energies: contributions, forces } = request;
         let needs = terms.iter().fold(Needs::empty(), |all, term| all | term.potential.needs(term));
         self.make_room(needs, terms.len());
         if let Some(survey) = &mut survey {
@@ -283,12 +265,12 @@ impl SimdEvaluator {
 
 /// Refuse what has no finite energy where a step would go on with forces that are no numbers, since nobody wants to know
 /// the energy; `contributions` has tile by tile one for each term.
-fn check_limits(terms: &[&Term], contributions: &[Contribution]) -> Result<()> {
+fn check_limits(terms: &[Term], contributions: &[Contribution]) -> Result<()> {
     for (k, term) in terms.iter().enumerate() {
         if !term.constants.values.is_empty() && term.potential.limits_sides(term) {
             let mut sum = Contribution::default();
             contributions.chunks(terms.len()).for_each(|tile| sum += tile[k]);
-            check_energies([term], &[sum])?;
+            check_energies(std::slice::from_ref(term), &[sum])?;
         }
     }
     Ok(())

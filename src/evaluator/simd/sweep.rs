@@ -27,7 +27,7 @@ pub struct Sweep<'a, 't> {
     pub level: Level,
     pub layout: &'a Layout,
     pub arrays: &'a Arrays,
-    pub terms: &'a [&'t Term<'t>],
+    pub terms: &'a [Term<'t>],
     pub needs: Needs,
     pub positions: &'a [f64],
     /// Where to note every element, if somebody wants to know.
