@@ -5,7 +5,7 @@ import re
 import shutil
 import subprocess
 import sys
-from importlib.util import find_spec
+from importlib.util import find_spec, module_from_spec, spec_from_file_location
 from pathlib import Path
 
 from setuptools import Extension, setup
@@ -29,6 +29,15 @@ def find_openmm() -> Path:
         if (candidate / "include" / "OpenMM.h").exists():
             return candidate
     raise SystemExit("OpenMM was not found: pip install openmm==8.6.1, or set $OPENMM_DIR.")
+
+
+def interface():
+    """The module of the package that compares releases of OpenMM, without the package."""
+    path = ROOT / "python" / "openmmhelfrich" / "_openmm_interface.py"
+    spec = spec_from_file_location("_openmm_interface", path)
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
 
 def find_swig() -> str:
@@ -77,6 +86,7 @@ class BuildPlugin(build_ext):
         for folder in ("include", "cmake"):
             shutil.rmtree(package / folder, ignore_errors=True)
             shutil.copytree(ROOT / "wrappers" / folder, package / folder)
+        interface().write_record(package, openmm / "include")
 
     def build_wrapper(self, package: Path, openmm: Path):
         """The SWIG wrapper around the force classes, and its compiler flags."""

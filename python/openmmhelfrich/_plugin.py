@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import ctypes
 from importlib import metadata
+from pathlib import Path
 
 import openmm
 
 from . import _core
+from ._openmm_interface import interface_of, read_record
 
 __all__ = ["load", "version"]
 
@@ -17,28 +19,42 @@ def version() -> str:
     return metadata.version("openmm-helfrich")
 
 
-def check_openmm(built: str, found: str) -> None:
+def check_openmm(built: str, found: str, same_interface: bool = False) -> None:
     """Refuse an OpenMM that the library was not built for.
 
-    OpenMM's C++ interface changes from release to release, and a plugin that is loaded into another
-    one crashes.
+    A plugin that is loaded into an OpenMM with another C++ interface crashes. That changes from
+    release to release, and may stay in a patch release, which differs in the last number.
 
     Parameters
     ----------
     built, found : str
         The version that the build saw, and the one that runs.
+    same_interface : bool
+        Whether the headers of both are known to be the same.
 
     Raises
     ------
     ImportError
-        If they differ.
+        If it cannot be used.
     """
-    if built != found:
+    if built != found and not (same_interface and _release(built) == _release(found)):
         raise ImportError(
-            f"openmmhelfrich was built for OpenMM {built}, but this is OpenMM {found}. "
-            f"Install OpenMM {built} ('pip install openmm=={built}'), or build "
-            "openmm-helfrich again beside this one ('pip install --no-build-isolation .')."
+            f"openmmhelfrich was built for OpenMM {built}, but this is OpenMM {found}, whose C++ "
+            f"interface may be another. Install OpenMM {built} ('pip install openmm=={built}'), or "
+            "build openmm-helfrich again beside this one ('pip install --no-build-isolation .')."
         )
+
+
+def _release(version: str) -> list[str]:
+    """The first two numbers of a version."""
+    return version.split(".")[:2]
+
+
+def has_same_interface() -> bool:
+    """Whether the headers of the OpenMM that runs are those of the build, but for comments."""
+    include = Path(openmm.version.openmm_library_path).parent / "include"
+    known = read_record(Path(__file__).parent)
+    return known is not None and known == interface_of(include)
 
 
 def load() -> None:
@@ -47,9 +63,13 @@ def load() -> None:
     Raises
     ------
     ImportError
-        If the library is missing, or was built for another version of OpenMM.
+        If the library is missing, or was built for an OpenMM with another interface.
     """
     core = _core.library()
     core.Helfrich_openmmVersion.restype = ctypes.c_char_p
-    check_openmm(core.Helfrich_openmmVersion().decode(), openmm.Platform.getOpenMMVersion())
+    built, found = core.Helfrich_openmmVersion().decode(), openmm.Platform.getOpenMMVersion()
+    if built != found:
+        # To read OpenMM's headers takes a tenth of a second.
+        check_openmm(built, found, has_same_interface())
+        core.Helfrich_acceptOpenMM(found.encode())
     openmm.Platform.loadPluginLibrary(str(_core.LIBRARY_PATH))

@@ -14,7 +14,17 @@ pub extern "C" fn Helfrich_openmmVersion() -> *const c_char {
     VERSION.as_ptr()
 }
 
+/// Let an OpenMM of another version load this library, whose C++ interface is known to be that of the build.
+///
+/// # Safety
+/// `version` must end with a NUL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn Helfrich_acceptOpenMM(version: *const c_char) {
+    unsafe { helfrich_shim_acceptOpenMM(version) };
+}
+
 unsafe extern "C" {
+    fn helfrich_shim_acceptOpenMM(version: *const c_char);
     fn helfrich_shim_registerSerialization() -> c_int;
     fn helfrich_shim_registerPlatform();
     fn helfrich_shim_adoptKernels();

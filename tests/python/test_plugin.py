@@ -12,6 +12,7 @@ import openmm
 import openmmhelfrich
 import pytest
 from openmmhelfrich import _core, _plugin
+from openmmhelfrich._openmm_interface import interface_of
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = Path(openmmhelfrich.__file__).parent
@@ -28,6 +29,42 @@ class TestVersion:
         text = str(refusal.value)
         assert text.startswith("openmmhelfrich was built for OpenMM 8.6.1")
         assert f"this is OpenMM {found}" in text and "pip install openmm==8.6.1" in text
+
+    @pytest.mark.parametrize("found", ["8.6", "8.6.2"])
+    def test_a_patch_release_with_the_same_interface_is_accepted(self, found):
+        _plugin.check_openmm("8.6.1", found, same_interface=True)
+
+    @pytest.mark.parametrize("found", ["8.5.1", "8.7.0", "9.6.1"])
+    def test_another_release_is_not_even_then(self, found):
+        with pytest.raises(ImportError, match=r"was built for OpenMM 8\.6\.1"):
+            _plugin.check_openmm("8.6.1", found, same_interface=True)
+
+    def test_the_interface_is_that_of_the_build(self):
+        assert _plugin.has_same_interface()
+
+    def test_what_belongs_to_an_interface(self, tmp_path):
+        (tmp_path / "openmm").mkdir()
+        header = tmp_path / "openmm" / "System.h"
+        header.write_text("class System { /* all */\n  int count; // of what\n};\n")
+        first = interface_of(tmp_path)
+        header.write_text("/** Another word. */\nclass System {\n    int count;\n};\n")
+        assert interface_of(tmp_path) == first
+        header.write_text("class System { long count; };\n")
+        assert interface_of(tmp_path) != first
+        header.unlink()
+        assert interface_of(tmp_path) is None
+
+    def test_the_library_is_told_which_release_is_accepted(self):
+        """Of an OpenMM that gives another version to Python than to the library."""
+        script = (
+            "import openmm\n"
+            "true = openmm.Platform.getOpenMMVersion()\n"
+            "other = '.'.join(true.split('.')[:2]) + '.99'\n"
+            "openmm.Platform.getOpenMMVersion = staticmethod(lambda: other)\n"
+            "import openmmhelfrich\n"
+        )
+        result = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+        assert "cannot be used with OpenMM" in result.stderr
 
     def test_import_beside_another_openmm_fails_before_the_plugin_is_loaded(self):
         script = (

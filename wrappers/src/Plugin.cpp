@@ -30,8 +30,14 @@ void registerMover() {
     OpenMM::SerializationProxy::registerProxy(typeid(Mover), new MoverProxy<Mover>());
 }
 
+/** The OpenMM that may load this: the one of the build, unless another is known to have the same interface. */
+std::string& acceptedVersion() {
+    static std::string version = HELFRICH_OPENMM_VERSION;
+    return version;
+}
+
 bool isRightVersion() {
-    return OpenMM::Platform::getOpenMMVersion() == HELFRICH_OPENMM_VERSION;
+    return OpenMM::Platform::getOpenMMVersion() == acceptedVersion();
 }
 
 /** This plugin's platform, or null: the library may be in memory twice, and the first copy has registered it. */
@@ -46,6 +52,10 @@ HelfrichPlatform* findPlatform() {
 
 // The core exports these under names that OpenMM's plugin loader and the force classes look for.
 extern "C" {
+
+void helfrich_shim_acceptOpenMM(const char* version) {
+    acceptedVersion() = version;
+}
 
 int helfrich_shim_registerSerialization() {
     if (!isRightVersion()) {
