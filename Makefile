@@ -28,6 +28,7 @@ test: lint test-rust test-python test-package ## run all checks: lint, Rust, Pyt
 lint: $(VENV)/.requirements ## check formatting, lint Rust, C++ and Python, and check links of Rust's documentation
 	@echo "== Formatting and lint"
 	@cargo fmt --check
+	@cargo fmt --check --manifest-path tests/loom/Cargo.toml
 	@$(CARGO) clippy -q --all-targets --release --locked -- -D warnings
 	@RUSTDOCFLAGS="-D warnings" $(CARGO) doc -q --no-deps --release --locked
 	@$(VENV)/bin/clang-format --dry-run -Werror $(CPP)
@@ -36,6 +37,7 @@ lint: $(VENV)/.requirements ## check formatting, lint Rust, C++ and Python, and 
 
 format: $(VENV)/.requirements ## format Rust, C++ and Python in place
 	@cargo fmt
+	@cargo fmt --manifest-path tests/loom/Cargo.toml
 	@$(VENV)/bin/clang-format -i $(CPP)
 	@$(VENV)/bin/ruff check -q --fix-only $(PY)
 	@$(VENV)/bin/ruff format -q $(PY)
@@ -45,6 +47,7 @@ test-rust: export PROPTEST_RNG_SEED ?= 1
 test-rust: $(VENV)/.requirements # Rust's tests
 	@echo "== Rust"
 	@$(CARGO) test -q --release --locked
+	@cargo test -q --release --locked --manifest-path tests/loom/Cargo.toml --target-dir $(TARGET)/loom
 
 test-package: $(VENV)/.requirements # `pip install .` where nothing else is
 	@echo "== A clean installation"

@@ -2,6 +2,7 @@
 
 use super::waiting::IDLE_SPIN;
 use super::*;
+use std::thread;
 
 const SIZES: [usize; 4] = [1, 2, 3, 8];
 
