@@ -18,7 +18,7 @@ CPP := $(wildcard $(foreach any,wrappers/* wrappers/*/* wrappers/*/*/* tests/cpp
 PY := $(wildcard .ci setup.py python tests examples benches)
 
 .DEFAULT_GOAL := build
-.PHONY: build test lint format wheel demo paper bench fuzz clean help check-tools test-rust test-package test-python FORCE
+.PHONY: build test lint format wheel demo paper bench fuzz sanitize clean help check-tools test-rust test-package test-python FORCE
 
 build: $(VENV)/.installed ## build everything and install it in .venv (the default)
 	@echo "openmm-helfrich is installed in .venv; try: make demo"
@@ -91,6 +91,9 @@ fuzz: build ## look for faults at random for MINUTES (default 10); SEED goes whe
 	@$(PIP) install atheris==3.0.0 || echo "fuzz: without atheris, inputs are changed blindly" >&2
 	@PYTHON=$(VENV)/bin/python OPENMM_DIR=$(OPENMM) $(VENV)/bin/python tests/fuzz/run.py \
 	    --minutes $(or $(MINUTES),10) $(if $(SEED),--seed $(SEED))
+
+sanitize: build ## run sanitizers, Miri and loom, or PART="loom miri address leaks thread"; all take hours
+	@bash tests/sanitize.sh $(PART)
 
 clean: ## remove everything that was built, .venv too
 	rm -rf $(VENV) build dist target out python/*.egg-info
