@@ -18,7 +18,7 @@ CPP := $(wildcard $(foreach any,wrappers/* wrappers/*/* wrappers/*/*/* tests/cpp
 PY := $(wildcard .ci setup.py python tests examples benches)
 
 .DEFAULT_GOAL := build
-.PHONY: build test lint format wheel demo paper bench fuzz clean help check-tools test-rust test-package test-python FORCE
+.PHONY: build test lint format wheel demo paper bench fuzz sanitize clean help check-tools test-rust test-package test-python FORCE
 
 build: $(VENV)/.installed ## build everything and install it in .venv (the default)
 	@echo "openmm-helfrich is installed in .venv; try: make demo"
@@ -28,6 +28,7 @@ test: lint test-rust test-python test-package ## run all checks: lint, Rust, Pyt
 lint: $(VENV)/.requirements ## check formatting, lint Rust, C++ and Python, and check links of Rust's documentation
 	@echo "== Formatting and lint"
 	@cargo fmt --check
+	@cargo fmt --check --manifest-path tests/loom/Cargo.toml
 	@$(CARGO) clippy -q --all-targets --release --locked -- -D warnings
 	@RUSTDOCFLAGS="-D warnings" $(CARGO) doc -q --no-deps --release --locked
 	@$(VENV)/bin/clang-format --dry-run -Werror $(CPP)
@@ -36,6 +37,7 @@ lint: $(VENV)/.requirements ## check formatting, lint Rust, C++ and Python, and 
 
 format: $(VENV)/.requirements ## format Rust, C++ and Python in place
 	@cargo fmt
+	@cargo fmt --manifest-path tests/loom/Cargo.toml
 	@$(VENV)/bin/clang-format -i $(CPP)
 	@$(VENV)/bin/ruff check -q --fix-only $(PY)
 	@$(VENV)/bin/ruff format -q $(PY)
@@ -45,6 +47,7 @@ test-rust: export PROPTEST_RNG_SEED ?= 1
 test-rust: $(VENV)/.requirements # Rust's tests
 	@echo "== Rust"
 	@$(CARGO) test -q --release --locked
+	@cargo test -q --release --locked --manifest-path tests/loom/Cargo.toml --target-dir $(TARGET)/loom
 
 test-package: $(VENV)/.requirements # `pip install .` where nothing else is
 	@echo "== A clean installation"
@@ -88,6 +91,9 @@ fuzz: build ## look for faults at random for MINUTES (default 10); SEED goes whe
 	@$(PIP) install atheris==3.0.0 || echo "fuzz: without atheris, inputs are changed blindly" >&2
 	@PYTHON=$(VENV)/bin/python OPENMM_DIR=$(OPENMM) $(VENV)/bin/python tests/fuzz/run.py \
 	    --minutes $(or $(MINUTES),10) $(if $(SEED),--seed $(SEED))
+
+sanitize: build ## run sanitizers, Miri and loom, or PART="loom miri address leaks thread"; all take hours
+	@bash tests/sanitize.sh $(PART)
 
 clean: ## remove everything that was built, .venv too
 	rm -rf $(VENV) build dist target out python/*.egg-info

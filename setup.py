@@ -75,6 +75,8 @@ class BuildPlugin(build_ext):
         if not self.inplace:
             environment["HELFRICH_PACKAGE"] = "1"
         target = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
+        # Where cargo puts what it builds for a machine that it is told by name.
+        target /= os.environ.get("CARGO_BUILD_TARGET", "")
         command = ["cargo", "build", "--release", "--locked", "--lib"]
         if subprocess.call(command, cwd=ROOT, env=environment) != 0:
             raise SystemExit("The Rust library did not build; its messages are above.")

@@ -1,11 +1,10 @@
 //! How members wait for each other: for a while they spin, then they sleep.
 
 use super::Shared;
-use std::hint::spin_loop;
+use super::sync::{Instant, one_order, park, patience, spin_loop};
 use std::sync::PoisonError;
 use std::sync::atomic::Ordering::{Acquire, Relaxed, SeqCst};
-use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// How long members look out for the next run before they sleep.
 pub const IDLE_SPIN: Duration = Duration::from_micros(50);
@@ -19,7 +18,7 @@ impl Shared {
         if self.spins {
             let start = Instant::now();
             while start.elapsed() < IDLE_SPIN {
-                for _ in 0..16 {
+                for _ in 0..patience(16) {
                     let run = self.run.0.load(Acquire);
                     if run != last {
                         return run;
@@ -30,19 +29,20 @@ impl Shared {
         }
         let sleeping = &self.sleeping[index].0;
         sleeping.store(true, SeqCst);
+        one_order();
         loop {
             let run = self.run.0.load(SeqCst);
             if run != last {
                 sleeping.store(false, Relaxed);
                 return run;
             }
-            thread::park();
+            park();
         }
     }
 
     /// Wait for what another member does before it calls [`Self::ring`]; both use SeqCst.
     pub fn wait(&self, is_over: impl Fn() -> bool) {
-        let patience = if self.spins { PATIENCE } else { 0 };
+        let patience = if self.spins { patience(PATIENCE) } else { 0 };
         for _ in 0..patience {
             if is_over() {
                 return;
@@ -51,6 +51,7 @@ impl Shared {
         }
         let mut bed = self.bed.lock().unwrap_or_else(PoisonError::into_inner);
         self.blocked.0.fetch_add(1, SeqCst);
+        one_order();
         while !is_over() {
             bed = self.bell.wait(bed).unwrap_or_else(PoisonError::into_inner);
         }
@@ -60,6 +61,7 @@ impl Shared {
     /// Wake those who wait. In the one order of SeqCst, either this sees that somebody is blocked, or he looks
     /// after the change that he waits for; and he holds the lock from before he looks until he sleeps.
     pub fn ring(&self) {
+        one_order();
         if self.blocked.0.load(SeqCst) > 0 {
             drop(self.bed.lock().unwrap_or_else(PoisonError::into_inner));
             self.bell.notify_all();

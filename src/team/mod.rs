@@ -29,7 +29,8 @@
 
 mod parts;
 mod sharing;
-#[cfg(test)]
+mod sync;
+#[cfg(all(test, not(loom)))]
 mod tests;
 mod waiting;
 
@@ -37,21 +38,26 @@ pub use parts::Parts;
 pub(crate) use sharing::Sharing;
 
 use std::any::Any;
-use std::cell::UnsafeCell;
 use std::io;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::Ordering::{AcqRel, Relaxed, SeqCst};
-use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64};
-use std::sync::{Arc, Condvar, Mutex, PoisonError};
-use std::thread::{self, JoinHandle};
+use std::sync::{Arc, PoisonError};
+use std::thread::available_parallelism;
+use sync::{
+    AtomicBool, AtomicU32, AtomicU64, Builder, Condvar, JoinHandle, Mutex, UnsafeCell, one_order,
+};
 
 /// As many threads as the environment variable OPENMM_CPU_THREADS says, which OpenMM's CPU platform follows too,
 /// or else as there are processors for this process.
 pub fn default_threads() -> usize {
     let wanted = std::env::var("OPENMM_CPU_THREADS").ok().and_then(|value| value.parse().ok());
-    let processors = || thread::available_parallelism().map_or(1, usize::from);
     wanted.filter(|&threads| threads > 0).unwrap_or_else(processors)
+}
+
+/// How many processors there are for this process.
+fn processors() -> usize {
+    available_parallelism().map_or(1, usize::from)
 }
 
 /// The number of the run that ends all runs.
@@ -67,7 +73,7 @@ struct Apart<T>(T);
 /// Threads that run a closure each and meet at barriers; the caller of [`Team::run`] is member 0.
 pub struct Team {
     shared: Arc<Shared>,
-    workers: Vec<JoinHandle<()>>,
+    workers: Vec<JoinHandle>,
 }
 
 struct Shared {
@@ -122,10 +128,14 @@ impl Team {
     /// threads left.
     pub fn new(threads: usize) -> io::Result<Self> {
         let size = threads.max(1);
-        let cores = thread::available_parallelism().map_or(1, usize::from);
+        Self::of(size, size <= processors())
+    }
+
+    /// A team of `size` members, which spin for each other before they sleep or do not.
+    pub(crate) fn of(size: usize, spins: bool) -> io::Result<Self> {
         let shared = Arc::new(Shared {
             size,
-            spins: size <= cores,
+            spins,
             run: Apart(AtomicU64::new(0)),
             finished: Apart(AtomicU32::new(0)),
             arrived: Apart(AtomicU32::new(0)),
@@ -142,7 +152,7 @@ impl Team {
         for index in 1..size {
             let shared = team.shared.clone();
             let name = format!("helfrich-{index}");
-            let worker = thread::Builder::new().name(name).spawn(move || shared.work(index))?;
+            let worker = Builder::new().name(name).spawn(move || shared.work(index))?;
             team.workers.push(worker);
         }
         Ok(team)
@@ -167,7 +177,7 @@ impl Team {
             std::mem::transmute::<*const (dyn Fn(Member<'_>) + Sync + '_), Job>(borrowed)
         };
         // SAFETY: between runs, members do not read the job.
-        unsafe { *shared.job.get() = Some(job) };
+        shared.job.with_mut(|place| unsafe { *place = Some(job) });
         // Nobody else writes the number. A member stores that it goes to sleep and then looks at the number; here
         // the number is stored first and then looked who sleeps. With one order of these four
         // (SeqCst), no member can miss a run.
@@ -177,7 +187,7 @@ impl Team {
         shared.wait(|| shared.finished.0.load(SeqCst) as usize == shared.size - 1);
         shared.finished.0.store(0, Relaxed);
         // SAFETY: all members have finished.
-        unsafe { *shared.job.get() = None };
+        shared.job.with_mut(|place| unsafe { *place = None });
         if shared.gate.0.broken.load(Relaxed) {
             shared.gate.0.broken.store(false, Relaxed);
             shared.arrived.0.store(0, Relaxed);
@@ -187,6 +197,7 @@ impl Team {
     }
 
     fn wake(&self) {
+        one_order();
         for (worker, sleeping) in self.workers.iter().zip(&self.shared.sleeping[1..]) {
             if sleeping.0.load(SeqCst) {
                 worker.thread().unpark();
@@ -224,7 +235,7 @@ impl Shared {
     /// Execute the job of the present run.
     fn take_part(&self, index: usize) {
         // SAFETY: the job was stored before the number of the run, which this thread has seen.
-        let Some(job) = (unsafe { *self.job.get() }) else { return };
+        let Some(job) = self.job.with(|place| unsafe { *place }) else { return };
         // SAFETY: the caller of `run` keeps the closure alive until every member has finished.
         let job = unsafe { &*job };
         let member = Member { index, shared: self };
