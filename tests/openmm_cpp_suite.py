@@ -2,12 +2,13 @@
 
     python tests/openmm_cpp_suite.py CHECKOUT [TEST …]
 
-CHECKOUT is as for `openmm_suite.py`. Each program of `platforms/reference/tests`, and of the plugins
-for Amoeba, Drude and RPMD, is compiled from there, but with `tests/cpp/openmm/ReferenceTests.h` in
-place of the header that chooses the platform, and run. Tests are called like their files, such as
-TestReferenceEwald; all are run if none is named. Many draw random numbers and fail now and then, so
-that what fails is run twice more; what fails then, too, is run on platform Reference: if it fails
-there, it is not ours. Ends with 1 if anything of ours fails, or cannot be compiled.
+CHECKOUT is as for `openmm_suite.py`. Each program of `platforms/reference/tests`, and of the
+plugins for Amoeba, Drude and RPMD, is compiled from there, but with
+`tests/cpp/openmm/ReferenceTests.h` in place of the header that chooses the platform, and run. Tests
+are called like their files, such as TestReferenceEwald; all are run if none is named. Many draw
+random numbers and fail now and then, so that what fails is run twice more; what fails then, too, is
+run on platform Reference: if it fails there, it is not ours. Ends with 1 if anything of ours fails,
+or cannot be compiled.
 """
 
 import argparse

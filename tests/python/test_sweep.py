@@ -1,6 +1,5 @@
 """Sweeps: cache, resumption, errors, and a real Dask cluster that loses a worker."""
 
-import contextlib
 import functools
 import json
 import os
@@ -13,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from dask_processes import dask_cluster
 from openmmhelfrich.sweep import Cache, SweepError, grid, sweep
 from openmmhelfrich.sweep.backends import on_dask
 
@@ -309,54 +309,10 @@ def test_bad_results_are_failures_of_their_points(tmp_path, workers):
     assert [result["value"] for result in results] == [0, 2, 3]
 
 
-@contextlib.contextmanager
-def dask_cluster(folder, num_workers):
-    """A scheduler and workers as a user starts them, each a process of its own on loopback."""
-    file = folder / "scheduler.json"
-    common = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": folder}
-    dask = [sys.executable, "-m", "dask"]
-    processes = [
-        subprocess.Popen(
-            [
-                *dask,
-                "scheduler",
-                "--host",
-                "127.0.0.1",
-                "--port",
-                "0",
-                "--no-dashboard",
-                "--scheduler-file",
-                str(file),
-            ],
-            **common,
-        )
-    ]
-    try:
-        address = None
-        for _ in range(1200):
-            with contextlib.suppress(FileNotFoundError, json.JSONDecodeError):
-                address = json.loads(file.read_text())["address"]
-                break
-            time.sleep(0.1)
-        assert address, "the scheduler did not start"
-        for _ in range(num_workers):
-            command = [*dask, "worker", address, "--nthreads", "1", "--no-nanny", "--no-dashboard"]
-            processes.append(subprocess.Popen(command, **common))
-        # All of them, so that none has done the work when another one comes.
-        with distributed.Client(address) as client:
-            client.wait_for_workers(num_workers, timeout=120)
-        yield address, processes[1:]
-    finally:
-        for process in processes:
-            process.kill()
-        for process in processes:
-            process.wait()
-
-
 def test_scheduler_that_loses_a_worker(tmp_path):
     log, cache = tmp_path / "log", tmp_path / "cache"
     log.mkdir()
-    with dask_cluster(tmp_path, 2) as (address, workers):
+    with dask_cluster(tmp_path, 2) as (address, _, workers):
         points = grid(x=range(12), folder=[str(log)], victim=[workers[0].pid])
         results = quiet(fatal, points, cache=cache, scheduler=address)
         assert workers[0].wait(timeout=120) == -signal.SIGKILL
@@ -373,7 +329,7 @@ def test_results_that_die_with_their_worker_are_computed_again(tmp_path):
     """The worker has finished points that nobody has fetched yet."""
     log = tmp_path / "log"
     log.mkdir()
-    with dask_cluster(tmp_path, 2) as (address, workers):
+    with dask_cluster(tmp_path, 2) as (address, _, workers):
         points = grid(x=range(12), folder=[str(log)], victim=[workers[0].pid])
         outcomes = on_dask(fatal, dict(enumerate(points)), address, None)
         found = dict([next(outcomes)])
