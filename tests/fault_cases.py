@@ -23,6 +23,8 @@ from dask_processes import dask_cluster
 
 COMMANDS, PROGRAMS = ("toml", "vcm"), ("sweep", "reporters")
 LAST, PREVIOUS = "checkpoint.bin", "checkpoint-previous.bin"
+# Of the function of the sweep, under which results are stored.
+NAME = "fault_kinds.slow_square"
 DAY = 86400.0
 
 
@@ -163,7 +165,9 @@ def vanished_folder(case):
     """The folder is moved away in the middle, and is brought back or has gone for good."""
     away, count = case.place / "away", 0
     process = case.start()
-    while not case.out.exists() and not process.ended():
+    # A sweep makes its folder when there is a first result.
+    begun = case.out / "cache" / NAME if case.kind == "sweep" else case.out
+    while not begun.exists() and not process.ended():
         time.sleep(0.001)
     case.moment(0.9)
     case.out.rename(away)
@@ -200,8 +204,8 @@ def interrupt(case, number, again=None):
         count += 1
         if "Traceback" in said or "Exception ignored" in said:
             raise Wrong(f"a traceback:\n{said[-3000:]}")
-        # A second Ctrl-C ends at once, and so does any before there is anything to save.
-        at_once = again is not None or not case.out.exists() or case.kind in PROGRAMS
+        # A second Ctrl-C ends at once, and so does any before the command has begun.
+        at_once = again is not None or said in ("", "Aborted!\n") or case.kind in PROGRAMS
         if not (at_once and status in (-number, 1, 128 + number)):
             complaint((status, said), "Interrupted at step", "Go on with --resume.")
             if status != 128 + number:
@@ -397,6 +401,9 @@ def cut_tails(case):
     if length >= sizes.get(path.name, len(whole)):
         case.finish()
         return 1
+    if path.with_name(path.name + ".journal").exists():
+        # What the kill has left of a change may be what was cut off.
+        return 0
     before = _contents(case.out)
     last = complaint(case.start().wait(), path)
     if _contents(case.out) != before:

@@ -99,6 +99,7 @@ def reporters(inputs, out):
     files = (
         helfrich.ModeReporter(out / "modes.csv", INTERVAL, mesh, 3, append=begun),
         helfrich.VTKHDFReporter(out / "frames.vtkhdf", INTERVAL, mesh, append=begun),
+        helfrich.MembraneReporter(out / "shape.h5", INTERVAL, mesh, append=begun),
     )
     simulation.reporters.extend(files)
     if not begun:
@@ -184,7 +185,7 @@ def everything(out):
     for name in found:
         if name.endswith(".npz"):
             found[name] = _stored(out / name)
-        if name == "frames.vtkhdf":
+        if name in ("frames.vtkhdf", "shape.h5"):
             found[name] = {}
 
             def visit(path, item, into=found[name]):

@@ -89,7 +89,10 @@ class JournaledFile:
         try:
             blocks = _blocks.unpack(data, _KIND, _KNOWN)
         except _blocks.BlockError as reason:
-            raise ValueError(f"{self._journal} {reason}") from None
+            raise ValueError(
+                f"{self._journal} {reason}; a part of its change may be in {self.path} already: "
+                "bring both back"
+            ) from None
         changed, length = blocks["bytes"].value, blocks["length"].value
         with naming(self.path):
             handle = os.open(self.path, os.O_RDWR | os.O_CREAT, 0o666)

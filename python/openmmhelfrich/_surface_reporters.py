@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 from openmm import unit
 
@@ -37,9 +39,10 @@ class _NextReport(dict):
 class SurfaceReporter:
     """What is asked for of one membrane at equal intervals.
 
-    Subclasses have `_include`, what they need of the State, `_begin`, which opens their file, and
-    `_write`, from time, positions, triangles and periodic box of the moment, where parts that cross
-    faces of the box are whole. Those that span it are refused unless `_spans`.
+    Subclasses have `_include`, what they need of the State; `_begin`, which opens their file and
+    returns the last step of what they go on from, None if there is nothing; and `_write`, from
+    time, positions, triangles and periodic box of the moment, where parts that cross faces of the
+    box are whole. Those that span it are refused unless `_spans`.
     """
 
     _spans = False
@@ -95,7 +98,14 @@ class SurfaceReporter:
                 f"{type(self).__name__}: the triangles name particle {self._particles[-1]}, but "
                 f"there are {count}"
             )
-        self._begin(simulation)
+        last, present = self._begin(simulation), simulation.currentStep
+        if last is not None and last // self._interval < present // self._interval:
+            warnings.warn(
+                f"{type(self).__name__}: {self._file} ends with step {int(last)}, and the "
+                f"simulation goes on from step {present}: reports between are missing; bring the "
+                "file back if it has lost them",
+                stacklevel=2,
+            )
         self._begun = True
 
 
@@ -109,9 +119,8 @@ class TableReporter(SurfaceReporter):
     def _begin(self, simulation):
         columns = {"step": "", "time": "ps", **self._columns(simulation)}
         table = open_table(self._file, columns, self._append)
-        if self._append:
-            table.cut(simulation.currentStep)
         self._table = table
+        return table.cut(simulation.currentStep) if self._append else None
 
     def _write(self, simulation, state, time, vertices, triangles, box):
         values = self._values(simulation, state, vertices, triangles, box)

@@ -150,7 +150,7 @@ def open_table(path, columns, append):
     -------
     _Csv or _Hdf5
         With a method `add(values)`, after which the row is on disk, and `cut(step)`, which drops
-        the rows after a step.
+        the rows after a step and returns the last step that is left, None if there is no row.
 
     Raises
     ------
@@ -192,12 +192,12 @@ class _Csv:
         text = self.path.read_bytes()
         # What follows the last end of a line was cut off by a kill.
         lines = text[: text.rfind(b"\n") + 1].splitlines(keepends=True)
-        kept = [
-            line for number, line in enumerate(lines[1:], 2) if self._step(line, number) <= step
-        ]
+        steps = [self._step(line, number) for number, line in enumerate(lines[1:], 2)]
+        kept = [line for line, of in zip(lines[1:], steps, strict=True) if of <= step]
         if len(b"".join([lines[0], *kept])) != len(text):
             # The file is replaced as a whole, so that a kill leaves the old one or the new one.
             write_whole(self.path, b"".join([lines[0], *kept]))
+        return max((of for of in steps if of <= step), default=None)
 
     def _step(self, line, number):
         """The step of a row, its first number."""
@@ -212,7 +212,8 @@ class _Csv:
         # The file is opened for each row, so that one which was moved away is noticed, and none is
         # left open by a reporter that is forgotten.
         row = (",".join(repr(value) for value in values) + "\n").encode()
-        with naming(self.path), self.path.open("ab", buffering=0) as file:
+        # Not "ab", which would begin a new one without its columns.
+        with naming(self.path), self.path.open("r+b", buffering=0) as file:
             length = file.seek(0, os.SEEK_END)
             try:
                 written = file.write(row)
@@ -263,6 +264,7 @@ class _Hdf5:
         with _named_by_hdf5(self.path), self.h5py.File(self.path, "r+") as file:
             rows = file["rows"]
             rows.resize(np.count_nonzero(rows[:, 0] <= step), axis=0)
+            return rows[-1, 0] if len(rows) else None
 
     def add(self, values):
         with _named_by_hdf5(self.path), self.h5py.File(self.path, "r+") as file:

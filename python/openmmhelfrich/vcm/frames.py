@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import errno
-import os
 import re
 from collections.abc import Iterable
 from pathlib import Path
@@ -71,14 +69,12 @@ class SeriesFrames:
     """
 
     def __init__(self, path: Path):
-        self._path = path
         self._series = SurfaceSeries(path)
 
     def write(self, number: int, step: int, time: float, parts: list[Part], box=None) -> None:
         """Add a frame; arguments as for `MeshFrames.write`."""
-        if number and not self._path.exists():
-            # Not a new file where one was taken away.
-            raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(self._path))
+        if number:
+            self._series.require()
         vertices, triangles = joined(parts)
         self._series.add([SurfaceFrame(step, time, vertices, triangles, box)])
 

@@ -29,6 +29,9 @@ public:
     const std::string& getPropertyValue(const OpenMM::Context& context, const std::string& property) const {
         return tested.getPropertyValue(context, property);
     }
+    const std::string& getPropertyDefaultValue(const std::string& property) const {
+        return tested.getPropertyDefaultValue(property);
+    }
 
 private:
     static OpenMM::Platform& find() {
