@@ -300,7 +300,8 @@ def damaged_checkpoint(case):
     put(path, harmed)
     offered = (case.out / PREVIOUS).exists()
     before = _contents(case.out)
-    complaint(case.start().wait(), path, "--resume-previous" if offered else "--out")
+    culprit = case.out if harmed is None and not offered else path
+    complaint(case.start().wait(), culprit, "--resume-previous" if offered else "--out")
     if _contents(case.out) != before:
         raise Wrong("what was refused has changed the folder")
     if offered:
@@ -420,7 +421,7 @@ def cut_tails(case):
 
 def _cut_reporters(case):
     saved = case.out / "saved.chk"
-    paths = [case.out / "modes.csv", case.out / "frames.vtkhdf"]
+    paths = [case.out / name for name in ("modes.csv", "frames.vtkhdf", "shape.h5")]
     if not saved.exists() or not all(path.exists() for path in paths):
         case.finish()
         return 0

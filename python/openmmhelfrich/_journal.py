@@ -68,7 +68,10 @@ class JournaledFile:
             "bytes": _blocks.Block(b"".join(pages.changed[n] for n in sorted(pages.changed))),
             "length": _blocks.Block(pages.length),
         }
-        replace(self._journal, _blocks.pack(_KIND, blocks))
+        try:
+            replace(self._journal, _blocks.pack(_KIND, blocks))
+        except OSError as reason:
+            raise OSError(reason.errno, reason.strerror, os.fspath(self.path)) from None
         self.recover()
 
     def recover(self) -> None:

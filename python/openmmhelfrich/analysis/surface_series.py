@@ -127,16 +127,26 @@ class SurfaceSeries:
         ValueError
             If there are fewer.
         """
-        steps = self.steps()
-        if num_frames > len(steps):
-            raise ValueError(f"{self.path} has {len(steps)} frames, not {num_frames}")
-        if num_frames == len(steps):
+        if self.check(num_frames) == num_frames:
             return
         if num_frames == 0:
             self.remove()
             return
         with self._file.change() as raw, self._open(raw, "r+") as file:
             self._resize(file, num_frames)
+
+    def check(self, num_frames: int) -> int:
+        """Check that there are so many frames, or more; returns how many.
+
+        Raises
+        ------
+        ValueError
+            If there are fewer.
+        """
+        found = len(self.steps())
+        if num_frames > found:
+            raise ValueError(f"{self.path} has {found} frames, not {num_frames}")
+        return found
 
     def steps(self) -> np.ndarray:
         """The step of the simulation of each frame, shape (num_frames,).

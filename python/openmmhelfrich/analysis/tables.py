@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .._journal import JournaledFile
 from .._writing import naming, write_whole
 
 __all__ = ["Modes", "open_table", "read_modes", "read_table"]
@@ -106,7 +107,7 @@ def read_table(path) -> dict[str, np.ndarray]:
     if not path.is_file():
         raise FileNotFoundError(f"read_table: there is no file {path}")
     if path.suffix.lower() in _HDF5:
-        with import_h5py(_INSTEAD).File(path, "r") as file:
+        with _open_hdf5(path) as file:
             names = list(file.attrs.get("columns", []))
             if not names or "rows" not in file:
                 raise ValueError(f"read_table: {path} has no rows of a reporter")
@@ -132,6 +133,15 @@ def read_table(path) -> dict[str, np.ndarray]:
                 f"read_table: {path}, line {number + 2}: need {len(names)} numbers ({reason})"
             ) from None
     return dict(zip(names, rows.T, strict=True))
+
+
+def _open_hdf5(path):
+    """The file, of a table, made whole if a kill in the middle of a row has left it in parts."""
+    try:
+        return import_h5py(_INSTEAD).File(path, "r")
+    except OSError:
+        JournaledFile(path).recover()
+        return import_h5py(_INSTEAD).File(path, "r")
 
 
 def open_table(path, columns, append):
@@ -226,33 +236,26 @@ class _Csv:
                 raise
 
 
-@contextlib.contextmanager
-def _named_by_hdf5(path):
-    """Errors of the system, which h5py hides in long messages, as for other files."""
-    try:
-        with naming(path):
-            yield
-    except (OSError, RuntimeError) as reason:
-        number = re.search(r"errno = (\d+)", str(reason))
-        if number is None:
-            raise
-        with naming(path):
-            raise OSError(int(number[1]), os.strerror(int(number[1]))) from None
-
-
 class _Hdf5:
-    """An HDF5 file with the rows in one dataset, closed after every row."""
+    """An HDF5 file with the rows in one dataset, closed after every row, and whole after a kill."""
 
     def __init__(self, path, columns, append):
-        self.path, self.h5py = path, import_h5py(_INSTEAD)
+        self.path, self.h5py, self._file = path, import_h5py(_INSTEAD), JournaledFile(path)
         names = list(columns)
+        if append:
+            self._file.recover()
         if append and path.is_file():
-            with self.h5py.File(path, "r") as file:
-                found = list(file.attrs.get("columns", []))
+            try:
+                with self.h5py.File(path, "r") as file:
+                    found = list(file.attrs.get("columns", []))
+            except OSError as reason:
+                raise ValueError(
+                    f"{path} is no HDF5 file, or is damaged ({reason}); do not append"
+                ) from None
             if found != names:
                 raise ValueError(f"{path}: its columns are {found}, not {names}; do not append")
             return
-        with _named_by_hdf5(path), self.h5py.File(path, "w") as file:
+        with self._file.change(fresh=True) as raw, self.h5py.File(raw, "w") as file:
             file.attrs["columns"] = names
             file.attrs["units"] = list(columns.values())
             shape = (0, len(names))
@@ -261,16 +264,23 @@ class _Hdf5:
             )
 
     def cut(self, step):
-        with _named_by_hdf5(self.path), self.h5py.File(self.path, "r+") as file:
-            rows = file["rows"]
-            rows.resize(np.count_nonzero(rows[:, 0] <= step), axis=0)
-            return rows[-1, 0] if len(rows) else None
+        with self.h5py.File(self.path, "r") as file:
+            kept = file["rows"][:, 0] <= step
+            last = file["rows"][np.count_nonzero(kept) - 1, 0] if kept.any() else None
+        if not kept.all():
+            with self._change() as rows:
+                rows.resize(np.count_nonzero(kept), axis=0)
+        return last
 
     def add(self, values):
-        with _named_by_hdf5(self.path), self.h5py.File(self.path, "r+") as file:
-            rows = file["rows"]
+        with self._change() as rows:
             rows.resize(len(rows) + 1, axis=0)
             rows[-1] = values
+
+    @contextlib.contextmanager
+    def _change(self):
+        with self._file.change() as raw, self.h5py.File(raw, "r+") as file:
+            yield file["rows"]
 
 
 def import_h5py(otherwise):

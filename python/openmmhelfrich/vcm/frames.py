@@ -78,6 +78,14 @@ class SeriesFrames:
         vertices, triangles = joined(parts)
         self._series.add([SurfaceFrame(step, time, vertices, triangles, box)])
 
+    def misfit(self, number: int) -> str | None:
+        """Why there are not so many frames; None if there are."""
+        try:
+            self._series.check(number)
+        except ValueError as reason:
+            return str(reason)
+        return None
+
     def remove_from(self, number: int) -> None:
         """Remove the frames of this number and later ones.
 
@@ -135,8 +143,10 @@ class MeshFrames:
         """
         self._folder.mkdir(exist_ok=True)
         for label, (vertices, triangles) in zip(self._labels, parts, strict=True):
-            path = self._folder / f"{self._name}_{label}_{number:06d}.{self._kind}"
-            self._write(path, vertices, triangles, box)
+            self._write(self._path_of(label, number), vertices, triangles, box)
+
+    def _path_of(self, label: str, number: int) -> Path:
+        return self._folder / f"{self._name}_{label}_{number:06d}.{self._kind}"
 
     def _write(self, path: Path, vertices: np.ndarray, triangles: np.ndarray, box) -> None:
         data = None
@@ -149,6 +159,13 @@ class MeshFrames:
             data = data and {name: values[owners] for name, values in data.items()}
             box = None
         files.write(path, vertices, triangles, data, box=box)
+
+    def misfit(self, number: int) -> str | None:
+        """Why there are not so many frames; None if there are."""
+        for label in self._labels if number else ():
+            if not self._path_of(label, number - 1).is_file():
+                return f"{self._path_of(label, number - 1)} is missing"
+        return None
 
     def remove_from(self, number: int) -> None:
         """Remove the frames of this number and later ones."""

@@ -225,7 +225,7 @@ class Outputs:
         self._num_frames += 1
 
     def state(self) -> dict:
-        """The number of frames, lengths of all files and digests of their ends, once on the disk."""
+        """Frames so far, lengths of all files and digests of their ends, once on the disk."""
         sizes, ends = {}, {}
         for path in self.paths:
             with naming(path), path.open("rb") as file:
@@ -267,7 +267,7 @@ class Outputs:
         for name, digest in state.get("ends", {}).items():
             if _digest_of_end(self._folder / name, sizes[name]) != digest:
                 return f"{self._folder / name} is not the file that the checkpoint was saved beside"
-        return None
+        return None if self._frames is None else self._frames.misfit(state["frames"])
 
     def _xyz(self, frame: Frame, values: np.ndarray) -> bytes:
         """A frame in the XYZ format, with VCM's comment line; coordinates in nm."""
