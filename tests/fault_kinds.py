@@ -125,6 +125,8 @@ class Process:
     def __init__(self, work, log):
         sys.stdout.flush()
         self._log = log
+        # A signal may come before there is anything to say.
+        log.write_text("", encoding="utf-8")
         self.pid = os.fork()
         if self.pid == 0:
             os._exit(_work(work, log))

@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 import zipfile
 from pathlib import Path
@@ -14,6 +15,7 @@ import numpy as np
 import pytest
 from dask_processes import dask_cluster
 from openmmhelfrich.sweep import Cache, SweepError, grid, sweep
+from openmmhelfrich.sweep import cache as store
 from openmmhelfrich.sweep.backends import on_dask
 
 distributed = pytest.importorskip("distributed")
@@ -38,6 +40,11 @@ def fatal(x, folder, victim):
     if os.getpid() == victim:
         os.kill(victim, signal.SIGKILL)
     return result
+
+
+def slow(x, folder):
+    time.sleep(0.1)
+    return square(x, folder)
 
 
 def reciprocal(x):
@@ -135,6 +142,75 @@ class TestHere:
         assert str(file) in capsys.readouterr().err
         assert Cache(tmp_path).load("test_sweep.square", file.stem, {"x": 5})["number"] == 25
         assert not list(tmp_path.rglob("*.part"))
+
+    @pytest.mark.parametrize(
+        ("what", "offset", "value", "reason"),
+        [
+            ("encryption", 8, b"\1\0", "encrypted"),
+            ("a method of compression", 10, b"\x63\0", "compression method"),
+            ("a place before the file", 42, b"\xff\xff\xff\x7f", ""),
+        ],
+    )
+    def test_damage_that_asks_for(self, tmp_path, capsys, what, offset, value, reason):
+        """In the index, where every value has a meaning."""
+        quiet(square, [{"x": 5}], cache=tmp_path, workers=0)
+        [file] = tmp_path.rglob("*.npz")
+        content = bytearray(file.read_bytes())
+        start = content.index(b"PK\1\2") + offset
+        content[start : start + len(value)] = value
+        file.write_bytes(content)
+        [result] = quiet(square, [{"x": 5}], cache=tmp_path, workers=0)
+        assert result["array"].tolist() == [[5.0] * 3] * 2
+        said = capsys.readouterr().err
+        assert str(file) in said and reason in said
+
+    def test_an_array_that_is_missing(self, tmp_path, capsys):
+        quiet(square, [{"x": 5}], cache=tmp_path, workers=0)
+        [file] = tmp_path.rglob("*.npz")
+        with zipfile.ZipFile(file) as archive:
+            record = archive.read("json.npy")
+        with zipfile.ZipFile(file, "w") as archive:
+            archive.writestr("json.npy", record)
+        [result] = quiet(square, [{"x": 5}], cache=tmp_path, workers=0)
+        assert result["array"].tolist() == [[5.0] * 3] * 2
+        assert f"{file} is broken ('no array')" in capsys.readouterr().err
+
+    def test_what_a_kill_has_left_is_removed(self, tmp_path):
+        quiet(square, [{"x": 5}], cache=tmp_path, workers=0)
+        [file] = tmp_path.rglob("*.npz")
+        (file.parent / "tmp123.part").write_bytes(b"half")
+        quiet(square, [{"x": 6}], cache=tmp_path, workers=0)
+        assert len(list(file.parent.glob("*.npz"))) == 2
+        assert not list(tmp_path.rglob("*.part"))
+
+    def test_another_sweep_tidies_up(self, tmp_path, monkeypatch):
+        """Just when a result is written."""
+        cache, write, taken = Cache(tmp_path), store._write, []
+
+        def tidied(file, arrays):
+            write(file, arrays)
+            if not taken:
+                taken.extend(tmp_path.rglob("*.part"))
+                taken[0].unlink()
+
+        monkeypatch.setattr(store, "_write", tidied)
+        cache.save("name", "key", {"x": 1}, {"y": 2})
+        assert taken and cache.load("name", "key", {"x": 1}) == {"y": 2}
+
+    def test_a_cache_that_vanishes(self, tmp_path):
+        """What was stored is not left behind for a new folder."""
+        folder = tmp_path / "results"
+        cache = Cache(folder)
+        cache.save("name", "one", {}, {"x": 1})
+        folder.rename(tmp_path / "away")
+        with pytest.raises(FileNotFoundError, match="see whether its folder is there") as error:
+            cache.save("name", "two", {}, {"x": 2})
+        assert str(folder) in error.value.filename
+        assert not folder.exists()
+        # A sweep that begins without one makes one.
+        assert cache.load("name", "two", {}) is None
+        cache.save("name", "two", {}, {"x": 2})
+        assert cache.load("name", "two", {}) == {"x": 2}
 
     def test_files_say_their_point(self, tmp_path):
         quiet(square, [{"x": 5}], cache=tmp_path, workers=0)
@@ -340,3 +416,27 @@ def test_results_that_die_with_their_worker_are_computed_again(tmp_path):
     }
     # The point that it was computing, and at least one of the two before.
     assert 14 <= len(computed(log)) <= 15
+
+
+def test_scheduler_that_is_lost(tmp_path, caplog):
+    """Said in one line, and what was stored is not computed again."""
+    log, cache = tmp_path / "log", tmp_path / "cache"
+    log.mkdir()
+    points = grid(x=range(40), folder=[str(log)])
+    with dask_cluster(tmp_path, 2) as (address, scheduler, _):
+
+        def lose():
+            while len(list(cache.rglob("*.npz"))) < 5:
+                time.sleep(0.001)
+            scheduler.kill()
+
+        threading.Thread(target=lose, daemon=True).start()
+        with pytest.raises(SweepError, match=f"lost the scheduler of {address}; run again to go"):
+            quiet(slow, points, cache=cache, scheduler=address)
+    assert not [record for record in caplog.records if record.exc_info]
+    stored, before = len(list(cache.rglob("*.npz"))), len(computed(log))
+    assert 5 <= stored < 40
+    results = quiet(slow, points, cache=cache, workers=0)
+    assert [result["number"] for result in results] == [x**2 for x in range(40)]
+    # Each process leaves a file of its own.
+    assert len(computed(log)) - before == 40 - stored
