@@ -205,7 +205,7 @@ def interrupt(case, number, again=None):
         if "Traceback" in said or "Exception ignored" in said:
             raise Wrong(f"a traceback:\n{said[-3000:]}")
         # A second Ctrl-C ends at once, and so does any before the command has begun.
-        at_once = again is not None or said in ("", "Aborted!\n") or case.kind in PROGRAMS
+        at_once = again is not None or said.strip() in ("", "Aborted!") or case.kind in PROGRAMS
         if not (at_once and status in (-number, 1, 128 + number)):
             complaint((status, said), "Interrupted at step", "Go on with --resume.")
             if status != 128 + number:

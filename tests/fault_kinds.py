@@ -9,6 +9,7 @@ Each works in a process of its own, from inputs that are there to a folder of ou
 """
 
 import contextlib
+import io
 import os
 import shutil
 import signal
@@ -160,6 +161,10 @@ def _work(work, log):
     with log.open("w", encoding="utf-8") as file:
         os.dup2(file.fileno(), 1)
         os.dup2(file.fileno(), 2)
+    # Not what pytest has put in their places.
+    for number, name in ((1, "stdout"), (2, "stderr")):
+        raw = io.FileIO(number, "w", closefd=False)
+        setattr(sys, name, io.TextIOWrapper(raw, encoding="utf-8", write_through=True))
     try:
         work()
         status = 0
