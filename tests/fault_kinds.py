@@ -130,7 +130,12 @@ class Process:
         log.write_text("", encoding="utf-8")
         self.pid = os.fork()
         if self.pid == 0:
-            os._exit(_work(work, log))
+            status = 1
+            # A second Ctrl-C may come at any place.
+            try:
+                status = _work(work, log)
+            finally:
+                os._exit(status)
         self._status = None
 
     def kill(self, number=signal.SIGKILL):
