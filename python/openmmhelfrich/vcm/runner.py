@@ -303,7 +303,7 @@ class Run:
         before = None if previous else self._folder.before_last()
         if before is not None and before.outputs and self.outputs.misfit(before.outputs) is None:
             return (
-                f"they fit the checkpoint before: go on from step {before.step} with "
+                f"the files fit the checkpoint before: go on from step {before.step} with "
                 "--resume-previous"
             )
         return "bring the file back, or begin anew in another folder with --out"
