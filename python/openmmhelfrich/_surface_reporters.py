@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from pathlib import Path
 
 import numpy as np
 from openmm import unit
@@ -98,12 +99,13 @@ class SurfaceReporter:
                 f"{type(self).__name__}: the triangles name particle {self._particles[-1]}, but "
                 f"there are {count}"
             )
+        existed = self._append and Path(self._file).exists()
         last, present = self._begin(simulation), simulation.currentStep
-        if last is not None and last // self._interval < present // self._interval:
+        if existed and (last or 0) // self._interval < present // self._interval:
+            has = "has no reports" if last is None else f"ends with step {int(last)}"
             warnings.warn(
-                f"{type(self).__name__}: {self._file} ends with step {int(last)}, and the "
-                f"simulation goes on from step {present}: reports between are missing; bring the "
-                "file back if it has lost them",
+                f"{type(self).__name__}: {self._file} {has}, and the simulation goes on from step "
+                f"{present}: reports between are missing; bring the file back if it has lost them",
                 stacklevel=2,
             )
         self._begun = True

@@ -159,6 +159,11 @@ class TestFiles:
             warnings.simplefilter("error")
             simulation.step(1)
         assert analysis.read_table(path)["step"].tolist() == [2, 4, 10]
+        if suffix == "csv":
+            path.write_text(path.read_text().splitlines()[0])
+            simulation.reporters[:] = [ModeReporter(path, 2, mesh, 1, append=True)]
+            with pytest.warns(UserWarning, match=rf"{path} has no reports, .* from step 11"):
+                simulation.step(1)
 
     def test_a_file_that_was_taken_away_is_missed(self, mesh, tmp_path, suffix):
         path = tmp_path / f"modes.{suffix}"
