@@ -68,7 +68,10 @@ class JournaledFile:
             "bytes": _blocks.Block(b"".join(pages.changed[n] for n in sorted(pages.changed))),
             "length": _blocks.Block(pages.length),
         }
-        replace(self._journal, _blocks.pack(_KIND, blocks))
+        try:
+            replace(self._journal, _blocks.pack(_KIND, blocks))
+        except OSError as reason:
+            raise OSError(reason.errno, reason.strerror, os.fspath(self.path)) from None
         self.recover()
 
     def recover(self) -> None:
@@ -89,7 +92,10 @@ class JournaledFile:
         try:
             blocks = _blocks.unpack(data, _KIND, _KNOWN)
         except _blocks.BlockError as reason:
-            raise ValueError(f"{self._journal} {reason}") from None
+            raise ValueError(
+                f"{self._journal} {reason}; a part of its change may be in {self.path} already: "
+                "bring both back"
+            ) from None
         changed, length = blocks["bytes"].value, blocks["length"].value
         with naming(self.path):
             handle = os.open(self.path, os.O_RDWR | os.O_CREAT, 0o666)

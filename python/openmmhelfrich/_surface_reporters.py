@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import warnings
+from pathlib import Path
+
 import numpy as np
 from openmm import unit
 
@@ -37,9 +40,10 @@ class NextReport(dict):
 class SurfaceReporter:
     """What is asked for of one membrane at equal intervals.
 
-    Subclasses have `_include`, what they need of the State, `_begin`, which opens their file, and
-    `_write`, from time, positions, triangles and periodic box of the moment, where parts that cross
-    faces of the box are whole. Those that span it are refused unless `_spans`.
+    Subclasses have `_include`, what they need of the State; `_begin`, which opens their file and
+    returns the last step of what they go on from, None if there is nothing; and `_write`, from
+    time, positions, triangles and periodic box of the moment, where parts that cross faces of the
+    box are whole. Those that span it are refused unless `_spans`.
     """
 
     _spans = False
@@ -95,7 +99,15 @@ class SurfaceReporter:
                 f"{type(self).__name__}: the triangles name particle {self._particles[-1]}, but "
                 f"there are {count}"
             )
-        self._begin(simulation)
+        existed = self._append and Path(self._file).exists()
+        last, present = self._begin(simulation), simulation.currentStep
+        if existed and (last or 0) // self._interval < present // self._interval:
+            has = "has no reports" if last is None else f"ends with step {int(last)}"
+            warnings.warn(
+                f"{type(self).__name__}: {self._file} {has}, and the simulation goes on from step "
+                f"{present}: reports between are missing; bring the file back if it has lost them",
+                stacklevel=2,
+            )
         self._begun = True
 
 
@@ -109,9 +121,8 @@ class TableReporter(SurfaceReporter):
     def _begin(self, simulation):
         columns = {"step": "", "time": "ps", **self._columns(simulation)}
         table = open_table(self._file, columns, self._append)
-        if self._append:
-            table.cut(simulation.currentStep)
         self._table = table
+        return table.cut(simulation.currentStep) if self._append else None
 
     def _write(self, simulation, state, time, vertices, triangles, box):
         values = self._values(simulation, state, vertices, triangles, box)

@@ -296,15 +296,25 @@ class VTKHDFReporter(SurfaceReporter):
         self._series = SurfaceSeries(file)
 
     def _begin(self, simulation):
-        if self._append:
-            steps = self._series.steps()
-            self._series.cut(np.count_nonzero(steps <= simulation.currentStep))
-        else:
+        self._num_frames = 0
+        if not self._append:
             self._series.remove()
+            return None
+        try:
+            steps = self._series.steps()
+        except ValueError as reason:
+            raise ValueError(f"VTKHDFReporter: {reason}; do not append") from None
+        kept = steps[steps <= simulation.currentStep]
+        self._series.cut(len(kept))
+        self._num_frames = len(kept)
+        return kept[-1] if len(kept) else None
 
     def _write(self, simulation, state, time, vertices, triangles, box):
+        if self._num_frames:
+            self._series.require()
         step = int(simulation.currentStep)
         self._series.add([SurfaceFrame(step, time, vertices, triangles, box)])
+        self._num_frames += 1
 
 
 def _group_names(system):

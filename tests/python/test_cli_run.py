@@ -338,7 +338,8 @@ class TestRefusals:
     def test_a_run_that_goes_on(self, folder):
         path, out = config(folder), folder.path / "out"
         job = Run(path, out, platform="Reference")
-        with pytest.raises(RunError, match="another process is running"):
+        match = rf"another process is running in {out}; wait until it has ended, or give another"
+        with pytest.raises(RunError, match=match):
             Run(path, out, resume=True)
         job.close()
         Run(path, out, resume=True).close()

@@ -1,6 +1,7 @@
 """ModeReporter, MembraneReporter and the command `spectrum`: their files read back."""
 
 import csv
+import warnings
 
 import numpy as np
 import openmm
@@ -9,6 +10,7 @@ from click.testing import CliRunner
 from openmm import app, unit
 from openmmhelfrich import MembraneReporter, Mesh, ModeReporter, Vesicle, analysis
 from openmmhelfrich.analysis import theory
+from openmmhelfrich.analysis.tables import open_table
 from openmmhelfrich.cli import main
 from openmmhelfrich.forces import BendingForce, SurfaceAreaForce
 
@@ -140,6 +142,39 @@ class TestFiles:
             assert found["step"].tolist() == [3, 6, 9, 12, 15, 18, 21]
             for name, column in table.items():
                 np.testing.assert_array_equal(found[name], column)
+
+    def test_rows_that_are_missing_are_said(self, mesh, tmp_path, suffix):
+        path = tmp_path / f"modes.{suffix}"
+        simulation = simulate(mesh)
+        simulation.reporters.append(ModeReporter(path, 2, mesh, 1))
+        simulation.step(4)
+        simulation.reporters.clear()
+        # As after a file that has lost its end.
+        simulation.step(5)
+        simulation.reporters.append(ModeReporter(path, 2, mesh, 1, append=True))
+        with pytest.warns(UserWarning, match=rf"{path} ends with step 4, .* from step 9: reports"):
+            simulation.step(1)
+        simulation.reporters[:] = [ModeReporter(path, 2, mesh, 1, append=True)]
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            simulation.step(1)
+        assert analysis.read_table(path)["step"].tolist() == [2, 4, 10]
+        if suffix == "csv":
+            path.write_text(path.read_text().splitlines()[0])
+            simulation.reporters[:] = [ModeReporter(path, 2, mesh, 1, append=True)]
+            with pytest.warns(UserWarning, match=rf"{path} has no reports, .* from step 11"):
+                simulation.step(1)
+
+    def test_a_file_that_was_taken_away_is_missed(self, mesh, tmp_path, suffix):
+        path = tmp_path / f"modes.{suffix}"
+        simulation = simulate(mesh)
+        simulation.reporters.append(ModeReporter(path, 1, mesh, 1))
+        simulation.step(2)
+        path.rename(tmp_path / "elsewhere")
+        with pytest.raises(FileNotFoundError, match="see whether its folder is there") as error:
+            simulation.step(1)
+        assert error.value.filename == str(path)
+        assert not path.exists()
 
     def test_appending_to_nothing_and_overwriting(self, mesh, tmp_path, suffix):
         path = tmp_path / f"modes.{suffix}"
@@ -379,3 +414,57 @@ class TestCommand:
             assert result.exit_code != 0
             assert culprit in result.output
             assert "Traceback" not in result.output
+
+
+class Killed(BaseException):
+    """Stands for a kill: nothing may catch it."""
+
+
+COLUMNS = {name: "" for name in ("step", "time", "x")}
+
+
+class TestHdf5:
+    @pytest.fixture(autouse=True)
+    def _h5py(self):
+        pytest.importorskip("h5py")
+
+    @pytest.mark.parametrize("rows", [1, 256])
+    def test_kills_while_a_row_is_added(self, tmp_path, monkeypatch, rows):
+        """Also where a chunk of 256 rows is begun, of which a kill could cost all."""
+        path = tmp_path / "a.h5"
+        moment = 0
+        while True:
+            table = open_table(path, COLUMNS, append=False)
+            for number in range(rows):
+                table.add([number, 0.5, 2.0])
+            count = 0
+
+            def write(file, data, wanted=moment):
+                nonlocal count
+                count += 1
+                if count > wanted:
+                    file.write(data[: len(data) // 2])
+                    raise Killed
+                file.write(data)
+
+            with monkeypatch.context() as patch:
+                patch.setattr("openmmhelfrich._journal._write_all", write)
+                try:
+                    table.add([rows, 0.5, 2.0])
+                except Killed:
+                    pass
+                else:
+                    break
+            # The journal was whole, so that nothing is lost.
+            again = open_table(path, COLUMNS, append=True)
+            assert again.cut(1000) == rows
+            assert analysis.read_table(path)["step"].tolist() == list(range(rows + 1))
+            moment += 1
+        assert moment > 1
+
+    def test_a_file_that_was_cut_is_refused(self, tmp_path):
+        path = tmp_path / "a.h5"
+        open_table(path, COLUMNS, append=False).add([0, 0.5, 2.0])
+        path.write_bytes(path.read_bytes()[:2000])
+        with pytest.raises(ValueError, match=rf"{path} is no HDF5 file, or.*; do not append"):
+            open_table(path, COLUMNS, append=True)

@@ -190,6 +190,43 @@ class TestForeign:
         swap(TextOutputs="XYZ")
         assert "the run wrote the files" in refused(path, out, "--resume")
 
+    def test_another_seed(self, path, out, whole, swap):
+        """System and integrator are the same; outputs tell the runs apart."""
+        run(path, out, 80, resume=True)
+        own = (out / LAST).read_bytes()
+        swap(Seed=6)
+        text = refused(path, out, "--resume")
+        assert f"{out}/cell." in text and "is not the file that the checkpoint was saved" in text
+        assert text.endswith("go on from step 60 with --resume-previous")
+        (out / PREVIOUS).unlink()
+        assert "begin anew in another folder with --out" in refused(path, out, "--resume")
+        (out / LAST).write_bytes(own)
+        run(path, out, END, resume=True)
+        assert results(out) == whole
+
+    def test_an_output_that_was_cut(self, path, out, whole):
+        size = (out / "cell.csv").stat().st_size
+        os.truncate(out / "cell.csv", size - 5)
+        text = refused(path, out, "--resume")
+        assert f"{out / 'cell.csv'} had {size} bytes at the checkpoint and has {size - 5}" in text
+        assert text.endswith("go on from step 40 with --resume-previous")
+        run(path, out, END, resume_previous=True)
+        assert results(out) == whole
+
+    def test_an_output_that_was_cut_short(self, path, out):
+        os.truncate(out / "cell.csv", 10)
+        text = refused(path, out, "--resume")
+        assert text.endswith("bring the file back, or begin anew in another folder with --out")
+
+    def test_without_digests(self, path, out, whole):
+        """Earlier versions saved none."""
+        blocks = unpack((out / LAST).read_bytes(), "run", {"run": 1, "openmm": 1})
+        outputs = blocks["run"].value["outputs"]
+        assert set(outputs.pop("ends")) == set(outputs["sizes"])
+        self.repack(out, run={"outputs": outputs})
+        run(path, out, END, resume=True)
+        assert results(out) == whole
+
     def repack(self, out, **changed):
         """The checkpoint with other values, and a checksum that is right."""
         blocks = unpack((out / LAST).read_bytes(), "run", {"run": 1, "openmm": 1})

@@ -1,19 +1,21 @@
 """Sweeps: cache, resumption, errors, and a real Dask cluster that loses a worker."""
 
-import contextlib
 import functools
 import json
 import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 import zipfile
 from pathlib import Path
 
 import numpy as np
 import pytest
+from dask_processes import dask_cluster
 from openmmhelfrich.sweep import Cache, SweepError, grid, sweep
+from openmmhelfrich.sweep import cache as store
 from openmmhelfrich.sweep.backends import on_dask
 
 distributed = pytest.importorskip("distributed")
@@ -38,6 +40,11 @@ def fatal(x, folder, victim):
     if os.getpid() == victim:
         os.kill(victim, signal.SIGKILL)
     return result
+
+
+def slow(x, folder):
+    time.sleep(0.1)
+    return square(x, folder)
 
 
 def reciprocal(x):
@@ -135,6 +142,75 @@ class TestHere:
         assert str(file) in capsys.readouterr().err
         assert Cache(tmp_path).load("test_sweep.square", file.stem, {"x": 5})["number"] == 25
         assert not list(tmp_path.rglob("*.part"))
+
+    @pytest.mark.parametrize(
+        ("what", "offset", "value", "reason"),
+        [
+            ("encryption", 8, b"\1\0", "encrypted"),
+            ("a method of compression", 10, b"\x63\0", "compression method"),
+            ("a place before the file", 42, b"\xff\xff\xff\x7f", ""),
+        ],
+    )
+    def test_damage_that_asks_for(self, tmp_path, capsys, what, offset, value, reason):
+        """In the index, where every value has a meaning."""
+        quiet(square, [{"x": 5}], cache=tmp_path, workers=0)
+        [file] = tmp_path.rglob("*.npz")
+        content = bytearray(file.read_bytes())
+        start = content.index(b"PK\1\2") + offset
+        content[start : start + len(value)] = value
+        file.write_bytes(content)
+        [result] = quiet(square, [{"x": 5}], cache=tmp_path, workers=0)
+        assert result["array"].tolist() == [[5.0] * 3] * 2
+        said = capsys.readouterr().err
+        assert str(file) in said and reason in said
+
+    def test_an_array_that_is_missing(self, tmp_path, capsys):
+        quiet(square, [{"x": 5}], cache=tmp_path, workers=0)
+        [file] = tmp_path.rglob("*.npz")
+        with zipfile.ZipFile(file) as archive:
+            record = archive.read("json.npy")
+        with zipfile.ZipFile(file, "w") as archive:
+            archive.writestr("json.npy", record)
+        [result] = quiet(square, [{"x": 5}], cache=tmp_path, workers=0)
+        assert result["array"].tolist() == [[5.0] * 3] * 2
+        assert f"{file} is broken ('no array')" in capsys.readouterr().err
+
+    def test_what_a_kill_has_left_is_removed(self, tmp_path):
+        quiet(square, [{"x": 5}], cache=tmp_path, workers=0)
+        [file] = tmp_path.rglob("*.npz")
+        (file.parent / "tmp123.part").write_bytes(b"half")
+        quiet(square, [{"x": 6}], cache=tmp_path, workers=0)
+        assert len(list(file.parent.glob("*.npz"))) == 2
+        assert not list(tmp_path.rglob("*.part"))
+
+    def test_another_sweep_tidies_up(self, tmp_path, monkeypatch):
+        """Just when a result is written."""
+        cache, write, taken = Cache(tmp_path), store._write, []
+
+        def tidied(file, arrays):
+            write(file, arrays)
+            if not taken:
+                taken.extend(tmp_path.rglob("*.part"))
+                taken[0].unlink()
+
+        monkeypatch.setattr(store, "_write", tidied)
+        cache.save("name", "key", {"x": 1}, {"y": 2})
+        assert taken and cache.load("name", "key", {"x": 1}) == {"y": 2}
+
+    def test_a_cache_that_vanishes(self, tmp_path):
+        """What was stored is not left behind for a new folder."""
+        folder = tmp_path / "results"
+        cache = Cache(folder)
+        cache.save("name", "one", {}, {"x": 1})
+        folder.rename(tmp_path / "away")
+        with pytest.raises(FileNotFoundError, match="see whether its folder is there") as error:
+            cache.save("name", "two", {}, {"x": 2})
+        assert str(folder) in error.value.filename
+        assert not folder.exists()
+        # A sweep that begins without one makes one.
+        assert cache.load("name", "two", {}) is None
+        cache.save("name", "two", {}, {"x": 2})
+        assert cache.load("name", "two", {}) == {"x": 2}
 
     def test_files_say_their_point(self, tmp_path):
         quiet(square, [{"x": 5}], cache=tmp_path, workers=0)
@@ -309,54 +385,10 @@ def test_bad_results_are_failures_of_their_points(tmp_path, workers):
     assert [result["value"] for result in results] == [0, 2, 3]
 
 
-@contextlib.contextmanager
-def dask_cluster(folder, num_workers):
-    """A scheduler and workers as a user starts them, each a process of its own on loopback."""
-    file = folder / "scheduler.json"
-    common = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": folder}
-    dask = [sys.executable, "-m", "dask"]
-    processes = [
-        subprocess.Popen(
-            [
-                *dask,
-                "scheduler",
-                "--host",
-                "127.0.0.1",
-                "--port",
-                "0",
-                "--no-dashboard",
-                "--scheduler-file",
-                str(file),
-            ],
-            **common,
-        )
-    ]
-    try:
-        address = None
-        for _ in range(1200):
-            with contextlib.suppress(FileNotFoundError, json.JSONDecodeError):
-                address = json.loads(file.read_text())["address"]
-                break
-            time.sleep(0.1)
-        assert address, "the scheduler did not start"
-        for _ in range(num_workers):
-            command = [*dask, "worker", address, "--nthreads", "1", "--no-nanny", "--no-dashboard"]
-            processes.append(subprocess.Popen(command, **common))
-        # All of them, so that none has done the work when another one comes.
-        with distributed.Client(address) as client:
-            client.wait_for_workers(num_workers, timeout=120)
-        yield address, processes[1:]
-    finally:
-        for process in processes:
-            process.kill()
-        for process in processes:
-            process.wait()
-
-
 def test_scheduler_that_loses_a_worker(tmp_path):
     log, cache = tmp_path / "log", tmp_path / "cache"
     log.mkdir()
-    with dask_cluster(tmp_path, 2) as (address, workers):
+    with dask_cluster(tmp_path, 2) as (address, _, workers):
         points = grid(x=range(12), folder=[str(log)], victim=[workers[0].pid])
         results = quiet(fatal, points, cache=cache, scheduler=address)
         assert workers[0].wait(timeout=120) == -signal.SIGKILL
@@ -373,7 +405,7 @@ def test_results_that_die_with_their_worker_are_computed_again(tmp_path):
     """The worker has finished points that nobody has fetched yet."""
     log = tmp_path / "log"
     log.mkdir()
-    with dask_cluster(tmp_path, 2) as (address, workers):
+    with dask_cluster(tmp_path, 2) as (address, _, workers):
         points = grid(x=range(12), folder=[str(log)], victim=[workers[0].pid])
         outcomes = on_dask(fatal, dict(enumerate(points)), address, None)
         found = dict([next(outcomes)])
@@ -384,3 +416,27 @@ def test_results_that_die_with_their_worker_are_computed_again(tmp_path):
     }
     # The point that it was computing, and at least one of the two before.
     assert 14 <= len(computed(log)) <= 15
+
+
+def test_scheduler_that_is_lost(tmp_path, caplog):
+    """Said in one line, and what was stored is not computed again."""
+    log, cache = tmp_path / "log", tmp_path / "cache"
+    log.mkdir()
+    points = grid(x=range(40), folder=[str(log)])
+    with dask_cluster(tmp_path, 2) as (address, scheduler, _):
+
+        def lose():
+            while len(list(cache.rglob("*.npz"))) < 5:
+                time.sleep(0.001)
+            scheduler.kill()
+
+        threading.Thread(target=lose, daemon=True).start()
+        with pytest.raises(SweepError, match=f"lost the scheduler of {address}; run again to go"):
+            quiet(slow, points, cache=cache, scheduler=address)
+    assert not [record for record in caplog.records if record.exc_info]
+    stored, before = len(list(cache.rglob("*.npz"))), len(computed(log))
+    assert 5 <= stored < 40
+    results = quiet(slow, points, cache=cache, workers=0)
+    assert [result["number"] for result in results] == [x**2 for x in range(40)]
+    # Each process leaves a file of its own.
+    assert len(computed(log)) - before == 40 - stored

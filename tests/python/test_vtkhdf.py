@@ -322,6 +322,24 @@ class TestRun:
         with pytest.raises(RunError, match=r"cannot resume: .*has 0 frames, not 3"):
             Run(config, out, resume=True)
 
+    def test_a_file_that_was_cut_is_refused(self, config, tmp_path, meshes):
+        """By the checkpoint before, too."""
+        out = tmp_path / "out"
+        for number, end in enumerate((10, 17)):
+            job = Run(config, out, resume=number > 0)
+            assert job.advance(end)
+            job.close()
+        whole = (out / "run.vtkhdf").read_bytes()
+        (out / "run.vtkhdf").write_bytes(whole[: len(whole) // 2])
+        result = invoke("run", config, "--out", out, "--resume")
+        assert result.exit_code == 1
+        line = result.output.splitlines()[-1]
+        assert f"cannot resume: {out / 'run.vtkhdf'} is no VTKHDF file of this package, or" in line
+        assert line.endswith("bring the file back, or begin anew in another folder with --out")
+        (out / "run.vtkhdf").write_bytes(whole)
+        assert invoke("run", config, "--out", out, "--resume").exit_code == 0
+        self.check(out / "run.vtkhdf", meshes)
+
     def test_without_h5py_the_run_does_not_begin(self, config, tmp_path, monkeypatch):
         monkeypatch.setitem(sys.modules, "h5py", None)
         with pytest.raises(RunError, match=r"--frames vtkhdf: .*pip install openmm-helfrich\[hdf5"):
@@ -356,6 +374,27 @@ class TestReporter:
             expected.append(SurfaceFrame(20 * number, time, mesh.vertices, mesh.triangles))
         same(path, expected)
         assert (expected[0].triangles != expected[-1].triangles).any()
+
+    def test_a_file_that_was_taken_away_is_missed(self, tmp_path):
+        path = tmp_path / "a.vtkhdf"
+        _, simulation = self.simulation()
+        simulation.reporters.append(VTKHDFReporter(path, 10, MESH))
+        simulation.step(20)
+        path.rename(tmp_path / "elsewhere")
+        with pytest.raises(FileNotFoundError, match="see whether its folder is there") as error:
+            simulation.step(10)
+        assert error.value.filename == str(path)
+        assert not path.exists()
+
+    def test_a_file_that_was_cut_is_refused(self, tmp_path):
+        path = tmp_path / "a.vtkhdf"
+        _, simulation = self.simulation()
+        simulation.reporters.append(VTKHDFReporter(path, 10, MESH))
+        simulation.step(20)
+        path.write_bytes(path.read_bytes()[:5000])
+        simulation.reporters[:] = [VTKHDFReporter(path, 10, MESH, append=True)]
+        with pytest.raises(ValueError, match=rf"{path} is no VTKHDF file.*; do not append"):
+            simulation.step(1)
 
     def test_it_goes_on_from_the_step_of_the_simulation(self, tmp_path):
         path = tmp_path / "a.vtkhdf"

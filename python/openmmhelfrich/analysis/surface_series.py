@@ -15,6 +15,7 @@ import numpy as np
 
 from .._journal import JournaledFile
 from .._mesh.periodic import cut_images
+from .._writing import naming
 from ._arrays import triangles_of
 from .curvature import vertex_quantities
 from .elements import edges_of, triangle_areas
@@ -84,6 +85,18 @@ class SurfaceSeries:
         """Remove what is there, so that `add` begins a new file."""
         self._file.remove()
 
+    def require(self) -> None:
+        """Check that the file is there, so that `add` does not begin a new one.
+
+        Raises
+        ------
+        FileNotFoundError
+            It has been taken away.
+        """
+        self._file.recover()
+        with naming(self.path):
+            self.path.stat()
+
     def add(self, frames: Iterable[SurfaceFrame]) -> None:
         """Add frames; they are on the disk when this returns.
 
@@ -114,16 +127,26 @@ class SurfaceSeries:
         ValueError
             If there are fewer.
         """
-        steps = self.steps()
-        if num_frames > len(steps):
-            raise ValueError(f"{self.path} has {len(steps)} frames, not {num_frames}")
-        if num_frames == len(steps):
+        if self.check(num_frames) == num_frames:
             return
         if num_frames == 0:
             self.remove()
             return
         with self._file.change() as raw, self._open(raw, "r+") as file:
             self._resize(file, num_frames)
+
+    def check(self, num_frames: int) -> int:
+        """Check that there are so many frames, or more; returns how many.
+
+        Raises
+        ------
+        ValueError
+            If there are fewer.
+        """
+        found = len(self.steps())
+        if num_frames > found:
+            raise ValueError(f"{self.path} has {found} frames, not {num_frames}")
+        return found
 
     def steps(self) -> np.ndarray:
         """The step of the simulation of each frame, shape (num_frames,).
@@ -141,7 +164,7 @@ class SurfaceSeries:
                 return file[f"{_OURS}/step"][:]
         except (OSError, KeyError) as reason:
             raise ValueError(
-                f"{self.path} is no VTKHDF file of this package ({reason}); do not append"
+                f"{self.path} is no VTKHDF file of this package, or is damaged ({reason})"
             ) from None
 
     def _open(self, raw, mode: str):

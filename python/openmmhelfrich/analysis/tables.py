@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .._journal import JournaledFile
 from .._writing import naming, write_whole
 
 __all__ = ["Modes", "open_table", "read_modes", "read_table"]
@@ -106,7 +107,7 @@ def read_table(path) -> dict[str, np.ndarray]:
     if not path.is_file():
         raise FileNotFoundError(f"read_table: there is no file {path}")
     if path.suffix.lower() in _HDF5:
-        with import_h5py(_INSTEAD).File(path, "r") as file:
+        with _open_hdf5(path) as file:
             names = list(file.attrs.get("columns", []))
             if not names or "rows" not in file:
                 raise ValueError(f"read_table: {path} has no rows of a reporter")
@@ -134,6 +135,15 @@ def read_table(path) -> dict[str, np.ndarray]:
     return dict(zip(names, rows.T, strict=True))
 
 
+def _open_hdf5(path):
+    """The file, of a table, made whole if a kill in the middle of a row has left it in parts."""
+    try:
+        return import_h5py(_INSTEAD).File(path, "r")
+    except OSError:
+        JournaledFile(path).recover()
+        return import_h5py(_INSTEAD).File(path, "r")
+
+
 def open_table(path, columns, append):
     """A table to which rows are added, in the format of its suffix.
 
@@ -150,7 +160,7 @@ def open_table(path, columns, append):
     -------
     _Csv or _Hdf5
         With a method `add(values)`, after which the row is on disk, and `cut(step)`, which drops
-        the rows after a step.
+        the rows after a step and returns the last step that is left, None if there is no row.
 
     Raises
     ------
@@ -192,12 +202,12 @@ class _Csv:
         text = self.path.read_bytes()
         # What follows the last end of a line was cut off by a kill.
         lines = text[: text.rfind(b"\n") + 1].splitlines(keepends=True)
-        kept = [
-            line for number, line in enumerate(lines[1:], 2) if self._step(line, number) <= step
-        ]
+        steps = [self._step(line, number) for number, line in enumerate(lines[1:], 2)]
+        kept = [line for line, of in zip(lines[1:], steps, strict=True) if of <= step]
         if len(b"".join([lines[0], *kept])) != len(text):
             # The file is replaced as a whole, so that a kill leaves the old one or the new one.
             write_whole(self.path, b"".join([lines[0], *kept]))
+        return max((of for of in steps if of <= step), default=None)
 
     def _step(self, line, number):
         """The step of a row, its first number."""
@@ -212,7 +222,8 @@ class _Csv:
         # The file is opened for each row, so that one which was moved away is noticed, and none is
         # left open by a reporter that is forgotten.
         row = (",".join(repr(value) for value in values) + "\n").encode()
-        with naming(self.path), self.path.open("ab", buffering=0) as file:
+        # Not "ab", which would begin a new one without its columns.
+        with naming(self.path), self.path.open("r+b", buffering=0) as file:
             length = file.seek(0, os.SEEK_END)
             try:
                 written = file.write(row)
@@ -225,33 +236,26 @@ class _Csv:
                 raise
 
 
-@contextlib.contextmanager
-def _named_by_hdf5(path):
-    """Errors of the system, which h5py hides in long messages, as for other files."""
-    try:
-        with naming(path):
-            yield
-    except (OSError, RuntimeError) as reason:
-        number = re.search(r"errno = (\d+)", str(reason))
-        if number is None:
-            raise
-        with naming(path):
-            raise OSError(int(number[1]), os.strerror(int(number[1]))) from None
-
-
 class _Hdf5:
-    """An HDF5 file with the rows in one dataset, closed after every row."""
+    """An HDF5 file with the rows in one dataset, closed after every row, and whole after a kill."""
 
     def __init__(self, path, columns, append):
-        self.path, self.h5py = path, import_h5py(_INSTEAD)
+        self.path, self.h5py, self._file = path, import_h5py(_INSTEAD), JournaledFile(path)
         names = list(columns)
+        if append:
+            self._file.recover()
         if append and path.is_file():
-            with self.h5py.File(path, "r") as file:
-                found = list(file.attrs.get("columns", []))
+            try:
+                with self.h5py.File(path, "r") as file:
+                    found = list(file.attrs.get("columns", []))
+            except OSError as reason:
+                raise ValueError(
+                    f"{path} is no HDF5 file, or is damaged ({reason}); do not append"
+                ) from None
             if found != names:
                 raise ValueError(f"{path}: its columns are {found}, not {names}; do not append")
             return
-        with _named_by_hdf5(path), self.h5py.File(path, "w") as file:
+        with self._file.change(fresh=True) as raw, self.h5py.File(raw, "w") as file:
             file.attrs["columns"] = names
             file.attrs["units"] = list(columns.values())
             shape = (0, len(names))
@@ -260,15 +264,23 @@ class _Hdf5:
             )
 
     def cut(self, step):
-        with _named_by_hdf5(self.path), self.h5py.File(self.path, "r+") as file:
-            rows = file["rows"]
-            rows.resize(np.count_nonzero(rows[:, 0] <= step), axis=0)
+        with self.h5py.File(self.path, "r") as file:
+            kept = file["rows"][:, 0] <= step
+            last = file["rows"][np.count_nonzero(kept) - 1, 0] if kept.any() else None
+        if not kept.all():
+            with self._change() as rows:
+                rows.resize(np.count_nonzero(kept), axis=0)
+        return last
 
     def add(self, values):
-        with _named_by_hdf5(self.path), self.h5py.File(self.path, "r+") as file:
-            rows = file["rows"]
+        with self._change() as rows:
             rows.resize(len(rows) + 1, axis=0)
             rows[-1] = values
+
+    @contextlib.contextmanager
+    def _change(self):
+        with self._file.change() as raw, self.h5py.File(raw, "r+") as file:
+            yield file["rows"]
 
 
 def import_h5py(otherwise):

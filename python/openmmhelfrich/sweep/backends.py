@@ -73,6 +73,7 @@ def on_dask(function, points, scheduler, workers):
             client = stack.enter_context(distributed.Client(cluster))
             where = "this machine"
         else:
+            stack.enter_context(_silent("distributed.client"))
             client = stack.enter_context(distributed.Client(scheduler))
             where = scheduler
             try:
@@ -105,9 +106,14 @@ def on_dask(function, points, scheduler, workers):
                     continue
                 key = waiting.pop(future)
                 if future.status == "cancelled":
-                    raise SweepError(f"sweep: lost the scheduler of {where}; run again to go on")
-                error = future.exception()
-                yield key, future.result() if error is None else error
+                    raise _lost(where)
+                try:
+                    error = future.exception()
+                    outcome = future.result() if error is None else error
+                except OSError:
+                    # The connection broke while the result was fetched.
+                    raise _lost(where) from None
+                yield key, outcome
                 # The worker may forget the result now.
                 future.release()
         finally:
@@ -167,11 +173,31 @@ def _loaded(payload):
     return pickle.loads(payload)
 
 
+def _lost(where):
+    return SweepError(f"sweep: lost the scheduler of {where}; run again to go on")
+
+
+@contextlib.contextmanager
+def _silent(name):
+    """A logger of Dask, which shows tracebacks of lost connections, says nothing in here."""
+    logger = logging.getLogger(name)
+    before = logger.level
+    logger.setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        logger.setLevel(before)
+
+
 def _check_health(client, where):
     """Raise SweepError if nothing will ever come any more."""
     if client.status != "running":
-        raise SweepError(f"sweep: lost the scheduler of {where}; run again to go on")
-    if not client.scheduler_info(n_workers=-1)["workers"]:
+        raise _lost(where)
+    try:
+        workers = client.scheduler_info(n_workers=-1)["workers"]
+    except OSError:
+        raise _lost(where) from None
+    if not workers:
         tqdm.write(f"sweep: {where} has no worker left; waiting for one", sys.stderr)
 
 

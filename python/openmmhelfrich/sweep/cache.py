@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import hashlib
 import json
 import os
 import sys
 import tempfile
 import zipfile
-import zlib
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -25,6 +25,8 @@ RECORD = "json"
 
 # How NumPy's entries end, and what they are called in files that have arrays of other names.
 _SUFFIX = ".npy"
+# How files end that are being written.
+_PART = ".part"
 _NUMBERED = "array {}"
 
 
@@ -43,6 +45,7 @@ class Cache:
 
     def __init__(self, folder):
         self.folder = Path(folder)
+        self._entered: set[Path] = set()
 
     @staticmethod
     def key(name: str, point: Mapping, version: int = 1) -> str:
@@ -97,6 +100,8 @@ class Cache:
         try:
             with np.load(path, allow_pickle=False) as file:
                 record = json.loads(str(file[RECORD]))
+                if missing := set(record.get("entries", ())) - set(file.files):
+                    raise KeyError(f"no {min(missing)}")
                 # Without a list of names in the record the entries have those of the arrays.
                 names = record.get("arrays")
                 stored = [_NUMBERED.format(i) for i in range(len(names))] if names else file.files
@@ -106,8 +111,14 @@ class Cache:
                     if entry != RECORD
                 }
         except FileNotFoundError:
+            if not self.folder.is_dir():
+                self._entered.clear()
             return None
-        except (zipfile.BadZipFile, zlib.error, EOFError, ValueError, KeyError) as error:
+        except Exception as error:
+            # A damaged file may ask for encryption, methods of compression or places that there
+            # are not; what the system refuses has a number, but for a place before the first byte.
+            if getattr(error, "errno", None) not in (None, errno.EINVAL):
+                raise
             tqdm.write(
                 f"sweep: computing {dict(point)} again: {path} is broken ({error})", sys.stderr
             )
@@ -129,12 +140,27 @@ class Cache:
         Raises
         ------
         OSError
-            The folder cannot be written to.
+            The folder cannot be written to, or has vanished since the first result.
         """
         path = self.path(name, key)
         with naming(path):
-            path.parent.mkdir(parents=True, exist_ok=True)
-            self._save(path, point, result)
+            self._enter(path.parent)
+            try:
+                self._save(path, point, result)
+            except FileNotFoundError:
+                # Another sweep has just tidied up.
+                self._save(path, point, result)
+
+    def _enter(self, folder: Path) -> None:
+        """Make a folder when it is first needed, and remove what kills have left in it."""
+        if folder in self._entered:
+            return
+        # Not where the whole folder has vanished, with what is in it.
+        if not self._entered or self.folder.is_dir():
+            folder.mkdir(parents=True, exist_ok=True)
+        for part in folder.glob(f"*{_PART}"):
+            part.unlink(missing_ok=True)
+        self._entered.add(folder)
 
     def _save(self, path: Path, point: Mapping, result: Mapping) -> None:
         arrays = {entry: value for entry, value in result.items() if isinstance(value, np.ndarray)}
@@ -143,7 +169,9 @@ class Cache:
         if not all(map(_names_an_entry, arrays)):
             record["arrays"] = list(arrays)
             arrays = {_NUMBERED.format(i): value for i, value in enumerate(arrays.values())}
-        handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".part")
+        # A damaged index may have fewer.
+        record["entries"] = list(arrays)
+        handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=_PART)
         try:
             with os.fdopen(handle, "wb") as file:
                 _write(file, {RECORD: np.array(json.dumps(record)), **arrays})

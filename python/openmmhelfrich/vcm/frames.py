@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import errno
-import os
 import re
 from collections.abc import Iterable
 from pathlib import Path
@@ -71,16 +69,22 @@ class SeriesFrames:
     """
 
     def __init__(self, path: Path):
-        self._path = path
         self._series = SurfaceSeries(path)
 
     def write(self, number: int, step: int, time: float, parts: list[Part], box=None) -> None:
         """Add a frame; arguments as for `MeshFrames.write`."""
-        if number and not self._path.exists():
-            # Not a new file where one was taken away.
-            raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(self._path))
+        if number:
+            self._series.require()
         vertices, triangles = joined(parts)
         self._series.add([SurfaceFrame(step, time, vertices, triangles, box)])
+
+    def misfit(self, number: int) -> str | None:
+        """Why there are not so many frames; None if there are."""
+        try:
+            self._series.check(number)
+        except ValueError as reason:
+            return str(reason)
+        return None
 
     def remove_from(self, number: int) -> None:
         """Remove the frames of this number and later ones.
@@ -153,6 +157,10 @@ class MeshFrames:
             data = data and {name: values[owners] for name, values in data.items()}
             box = None
         files.write(path, vertices, triangles, data, box=box)
+
+    def misfit(self, number: int) -> str | None:
+        """None: frames that were taken elsewhere are not missed."""
+        return None
 
     def remove_from(self, number: int) -> None:
         """Remove the frames of this number and later ones."""

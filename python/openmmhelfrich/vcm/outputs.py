@@ -6,6 +6,7 @@ go on from there with nothing lost and nothing doubled.
 
 from __future__ import annotations
 
+import hashlib
 import os
 import warnings
 from collections.abc import Callable, Iterator
@@ -34,6 +35,8 @@ __all__ = ["Frame", "Outputs", "report_steps", "take_frame"]
 _KILOJOULE = unit.kilojoule_per_mole
 _FORCE = unit.kilojoule_per_mole / unit.nanometer
 _VELOCITY = unit.nanometer / unit.picosecond
+# Of which a checkpoint has a digest, bytes.
+_END = 4096
 
 
 def report_steps(interval: Interval, step_size: float, num_steps: int) -> Iterator[int]:
@@ -123,6 +126,13 @@ def take_frame(cfg: Config, context: openmm.Context, step: int) -> Frame:
         np.asarray(box),
         present_triangles(cfg, context),
     )
+
+
+def _digest_of_end(path: Path, size: int) -> str:
+    """SHA-256 of the last bytes of the first so many of a file: another run has others."""
+    with naming(path), path.open("rb") as file:
+        file.seek(max(0, size - _END))
+        return hashlib.sha256(file.read(min(size, _END))).hexdigest()
 
 
 class Outputs:
@@ -215,13 +225,14 @@ class Outputs:
         self._num_frames += 1
 
     def state(self) -> dict:
-        """The number of frames and the length of every file, once all of it is on the disk."""
-        sizes = {}
+        """Frames so far, lengths of all files and digests of their ends, once on the disk."""
+        sizes, ends = {}, {}
         for path in self.paths:
             with naming(path), path.open("rb") as file:
                 os.fsync(file.fileno())
                 sizes[path.name] = os.fstat(file.fileno()).st_size
-        return {"frames": self._num_frames, "sizes": sizes}
+            ends[path.name] = _digest_of_end(path, sizes[path.name])
+        return {"frames": self._num_frames, "sizes": sizes, "ends": ends}
 
     def restore(self, state: dict) -> None:
         """Cut every file back to an earlier `state`.
@@ -229,25 +240,34 @@ class Outputs:
         Raises
         ------
         ValueError
-            If the set of files is another, or a file is shorter than it was.
+            If the set of files is another, or a file is shorter than it was, or another one.
         """
+        if wrong := self.misfit(state):
+            raise ValueError(wrong)
+        sizes = state["sizes"]
+        if self._frames is not None:
+            self._frames.remove_from(state["frames"])
+        for path in self.paths:
+            os.truncate(path, sizes[path.name])
+        self._num_frames = state["frames"]
+
+    def misfit(self, state: dict) -> str | None:
+        """Why the files cannot be cut back to an earlier `state`; None if they can."""
         sizes = state["sizes"]
         if {path.name for path in self.paths} != set(sizes):
-            raise ValueError(
+            return (
                 f"the run wrote the files {', '.join(sorted(sizes))}, but now these are asked for: "
                 + ", ".join(sorted(path.name for path in self.paths))
             )
         for path in self.paths:
             length = path.stat().st_size if path.exists() else 0
             if length < sizes[path.name]:
-                raise ValueError(
-                    f"{path} had {sizes[path.name]} bytes at the checkpoint and has {length} now"
-                )
-        if self._frames is not None:
-            self._frames.remove_from(state["frames"])
-        for path in self.paths:
-            os.truncate(path, sizes[path.name])
-        self._num_frames = state["frames"]
+                return f"{path} had {sizes[path.name]} bytes at the checkpoint and has {length} now"
+        # Checkpoints of earlier versions have none.
+        for name, digest in state.get("ends", {}).items():
+            if _digest_of_end(self._folder / name, sizes[name]) != digest:
+                return f"{self._folder / name} is not the file that the checkpoint was saved beside"
+        return None if self._frames is None else self._frames.misfit(state["frames"])
 
     def _xyz(self, frame: Frame, values: np.ndarray) -> bytes:
         """A frame in the XYZ format, with VCM's comment line; coordinates in nm."""

@@ -87,7 +87,10 @@ class RunFolder:
             fcntl.flock(self._lock_file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             self.leave()
-            raise RunError(f"another process is running in {self.path}") from None
+            raise RunError(
+                f"another process is running in {self.path}; wait until it has ended, or give "
+                "another folder with --out"
+            ) from None
         except OSError as reason:
             self.leave()
             raise RunError(f"{self.path / _LOCK} cannot be locked: {describe(reason)}") from None
@@ -144,6 +147,13 @@ class RunFolder:
             raise RunError(f"{self.path / name} {reason}{self._offer(other, reason)}") from None
         self._saved_step = found[0].step
         return found
+
+    def before_last(self) -> Saved | None:
+        """What the checkpoint before the last one knows, if that can be used."""
+        try:
+            return self._unpack(PREVIOUS)[0]
+        except BlockError:
+            return None
 
     def _unpack(self, name: str) -> tuple[Saved, Snapshot]:
         path = self.path / name

@@ -303,9 +303,19 @@ class Run:
                 try:
                     self.outputs.restore(saved.outputs)
                 except ValueError as reason:
-                    raise RunError(f"cannot resume: {reason}") from None
+                    raise RunError(f"cannot resume: {reason}; {self._way_out(previous)}") from None
         if previous:
             self._folder.go_back()
+
+    def _way_out(self, previous: bool) -> str:
+        """How to go on where the outputs are not those of the checkpoint."""
+        before = None if previous else self._folder.before_last()
+        if before is not None and before.outputs and self.outputs.misfit(before.outputs) is None:
+            return (
+                f"the files fit the checkpoint before: go on from step {before.step} with "
+                "--resume-previous"
+            )
+        return "bring the file back, or begin anew in another folder with --out"
 
     def close(self) -> None:
         """Let other processes into the folder."""
