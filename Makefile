@@ -119,5 +119,5 @@ $(VENV)/.requirements: constraints.txt $(VENV)/.python
 # pip downloads nothing any more here, but notices what constraints.txt has forgotten.
 $(VENV)/.installed: $(VENV)/.requirements pyproject.toml $(SOURCES)
 	@echo "== Building the library and the Python module (from nothing, about two minutes)"
-	@$(PIP) install --no-index --no-build-isolation --check-build-dependencies -e '.[test,lint,paper]'
+	@$(PIP) install --no-index --no-build-isolation --check-build-dependencies -e '.[test,lint,paper,docs]'
 	@touch $@
