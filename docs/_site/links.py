@@ -40,15 +40,15 @@ def _lead_to_pages(app, page: str, content: list[str]) -> None:
 
 
 def _read_docstring(app, what, name, thing, options, lines) -> None:
-    """Read what SWIG wrote; of a class it is on its page already."""
-    if name.split(".")[-1] in force_names and what == "class":
+    """Read what SWIG wrote, which has formulas, but no markup; that of a class is on its page already."""
+    owner, _, last = name.rpartition(".")
+    if what == "class" and last in force_names:
         lines[:] = []
-    elif any(line.startswith(":type ") for line in lines) or _is_of_a_force(name):
+    elif owner.rpartition(".")[2] in force_names and "-----" not in (thing.__doc__ or ""):
         lines[:] = prose("\n".join(line for line in lines if not line.startswith(":type ")))
-
-
-def _is_of_a_force(name: str) -> bool:
-    return len(parts := name.split(".")) > 2 and parts[-2] in force_names
+    else:
+        # Bars are magnitudes here.
+        lines[:] = [re.sub(r"(`+[^`]*`+)|\|", lambda m: m[1] or r"\|", line) for line in lines]
 
 
 def _link_names(app, tree: nodes.document, page: str) -> None:
@@ -57,8 +57,7 @@ def _link_names(app, tree: nodes.document, page: str) -> None:
     for literal in list(tree.findall(nodes.literal)):
         name = literal.astext().removeprefix("helfrich.").removesuffix("()")
         entry = known.get(f"openmmhelfrich.{name}")
-        inside = nodes.reference, nodes.title, nodes.TextElement
-        if entry is None or isinstance(literal.parent, inside[:2]):
+        if entry is None or isinstance(literal.parent, (nodes.reference, nodes.title)):
             continue
         target = app.builder.get_relative_uri(page, entry.docname)
         here = nodes.reference("", "", refuri=f"{target}#{entry.node_id}", internal=True)
