@@ -17,7 +17,7 @@ SOURCES := Cargo.toml Cargo.lock build.rs setup.py python/forces.i \
            $(wildcard src/*.rs src/*/*.rs src/*/*/*.rs shaders/* shaders/*/* $(foreach any,wrappers/* wrappers/*/* wrappers/*/*/*,$(any)/*))
 CPP := $(wildcard $(foreach any,wrappers/* wrappers/*/* wrappers/*/*/* tests/cpp examples,\
            $(any)/*.h $(any)/*.c $(any)/*.cpp))
-PY := $(wildcard .ci setup.py python tests examples benches docs)
+PY := $(wildcard .ci setup.py python tests examples benches docs/conf.py docs/_site)
 
 .DEFAULT_GOAL := build
 .PHONY: build test lint format wheel demo paper bench docs docs-links fuzz clean help check-tools test-rust test-package test-python FORCE

@@ -1,6 +1,6 @@
 """Check the links of the finished site: every file and every anchor within it is there.
 
-    check_links.py FOLDER
+check_links.py FOLDER
 """
 
 from __future__ import annotations

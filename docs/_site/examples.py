@@ -37,9 +37,7 @@ _LINES = {
         _SPHERE,
         "TriangleAreaForce(mesh, modulus=1.3, target=mesh.area / mesh.num_triangles)",
     ),
-    "PlaquetteAreaForce": _on(
-        _SPHERE, "PlaquetteAreaForce(mesh, stiffness=10, target=mesh.area)"
-    ),
+    "PlaquetteAreaForce": _on(_SPHERE, "PlaquetteAreaForce(mesh, stiffness=10, target=mesh.area)"),
     "TriangleAreaRepulsionForce": _on(
         _SPHERE, "TriangleAreaRepulsionForce(mesh, minArea=200, epsilon=10)"
     ),
@@ -87,7 +85,8 @@ _LINES = {
     ),
     "SpringForce": _on(
         _STRETCHED,
-        "SpringForce(\n    mesh, stiffness=0.01, reference=at_rest, form=helfrich.SpringForce.WLCPower\n)",
+        "SpringForce(\n    mesh, stiffness=0.01, reference=at_rest,\n"
+        "    form=helfrich.SpringForce.WLCPower,\n)",
     ),
     "PressureForce": _on(_SPHERE, "PressureForce(mesh, pressure=0.001)"),
     "SurfaceTensionForce": _on(_SPHERE, "SurfaceTensionForce(mesh, tension=0.01)"),
@@ -150,13 +149,16 @@ _LINES = {
         'print(context.getParameter("SurfaceViscosityFriction"))\n'
     ),
     "VariableMassVerletIntegrator": (
-        "import openmm\n\n" + _SPHERE + "integrator = helfrich.VariableMassVerletIntegrator(0.2)  # ps\n"
+        "import openmm\n\n"
+        + _SPHERE
+        + "integrator = helfrich.VariableMassVerletIntegrator(0.2)  # ps\n"
         "simulation = helfrich.Vesicle(mesh).simulation(integrator)\n"
         "simulation.step(200)\n"
         "print(integrator.getMasses().sum().round(6))  # amu, as at the start\n"
     ),
     "VariableMassLangevinIntegrator": (
-        "import openmm\n\n" + _SPHERE
+        "import openmm\n\n"
+        + _SPHERE
         + "integrator = helfrich.VariableMassLangevinIntegrator(300, 0.01, 0.2)  # K, 1/ps, ps\n"
         "simulation = helfrich.Vesicle(mesh).simulation(integrator)\n"
         "simulation.step(200)\n"

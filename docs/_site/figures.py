@@ -27,7 +27,7 @@ _STYLE = {
 }
 
 
-# --- What is measured ------------------------------------------------------------------------------
+# --- What is measured ---
 
 
 def _patch():
@@ -61,7 +61,9 @@ def _arrows(ax, letter):
     outline = _outline()
     for point in outline[:-1:8]:
         ax.add_patch(
-            FancyArrowPatch(0.78 * point, 0.98 * point, arrowstyle="-|>", mutation_scale=8, color=_MARK)
+            FancyArrowPatch(
+                0.78 * point, 0.98 * point, arrowstyle="-|>", mutation_scale=8, color=_MARK
+            )
         )
 
 
@@ -122,21 +124,27 @@ def _heights(ax, letter):
 
 def _edge(ax, letter):
     """An edge between two triangles, seen along it and from above."""
-    ax.add_patch(Polygon([[-1, 0.15], [0, 0.6], [0, 1.1], [-1, 0.65]], facecolor=_FILL, edgecolor=_GREY))
-    ax.add_patch(Polygon([[0, 0.6], [1, 0.15], [1, 0.65], [0, 1.1]], facecolor="#dbe4ee", edgecolor=_GREY))
+    ax.add_patch(
+        Polygon([[-1, 0.15], [0, 0.6], [0, 1.1], [-1, 0.65]], facecolor=_FILL, edgecolor=_GREY)
+    )
+    ax.add_patch(
+        Polygon([[0, 0.6], [1, 0.15], [1, 0.65], [0, 1.1]], facecolor="#dbe4ee", edgecolor=_GREY)
+    )
     ax.plot([0, 0], [0.6, 1.1], color=_MARK, lw=2)
     ends = np.array([[-1.0, -0.95], [0.0, -0.4], [1.0, -0.95]])
     ax.plot(*ends.T, color="#475569", lw=2)
     for a, b in (ends[:2], ends[1:]):
         middle, normal = (a + b) / 2, np.array([-(b - a)[1], (b - a)[0]])
         tip = middle + 0.45 * normal / np.linalg.norm(normal)
-        ax.add_patch(FancyArrowPatch(middle, tip, arrowstyle="-|>", mutation_scale=8, color="#475569"))
+        ax.add_patch(
+            FancyArrowPatch(middle, tip, arrowstyle="-|>", mutation_scale=8, color="#475569")
+        )
     ax.plot([0, 0.6], [-0.4, -0.07], color="#475569", lw=0.8, ls=":")
     _say(ax, (0.32, -0.4), letter)
 
 
 def _border(ax, letter):
-    points, triangles = _draw_patch(ax)
+    points, _ = _draw_patch(ax)
     outer = points[7:][np.argsort(np.arctan2(*points[7:].T[::-1]))]
     ax.add_patch(Polygon(outer, fill=False, edgecolor=_MARK, lw=2.2))
     _say(ax, 1.18 * outer[1], letter)
@@ -181,7 +189,9 @@ def _reference(ax, letter):
     ax.add_patch(Polygon(rest, facecolor=_FILL, edgecolor=_GREY, ls="--"))
     ax.add_patch(Polygon(now, facecolor="#fed7aa", edgecolor=_MARK))
     ax.add_patch(
-        FancyArrowPatch((-0.25, 0.25), (0.25, 0.25), arrowstyle="-|>", mutation_scale=9, color="#475569")
+        FancyArrowPatch(
+            (-0.25, 0.25), (0.25, 0.25), arrowstyle="-|>", mutation_scale=9, color="#475569"
+        )
     )
     ax.text(-0.55, -0.5, "reference", ha="center", va="top", color="#475569")
     ax.text(0.55, -0.6, letter, ha="center", va="top", color=_MARK)
@@ -217,7 +227,7 @@ def _say(ax, where, text):
     ax.text(*where, text, ha="center", va="center", color="#111827", fontsize=11, style="italic")
 
 
-# --- Energies, by the package ----------------------------------------------------------------------
+# --- Energies, by the package ---
 
 
 def _sphere():
@@ -336,7 +346,9 @@ def _line_tension(ax):
     mesh = helfrich.Mesh.icosphere(16, 1.0)
     x = np.radians(np.linspace(15, 165, 31))
     y = [
-        mesh.energy(helfrich.LineTensionForce(mesh, 1, (mesh.vertices[:, 2] > np.cos(v)).astype(int)))
+        mesh.energy(
+            helfrich.LineTensionForce(mesh, 1, (mesh.vertices[:, 2] > np.cos(v)).astype(int))
+        )
         for v in x
     ]
     ax.plot(np.degrees(x), np.divide(y, 2 * np.pi), "o", ms=3, label="icosphere, N = 2562")
@@ -428,9 +440,7 @@ def _springs(ax):
     pairs = [_stretched(v, v) for v in x]
     for form in ("Harmonic", "WLCPower"):
         y = [
-            now.energy(
-                helfrich.SpringForce(now, 1, rest, form=getattr(helfrich.SpringForce, form))
-            )
+            now.energy(helfrich.SpringForce(now, 1, rest, form=getattr(helfrich.SpringForce, form)))
             / 3
             for rest, now in pairs
         ]
@@ -445,7 +455,8 @@ def _repulsion(ax):
     low = np.array([[-9.0, -6, 0], [9, -6, 0], [0, 9, 0]])
     high = np.array([[0.0, 0, 0], [-4, 3, 40], [4, 3, 40]])
     meshes = [
-        helfrich.Mesh(np.vstack([low, high + (0, 0, v)]), [[0, 1, 2], [3, 4, 5]]) for v in x
+        helfrich.Mesh(np.vstack([low, high + np.array([0, 0, v])]), [[0, 1, 2], [3, 4, 5]])
+        for v in x
     ]
     _energies(ax, lambda m: helfrich.SurfaceRepulsionForce(m, 1, 1), meshes, x)
     ax.set(xlabel="d / D", ylabel="E / ε")

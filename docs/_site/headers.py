@@ -1,4 +1,4 @@
-"""What the C++ and C headers say: classes, their public members and functions, with their comments."""
+"""What the headers of C++ and C say: classes and functions, with their comments."""
 
 from __future__ import annotations
 
@@ -24,10 +24,12 @@ class Member:
 
     @property
     def is_enumeration(self) -> bool:
+        """Whether it is no function."""
         return bool(self.values)
 
     @property
     def name(self) -> str:
+        """What it is called."""
         return re.search(r"(\w+)\s*(?:\(|=|$)", self.declaration)[1]
 
 
@@ -43,6 +45,7 @@ class Class:
 
     @property
     def constructor(self) -> Member | None:
+        """Its constructor, if it has a public one."""
         return next((m for m in self.members if m.name == self.name), None)
 
 
@@ -65,9 +68,7 @@ def classes() -> dict[str, Class]:
     for header in sorted(HEADERS.glob("*.h")):
         text = header.read_text(encoding="utf-8")
         pattern = _COMMENT.pattern + r"(?:template[^\n]*\n)?class (\w+) : public ([\w:]+)[^{]*\{"
-        match = next(
-            (m for m in re.finditer(pattern, text, re.DOTALL) if "*/" not in m[1]), None
-        )
+        match = next((m for m in re.finditer(pattern, text, re.DOTALL) if "*/" not in m[1]), None)
         if match is None:
             raise ValueError(f"{header}: there is no class with a comment")
         body = text[match.end() :].partition("\n};")[0]

@@ -1,4 +1,4 @@
-"""Links: to what README and other files outside of docs/ say, and of each class's name to its page."""
+"""Links to files outside of docs/, and from the name of each class to its page."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ _PAGES = {
 
 
 def setup(app) -> None:
+    """Connect what follows."""
     app.connect("source-read", _lead_to_pages)
     app.connect("include-read", lambda app, path, page, content: _lead_to_pages(app, page, content))
     app.connect("autodoc-process-docstring", _read_docstring)
@@ -40,7 +41,7 @@ def _lead_to_pages(app, page: str, content: list[str]) -> None:
 
 
 def _read_docstring(app, what, name, thing, options, lines) -> None:
-    """Read what SWIG wrote, which has formulas, but no markup; that of a class is on its page already."""
+    """Read what SWIG wrote, which has no markup; that of a class is on its page already."""
     owner, _, last = name.rpartition(".")
     if what == "class" and last in force_names:
         lines[:] = []

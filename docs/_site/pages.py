@@ -65,7 +65,7 @@ def _formula(cell: str) -> str:
     return escaped(re.sub(r" ?\(?\[([^]]+)\]\([^)]*\)\)?", "", cell))
 
 
-# --- Forces ----------------------------------------------------------------------------------------
+# --- Forces ---
 
 
 def _index() -> list[str]:
@@ -75,8 +75,8 @@ def _index() -> list[str]:
         raise ValueError(f"README.md has no row for {', '.join(sorted(missing))}")
     lines = [
         title("Energies at a glance"),
-        "Each energy as it is computed by the package itself, beside what it measures. A name leads to",
-        "formula, parameters, an example, and the names in Python, C, C++ and Rust.",
+        "Each energy as the package computes it, beside what it measures. A name leads to formula,",
+        "parameters, an example, and the names in Python, C, C++ and Rust.",
         "",
     ]
     headings: dict[str, list[str]] = {}
@@ -152,11 +152,14 @@ def _parameters(name: str, known: headers.Class) -> list[str]:
     rows = []
     for parameter in inspect.signature(getattr(helfrich, name)).parameters.values():
         scalar = scalars.get(parameter.name)
-        default = "" if parameter.default is parameter.empty else f"``{_short(parameter.default)}``"
+        default = _default(parameter, known)
         own = f"``{scalar.element_setter}``" if scalar and scalar.element_setter else ""
         meaning = meanings.get(parameter.name, "")
         if parameter.name == "triangles":
-            meaning = "a `Mesh`, or particle indices, shape (num_triangles, 3), counter-clockwise seen from outside"
+            meaning = (
+                "a `Mesh`, or particle indices, shape (num_triangles, 3), counter-clockwise seen "
+                "from outside"
+            )
         elif parameter.name == "offset":
             meaning = "added to all particle indices"
         rows.append([f"``{parameter.name}``", escaped(meaning), default, own])
@@ -172,8 +175,15 @@ def _parameters(name: str, known: headers.Class) -> list[str]:
     return lines
 
 
-def _short(value) -> str:
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
+def _default(parameter: inspect.Parameter, known: headers.Class) -> str:
+    """As users write it: the name of a variant, four digits of a number."""
+    value = parameter.default
+    if value is parameter.empty:
+        return ""
+    variants = next((m.values for m in known.members if m.name.lower() == parameter.name), None)
+    if variants:
+        return f"``{variants[value].name}``"
+    return f"``{value:.4g}``" if isinstance(value, float) else f"``{value}``"
 
 
 def _where(name: str) -> list[str]:
@@ -185,14 +195,17 @@ def _where(name: str) -> list[str]:
             "``native``. :doc:`/platforms` has what is chosen, and the exceptions."
         )
     else:
-        text = "The processor computes it, on every platform and beside every backend. See :doc:`/platforms`."
+        text = (
+            "The processor computes it, on every platform and beside every backend. See "
+            ":doc:`/platforms`."
+        )
     return [title("Where it is computed", "-"), text, ""]
 
 
 def _other_languages(name: str, known: headers.Class) -> list[str]:
     lines = [title("C++, C and Rust", "-")]
-    lines += [f"``#include <openmm-helfrich/{known.header.name}>``: :cpp:class:`HelfrichPlugin::{name}`"]
-    lines += [""]
+    header = f"``#include <openmm-helfrich/{known.header.name}>``"
+    lines += [f"{header}: :cpp:class:`HelfrichPlugin::{name}`", ""]
     if known.constructor:
         lines += code(f"HelfrichPlugin::{known.constructor.declaration};", "cpp")
     functions = [f for f in headers.c_functions() if f.name.startswith(f"Helfrich_{name}_")]
@@ -211,14 +224,15 @@ def _other_languages(name: str, known: headers.Class) -> list[str]:
     return lines
 
 
-# --- C++ and C -------------------------------------------------------------------------------------
+# --- C++ and C ---
 
 
 def _cpp() -> list[str]:
     lines = [
         title("C++"),
-        "``#include <OpenMMHelfrich.h>`` has all classes. They are header-only and OpenMM Forces, or Integrators, like",
-        "any other; link ``libOpenMMHelfrich.so`` and ``libOpenMM.so``. :doc:`/languages` shows how to build.",
+        "``#include <OpenMMHelfrich.h>`` has all classes. They are header-only, and OpenMM Forces or",
+        "Integrators like any other; link ``libOpenMMHelfrich.so`` and ``libOpenMM.so``.",
+        ":doc:`/languages` has an example.",
         "",
     ]
     for known in sorted(headers.classes().values(), key=lambda c: (c.name not in _COMMON, c.name)):
@@ -255,7 +269,7 @@ def _c() -> list[str]:
     return lines
 
 
-# --- The command line ------------------------------------------------------------------------------
+# --- The command line ---
 
 
 def _cli() -> list[str]:

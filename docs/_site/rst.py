@@ -26,7 +26,7 @@ def escaped(text: str) -> str:
 
 
 def prose(text: str) -> list[str]:
-    """Lines of prose, in which indented paragraphs are formulas and @param and @return are fields."""
+    """Lines of prose: indented paragraphs are formulas, @param and @return are fields."""
     text = re.sub(r"@param(?:\[out\])?\s+(\w+)\s+", r":param \1: ", text)
     text = re.sub(r"@return\s+", ":returns: ", text)
     lines: list[str] = []
