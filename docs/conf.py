@@ -10,7 +10,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 from _site import links, pages
 
 project = "openmm-helfrich"
-author = "The authors of openmm-helfrich"
+author = "The openmm-helfrich developers"
 version = release = openmmhelfrich.__version__
 extensions = [
     "myst_parser",

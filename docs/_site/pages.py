@@ -230,8 +230,8 @@ def _other_languages(name: str, known: headers.Class) -> list[str]:
 def _cpp() -> list[str]:
     lines = [
         title("C++"),
-        "``#include <OpenMMHelfrich.h>`` has all classes. They are header-only, and OpenMM Forces or",
-        "Integrators like any other; link ``libOpenMMHelfrich.so`` and ``libOpenMM.so``.",
+        "``#include <OpenMMHelfrich.h>`` has all classes. They are header-only, and OpenMM Forces",
+        "or Integrators like any other; link ``libOpenMMHelfrich.so`` and ``libOpenMM.so``.",
         ":doc:`/languages` has an example.",
         "",
     ]

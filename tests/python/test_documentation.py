@@ -71,7 +71,7 @@ def blocks_of(page: Path) -> list[Block]:
             notes.append((kind, note.removeprefix(kind).strip(" ") if kind != "before" else note))
         line = text.count("\n", 0, match.start("language")) + 1
         found.append(Block(page, line, match["language"], match["body"], tuple(notes)))
-    assert sum("<!-- test:" in line for line in text.split("\n")) == sum(
+    assert sum(line.startswith("<!-- test:") for line in text.split("\n")) == sum(
         len(b.notes) for b in found
     )
     return found
@@ -230,10 +230,14 @@ def sources() -> str:
 def test_messages_are_those_of_the_package(name):
     """What a table of messages has in its first column is in the sources, but OpenMM's own."""
     text, known = (ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8"), sources()
-    rows = text.partition("| message |")[2].split("\n\n")[0].split("\n")[2:]
-    messages = [
-        m for row in rows for m in re.findall(r"(?<!OpenMM's )`([^`]+)`", row.split("|")[1])
-    ]
+    tables = [part.split("\n\n")[0] for part in text.split("| message |")[1:]]
+    cells = [row.split("|")[1] for table in tables for row in table.split("\n")[2:] if row]
+    messages = [m for cell in cells for m in re.findall(r"(?<!OpenMM's )`([^`]+)`", cell)]
     assert len(messages) > 1
     missing = [m for m in messages if m != "make" and m not in known]
     assert not missing
+
+
+def test_citation_names_the_version():
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    assert f"\nversion: {helfrich.__version__}\n" in citation
