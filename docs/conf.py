@@ -43,6 +43,8 @@ html_title = f"openmm-helfrich {release}"
 html_static_path = ["_site/static"]
 html_css_files = ["site.css"]
 html_copy_source = False
+html_show_copyright = False
+smartquotes = False
 copybutton_exclude = ".linenos, .gp, .go"
 
 

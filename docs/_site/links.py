@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
+import openmmhelfrich
 from docutils import nodes
 from openmmhelfrich.forces import __all__ as force_names
+from sphinx.util import logging
 
 from .rst import prose
 
-ROOT = Path(__file__).parents[2]
+_LOGGER = logging.getLogger(__name__)
 
 #: The pages that show files of the root folder, or parts of them.
 _PAGES = {
@@ -27,7 +28,9 @@ def setup(app) -> None:
     app.connect("source-read", _lead_to_pages)
     app.connect("include-read", lambda app, path, page, content: _lead_to_pages(app, page, content))
     app.connect("autodoc-process-docstring", _read_docstring)
+    app.connect("env-check-consistency", _miss_no_name)
     app.connect("doctree-resolved", _link_names)
+    app.connect("doctree-resolved", _name_pages)
 
 
 def _lead_to_pages(app, page: str, content: list[str]) -> None:
@@ -50,6 +53,22 @@ def _read_docstring(app, what, name, thing, options, lines) -> None:
     else:
         # Bars are magnitudes here.
         lines[:] = [re.sub(r"(`+[^`]*`+)|\|", lambda m: m[1] or r"\|", line) for line in lines]
+
+
+def _miss_no_name(app, env) -> None:
+    """Warn of what the package has and no page documents."""
+    known = env.get_domain("py")
+    for name in map("openmmhelfrich.{}".format, openmmhelfrich.__all__):
+        if name not in known.objects and name not in known.modules:
+            _LOGGER.warning("no page documents %s", name, location="python")
+
+
+def _name_pages(app, tree: nodes.document, page: str) -> None:
+    """Let links that show a file, as GitHub has it, show the title of the page."""
+    for link in tree.findall(nodes.reference):
+        match = re.fullmatch(r"(?:docs/)?(\w+)\.md", link.astext())
+        if match and link.get("internal") and match[1] in app.env.titles:
+            link.children = [nodes.inline("", app.env.titles[match[1]].astext())]
 
 
 def _link_names(app, tree: nodes.document, page: str) -> None:
