@@ -20,6 +20,14 @@ _PAGES = {
     "CHANGELOG.md": "changelog.md",
     "CONTRIBUTING.md": "contributing.md",
     "ARCHITECTURE.md": "architecture.md",
+    "wrappers/include/OpenMMHelfrich.h": "api/cpp.rst",
+    "wrappers/include/OpenMMHelfrichCWrapper.h": "api/c.rst",
+}
+
+#: What Rustdoc makes of files of the crate; it is added when all else is done.
+_RUSTDOC = {
+    "src/lib.rs": "rust/openmm_helfrich/index.html",
+    "src/force.rs": "rust/openmm_helfrich/force/index.html",
 }
 
 
@@ -38,6 +46,9 @@ def _lead_to_pages(app, page: str, content: list[str]) -> None:
     text = content[0]
     for file, target in _PAGES.items():
         text = re.sub(rf"\]\((?:\.\./)?{re.escape(file)}\)", f"]({target})", text)
+    for file, target in _RUSTDOC.items():
+        link = rf'<a href="{target}">\1</a>'
+        text = re.sub(rf"\[([^]]+)\]\(\.\./{re.escape(file)}\)", link, text)
     # Of a file that is shown here links are as seen from the root folder; folders have no page.
     text = re.sub(r"\]\(docs/", "](", text)
     content[0] = re.sub(r"\[([^]]+)\]\((?![a-z]+:)[\w/]+/\)", r"`\1`", text)

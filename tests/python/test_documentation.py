@@ -214,6 +214,17 @@ def test_a_wrong_block_is_found():
             check(words, "here")
 
 
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_links_lead_to_files_of_the_repository(page):
+    """Pages are read where there is no site, too: none of what a build makes is linked."""
+    made = ROOT / "docs" / "forces", ROOT / "docs" / "api"
+    text = re.sub(r"^```[\s\S]*?^```", "", page.read_text(encoding="utf-8"), flags=re.M)
+    for link in re.findall(r"\]\((?!https?:)([^)#]+)", text):
+        target = (page.parent / link).resolve()
+        assert target.exists(), link
+        assert not any(folder in target.parents for folder in made), link
+
+
 def sources() -> str:
     """All texts of the sources, with messages of several lines in one."""
     files = [
