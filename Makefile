@@ -8,6 +8,8 @@ TARGET := $(abspath $(or $(CARGO_TARGET_DIR),target))
 
 # The same environment as in setup.py, so that nothing is compiled twice.
 CARGO = PYTHON=$(VENV)/bin/python OPENMM_DIR=$(OPENMM) cargo
+# All pages are read anew, since a page that was read says its warnings no more.
+SPHINX = $(VENV)/bin/sphinx-build -q -n -W -E --keep-going -j 2 -d out/docs/doctrees
 PIP = $(VENV)/bin/python -m pip --disable-pip-version-check -q
 
 # What pip builds; the Python files of the package are used in place.
@@ -15,15 +17,16 @@ SOURCES := Cargo.toml Cargo.lock build.rs setup.py python/forces.i \
            $(wildcard src/*.rs src/*/*.rs src/*/*/*.rs shaders/* shaders/*/* $(foreach any,wrappers/* wrappers/*/* wrappers/*/*/*,$(any)/*))
 CPP := $(wildcard $(foreach any,wrappers/* wrappers/*/* wrappers/*/*/* tests/cpp examples,\
            $(any)/*.h $(any)/*.c $(any)/*.cpp))
-PY := $(wildcard .ci setup.py python tests examples benches)
+PY := $(wildcard .ci setup.py python tests examples benches docs/conf.py docs/_site)
 
 .DEFAULT_GOAL := build
-.PHONY: build test lint format wheel demo paper bench fuzz sanitize clean help check-tools test-rust test-package test-python FORCE
+.PHONY: build test lint format wheel demo paper bench docs docs-links fuzz sanitize clean help check-tools test-rust \
+        test-package test-python FORCE
 
 build: $(VENV)/.installed ## build everything and install it in .venv (the default)
 	@echo "openmm-helfrich is installed in .venv; try: make demo"
 
-test: lint test-rust test-python test-package ## run all checks: lint, Rust, Python, a clean installation
+test: lint test-rust test-python docs test-package ## run all checks: lint, Rust, Python, documentation, a clean installation
 
 lint: $(VENV)/.requirements ## check formatting, lint Rust, C++ and Python, and check links of Rust's documentation
 	@echo "== Formatting and lint"
@@ -63,6 +66,17 @@ test-python: build # what a user sees
 	@echo "== Python"
 	@$(VENV)/bin/python -m pytest -q -n 2 --dist loadfile
 
+# Warnings are errors, and so are links within the site that lead nowhere. Rustdoc's pages are part of it.
+docs: build ## make the site of the documentation in out/docs/html
+	@echo "== Documentation"
+	@$(CARGO) doc -q --no-deps --release --locked
+	@$(SPHINX) -b html docs out/docs/html
+	@rm -rf out/docs/html/rust && cp -r $(TARGET)/doc out/docs/html/rust
+	@$(VENV)/bin/python docs/_site/check_links.py out/docs/html
+
+docs-links: build ## check the links to other sites, which needs a network
+	@$(SPHINX) -b linkcheck docs out/docs/links
+
 demo: build ## simulate a vesicle and draw it with its fluctuation spectrum (about two minutes)
 	@$(VENV)/bin/python examples/vesicle.py
 
@@ -98,6 +112,7 @@ sanitize: build ## run sanitizers, Miri and loom, or PART="loom miri address lea
 clean: ## remove everything that was built, .venv too
 	rm -rf $(VENV) build dist target out python/*.egg-info
 	rm -rf $(addprefix python/openmmhelfrich/,lib include cmake)
+	rm -rf docs/forces docs/api
 	rm -f python/openmmhelfrich/forces.py python/openmmhelfrich/*.so
 
 help: ## list these targets
@@ -125,5 +140,5 @@ $(VENV)/.requirements: constraints.txt $(VENV)/.python
 # pip downloads nothing any more here, but notices what constraints.txt has forgotten.
 $(VENV)/.installed: $(VENV)/.requirements pyproject.toml $(SOURCES)
 	@echo "== Building the library and the Python module (from nothing, about two minutes)"
-	@$(PIP) install --no-index --no-build-isolation --check-build-dependencies -e '.[test,lint,paper]'
+	@$(PIP) install --no-index --no-build-isolation --check-build-dependencies -e '.[test,lint,paper,docs]'
 	@touch $@

@@ -188,13 +188,3 @@ def test_surfaces_for_newcomers(tmp_path, script, quick, said):
 def test_bench_of_empty_steps():
     text = run(ROOT / "benches" / "empty_steps.py", "--repeats", "1", "--sizes", "252").stdout
     assert "Helfrich x2" in text and text.count(" 252 ") == 3
-
-
-@pytest.mark.parametrize("name", ["README.md", "docs/surfaces.md"])
-def test_code_in_the_text_runs(name, tmp_path):
-    text = (ROOT / name).read_text(encoding="utf-8")
-    blocks = [part.partition("```")[0] for part in text.split("```python\n")[1:]]
-    assert blocks
-    script = tmp_path / "text.py"
-    script.write_text("\n".join(blocks), encoding="utf-8")
-    run(script)

@@ -53,15 +53,15 @@ _VORONOI = ("GompperKroll", "JulicherVoronoi")
 def mean_curvature(vertices, triangles, scheme="Julicher", *, box=None):
     """Mean curvature H of every vertex, by one of the schemes of `BendingForce`.
 
-    ========================= ===================== ======
+    ========================= ======================== =====
     scheme                    H
-    ========================= ===================== ======
-    "Julicher"                J / a_B               (B13)
-    "GompperKroll"            n · S / a_V           (B10)
-    "GompperKrollBarycentric" n · S / a_B           (B15)
-    "JulicherVoronoi"         J / a_V               (B16)
-    "Espriu"                  n · Σ(r_i − r_j)/√3a_B
-    ========================= ===================== ======
+    ========================= ======================== =====
+    "Julicher"                J / a_B                  (B13)
+    "GompperKroll"            n · S / a_V              (B10)
+    "GompperKrollBarycentric" n · S / a_B              (B15)
+    "JulicherVoronoi"         J / a_V                  (B16)
+    "Espriu"                  n · Σ(r_i − r_j) / √3a_B
+    ========================= ======================== =====
 
     H is the *sum* of the two principal curvatures, 2/R on a sphere of radius R, and positive where
     the surface bulges outward. `VertexQuantities` has the symbols. The energies of the schemes with
