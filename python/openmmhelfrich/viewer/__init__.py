@@ -1,0 +1,8 @@
+"""Surfaces in a browser: one HTML file with everything in it, without a server or a network."""
+
+from .live import LiveView
+from .page import page
+from .scene import Scene
+from .views import View, view
+
+__all__ = ["LiveView", "Scene", "View", "page", "view"]
