@@ -40,7 +40,7 @@ from .reporters import (  # noqa: E402
 )
 from .states import load_state, save_state  # noqa: E402
 from .vesicle import Vesicle  # noqa: E402
-from .viewer import LiveView, View, view
+from .viewer import LiveView, View, view  # noqa: E402
 from .virials import virial  # noqa: E402
 
 __version__ = _plugin.version()

@@ -34,14 +34,15 @@ _FILE = click.Path(path_type=Path, exists=True, dir_okay=False)
 def view(source, out, browser, every, mesh_path):
     """Show RUN in the browser: the folder of a run, a mesh, or a trajectory.
 
-    Writes one HTML file with everything in it, which needs neither a server nor a network and can be
-    sent to others: the surface, coloured by curvature, area, angle or neighbours, with a slider over
-    time, and beside it energies, areas, volumes and the spectrum. The key ? shows what keys do.
+    Writes one HTML file with everything in it, which needs neither a server nor a network and can
+    be sent to others: the surface, coloured by curvature, area, angle or neighbours, with a slider
+    over time, and beside it energies, areas, volumes and the spectrum. The key ? shows what keys
+    do.
     """
     from tqdm import tqdm
 
     from ..viewer.sources import scene_of
-    from ..viewer.views import open_in_browser, write_page
+    from ..viewer.views import check_replaceable, open_in_browser, write_page
 
     if out is None:
         folder = source if source.is_dir() else source.parent
@@ -51,10 +52,11 @@ def view(source, out, browser, every, mesh_path):
         return tqdm(numbers, unit="frame", disable=None, leave=False)
 
     try:
+        check_replaceable(out)
         scene = scene_of(source, every=every, mesh=mesh_path, progress=progress)
         size = write_page(out, scene)
     except FileExistsError as reason:
-        raise click.ClickException(f"{reason}; give another name with --out") from None
+        raise click.ClickException(f"{reason} with --out") from None
     except (ValueError, ImportError) as reason:
         raise click.ClickException(str(reason).removeprefix("view: ")) from None
     count = len(scene.frames)

@@ -185,7 +185,7 @@ class Outputs:
         return self._num_frames
 
     def start(self) -> None:
-        """Make empty files, the PSF file, and the mesh at the start, which an XTC has no room for."""
+        """Make empty files, the PSF file, and the mesh at the start for readers of the XTC file."""
         for path in self.paths:
             path.write_bytes(b"")
         if self._frames is not None:

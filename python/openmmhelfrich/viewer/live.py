@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 from openmm import unit
@@ -31,7 +32,7 @@ class LivePage:
     path : str or Path
         Of the HTML file; another page of the viewer is overwritten.
     scene : Scene
-        To which the caller adds frames.
+        To which frames are added.
     """
 
     def __init__(self, path, scene: Scene):
@@ -39,35 +40,63 @@ class LivePage:
         self.scene = scene
         self._due = 0.0
 
-    def update(self) -> None:
-        """Write the page, unless it has been written just now."""
-        if time.monotonic() < self._due:
-            return
-        self._write(_SECONDS)
-
-    def finish(self) -> None:
-        """Write the page as it stays."""
-        self._write(None)
-
-    def _write(self, reload: float | None) -> None:
-        while len(self.scene.frames) > _MOST_FRAMES:
-            self.scene.thin()
+    def update(self, add: Callable[[], None]) -> None:
+        """Call what adds a frame, and show it, unless that was done some seconds ago."""
         begin = time.monotonic()
-        write_page(self.path, self.scene, reload)
+        if begin < self._due:
+            return
+        add()
+        self._show(_SECONDS)
         end = time.monotonic()
         self._due = end + max(_SECONDS, (end - begin) / _SHARE)
+
+    def finish(self, add: Callable[[], None]) -> None:
+        """Add the last frame, and write the page as it stays."""
+        add()
+        self._show(None)
+
+    def _show(self, reload: float | None) -> None:
+        if len(self.scene.frames) > _MOST_FRAMES:
+            self.scene.thin()
+        self._put(reload)
+
+    def _put(self, reload: float | None) -> None:
+        write_page(self.path, self.scene, reload)
+
+
+class _Cell(LivePage):
+    """The same in a cell of a notebook."""
+
+    def __init__(self, scene: Scene):
+        super().__init__("", scene)
+        try:
+            from IPython.display import HTML, display
+        except ImportError as reason:
+            raise ImportError(
+                f"LiveView: a view in a notebook needs IPython; give file= instead ({reason})"
+            ) from None
+        self._html, self._display = HTML, display
+        self._handle = None
+
+    def _put(self, reload: float | None) -> None:
+        shown = self._html(embedded(page(self.scene)))
+        if self._handle is None:
+            self._handle = self._display(shown, display_id=True)
+        else:
+            self._handle.update(shown)
 
 
 class LiveView:
     """Shows all membranes of a Simulation as it runs: a reporter for notebooks, or for a page.
 
-    In a notebook the cell in which the run started has the view, which is updated every few
-    seconds. With `file` there is a page that updates itself in any browser.
+    In a notebook the cell in which the run starts has the view, which is updated every few seconds;
+    with `file` there is a page that updates itself in any browser. Reports in between cost nothing,
+    and views a tenth of the time at most.
 
     Parameters
     ----------
     reportInterval : int
-        Steps between frames.
+        Steps from one report to the next.
     file : str or Path, optional
         The HTML file to write. Default: show it in the notebook.
 
@@ -80,65 +109,35 @@ class LiveView:
 
     Examples
     --------
-    >>> simulation.reporters.append(LiveView(1000))
+    >>> live = LiveView(1000)
+    >>> simulation.reporters.append(live)
     >>> simulation.step(100_000)
+    >>> live.finish(simulation)
     """
 
     def __init__(self, reportInterval, file=None):
         self._interval = whole_number(reportInterval, "LiveView", "reportInterval", 1)
         self.scene = Scene("simulation")
-        self._page = None if file is None else LivePage(file, self.scene)
-        self._cell = None if file is not None else _Cell(self.scene)
+        self._page = _Cell(self.scene) if file is None else LivePage(file, self.scene)
 
     def describeNextReport(self, simulation):
         """When the next report is due, as OpenMM asks for it."""
         steps = self._interval - simulation.currentStep % self._interval
-        return NextReport(steps=steps, periodic=False, include=["energy"])
+        return NextReport(steps=steps, periodic=False, include=[])
 
     def report(self, simulation, state):
-        """Add a frame, and show it if the last one was shown some seconds ago."""
+        """Show the present frame if the last one was shown some seconds ago."""
+        self._page.update(lambda: self._add(simulation))
+
+    def finish(self, simulation) -> None:
+        """Show the present frame; a page no longer looks for a newer one."""
+        self._page.finish(lambda: self._add(simulation))
+
+    def _add(self, simulation) -> None:
+        state = simulation.context.getState(energy=True)
         energies = {
-            name: energy.value_in_unit(unit.kilojoule_per_mole)
-            for name, energy in (
-                ("potential", state.getPotentialEnergy()),
-                ("kinetic", state.getKineticEnergy()),
-            )
+            "potential": state.getPotentialEnergy(),
+            "kinetic": state.getKineticEnergy(),
         }
-        add_context(self.scene, simulation.context, simulation.currentStep, energies)
-        (self._page or self._cell).update()
-
-    def finish(self) -> None:
-        """Show the last frame; the page no longer looks for a newer one."""
-        (self._page or self._cell).finish()
-
-
-class _Cell:
-    """A display of a notebook that is updated."""
-
-    def __init__(self, scene: Scene):
-        try:
-            from IPython.display import HTML, display
-        except ImportError as reason:
-            raise ImportError(
-                f"LiveView: a view in a notebook needs IPython; give file= instead ({reason})"
-            ) from None
-        self._scene = scene
-        self._html, self._display = HTML, display
-        self._handle = None
-        self._due = 0.0
-
-    def update(self) -> None:
-        if time.monotonic() >= self._due:
-            self.finish()
-
-    def finish(self) -> None:
-        while len(self._scene.frames) > _MOST_FRAMES:
-            self._scene.thin()
-        begin = time.monotonic()
-        shown = self._html(embedded(page(self._scene)))
-        if self._handle is None:
-            self._handle = self._display(shown, display_id=True)
-        else:
-            self._handle.update(shown)
-        end = time.monotonic()
-        self._due = end + max(_SECONDS, (end - begin) / _SHARE)
+        values = {name: energy / unit.kilojoule_per_mole for name, energy in energies.items()}
+        add_context(self.scene, simulation.context, simulation.currentStep, values)

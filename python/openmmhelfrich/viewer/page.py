@@ -54,10 +54,7 @@ def page(scene: Scene, *, reload: float | None = None) -> str:
         "generator": GENERATOR,
         "title": html.escape(scene.title),
         "style": (_HERE / "viewer.css").read_text(encoding="utf-8"),
-        # No name may end the element.
-        "header": json.dumps(header, separators=(",", ":"), allow_nan=False).replace(
-            "<", "\\u003c"
-        ),
+        "header": _script_safe(json.dumps(header, separators=(",", ":"), allow_nan=False)),
         "block": base64.b64encode(block).decode(),
         "script": script,
     }
@@ -68,6 +65,11 @@ def page(scene: Scene, *, reload: float | None = None) -> str:
         name, rest = piece.split("}}", 1)
         found += [parts[name], rest]
     return "".join(found)
+
+
+def _script_safe(text: str) -> str:
+    """JSON in which no name can end the element that it stands in."""
+    return text.replace("<", "\\u003c")
 
 
 def _encoded(scene: Scene) -> tuple[dict, bytes]:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import csv
 import os
+import re
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
@@ -14,7 +16,7 @@ from .._mesh import files
 from .._numbers import whole_number
 from .._present import is_periodic, surfaces_of
 from ..analysis._arrays import frames_of, positions_in
-from ..analysis.tables import import_h5py, read_table
+from ..analysis.tables import import_h5py
 from ..analysis.trajectories import Trajectory
 from ..errors import MeshError
 from ..mesh import Mesh
@@ -26,6 +28,10 @@ __all__ = ["add_context", "scene_of"]
 _MOST_POSITIONS = 2_000_000
 _MOST_FRAMES = 2000
 _TRAJECTORIES = (".xtc", ".dcd", ".pdb")
+
+# Columns of a run's table.
+_ENERGY = " (kJ/mol)"
+_AREA = re.compile(r"area (.*) \(nm\^2\)")
 
 #: What is put around the loop over frames, to show how far it is.
 Progress = Callable[[Iterable[int]], Iterable[int]]
@@ -236,11 +242,12 @@ def _triangles_beside(path: Path, num_particles: int, num_frames: int, mesh):
             )
     if flowing.is_file():
         count = 3 * len(triangles) if triangles is not None else None
-        numbers = np.memmap(flowing, dtype="<i4", mode="r")
+        stored = flowing.stat().st_size // 4
         if count is None:
-            count = len(numbers) // num_frames
-        if count and count % 3 == 0 and len(numbers) >= count:
-            return numbers[: len(numbers) // count * count].reshape(-1, count // 3, 3), box
+            count = stored // num_frames
+        if count and count % 3 == 0 and stored >= count:
+            whole = (stored // count, count // 3, 3)
+            return np.memmap(flowing, dtype="<i4", mode="r", shape=whole), box
         raise ValueError(f"view: {flowing} does not match the {num_frames} frames of {path}")
     if triangles is None:
         raise ValueError(
@@ -264,21 +271,18 @@ def _table_beside(path: Path, steps) -> tuple[list[str] | None, dict[str, np.nda
     table = path.with_suffix(".csv")
     if not table.is_file():
         return None, {}
-    try:
-        columns = read_table(table)
-    except ValueError:
-        # Some other table.
+    text = table.read_text(encoding="utf-8")
+    # A run that goes on, or was killed, may have a part of a line at the end.
+    columns, *lines = list(csv.reader(text[: text.rfind("\n") + 1].splitlines())) or [[]]
+    if columns[:1] != ["step"] or any(len(line) != len(columns) for line in lines):
         return None, {}
-    names = [name.removeprefix("area ") for name in columns if name.startswith("area ")]
-    rows = {int(step): row for row, step in enumerate(columns.get("step", ()))}
-    places = np.array([rows.get(int(step), -1) for step in steps])
-    if (places < 0).all():
-        return names or None, {}
-    energies = {
-        name: np.where(places < 0, np.nan, values[places])
-        for name, values in columns.items()
-        if name not in ("step", "time") and not name.startswith(("area ", "volume "))
-    }
+    names = [match[1] for name in columns if (match := _AREA.fullmatch(name))]
+    rows = {int(line[0]): line for line in lines}
+    energies = {}
+    for column, name in enumerate(columns):
+        if name.endswith(_ENERGY):
+            found = [rows[step][column] if step in rows else "nan" for step in map(int, steps)]
+            energies[name.removesuffix(_ENERGY)] = np.array(found, dtype=float)
     return names or None, energies
 
 
@@ -292,8 +296,8 @@ def _of_series(path: Path) -> _Frames:
             own = file["openmm-helfrich"]
             if (counts != own.attrs["vertices"]).any():
                 raise ValueError(
-                    f"view: the surfaces in {path} are cut at the faces of their periodic box; view "
-                    "the XTC file"
+                    f"view: the surfaces in {path} are cut at the faces of their periodic box; "
+                    "view the XTC file"
                 )
             size = 3 * int(own.attrs["triangles"])
             points = root["Points"][:].reshape(-1, counts[0], 3)

@@ -67,10 +67,17 @@ void main() {
 /** Texels of a row of the textures of points and triangles; `texel` in the shader has it too. */
 const ROW = 1024;
 
+/** Whether the processor draws, for which four samples of each pixel are too many. */
+function drawnBySoftware() {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  const names = gl?.getExtension("WEBGL_debug_renderer_info");
+  return !!names && /swiftshader|llvmpipe|software/i.test(gl.getParameter(names.UNMASKED_RENDERER_WEBGL));
+}
+
 class Surface {
   constructor(canvas) {
     this.canvas = canvas;
-    this.gl = canvas.getContext("webgl2", { antialias: true, alpha: true, premultipliedAlpha: true });
+    this.gl = canvas.getContext("webgl2", { antialias: !drawnBySoftware() });
     if (this.gl) this.prepare();
   }
 

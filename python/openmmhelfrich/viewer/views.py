@@ -13,7 +13,7 @@ from .page import GENERATOR, page
 from .scene import Scene
 from .sources import scene_of
 
-__all__ = ["View", "embedded", "open_in_browser", "view", "write_page"]
+__all__ = ["View", "check_replaceable", "embedded", "open_in_browser", "view", "write_page"]
 
 # Of a cell of a notebook, pixels.
 _HEIGHT = 460
@@ -122,18 +122,27 @@ def view(thing, triangles=None, path=None, *, title=None, every=None, mesh=None)
     return found
 
 
+def check_replaceable(path: Path) -> None:
+    """Raise a FileExistsError if a page would overwrite anything but another one."""
+    if path.is_file():
+        with path.open("rb") as file:
+            if GENERATOR.encode() not in file.read(1000):
+                raise FileExistsError(
+                    f"{path} is there already and is no page of the viewer; give another name"
+                )
+
+
 def write_page(path: Path, scene: Scene, reload: float | None = None) -> int:
-    """Write a page, in the place of none but another page; returns its size in bytes.
+    """Write a page in the place of none but another one; returns its size in bytes.
 
     Raises
     ------
     FileExistsError
         If there is another file.
+    OSError
+        If the system refuses.
     """
-    if path.is_file():
-        with path.open("rb") as file:
-            if GENERATOR.encode() not in file.read(1000):
-                raise FileExistsError(f"{path} is there already and is no page of the viewer")
+    check_replaceable(path)
     data = page(scene, reload=reload).encode()
     write_whole(path, data)
     return len(data)
