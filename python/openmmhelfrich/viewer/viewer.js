@@ -292,7 +292,6 @@ class Viewer {
   /** A page that is written anew during a run comes back as it was left, at the newest frame. */
   remember() {
     const { reload } = this.scene;
-    if (reload === null) return;
     const last = this.scene.frames.length - 1;
     const kept = ["azimuth", "elevation", "zoom", "shift"];
     try {
@@ -305,7 +304,7 @@ class Viewer {
     } catch {
       // It is opened for the first time.
     }
-    setTimeout(() => this.renew(last), 1000 * reload);
+    if (reload !== null) setTimeout(() => this.renew(last), 1000 * reload);
   }
 
   renew(last) {
