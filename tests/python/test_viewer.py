@@ -422,12 +422,16 @@ def test_live_views_in_a_notebook(monkeypatch):
         displays.append(("display", shown))
         return Handle()
 
-    fake = types.ModuleType("IPython.display")
+    shell, fake = types.ModuleType("IPython"), types.ModuleType("IPython.display")
     fake.HTML, fake.display = str, display
-    monkeypatch.setitem(sys.modules, "IPython", types.ModuleType("IPython"))
+    shell.get_ipython = lambda: None
+    monkeypatch.setitem(sys.modules, "IPython", shell)
     monkeypatch.setitem(sys.modules, "IPython.display", fake)
     monkeypatch.setattr("openmmhelfrich.viewer.live._SECONDS", 0.0)
     monkeypatch.setattr("openmmhelfrich.viewer.live._SHARE", 1e9)
+    with pytest.raises(ValueError, match="no notebook here; give file="):
+        helfrich.LiveView(5)
+    shell.get_ipython = object
     simulation = simulation_of(Mesh.icosphere(3, radius=300))
     simulation.reporters.append(helfrich.LiveView(5))
     simulation.step(10)

@@ -70,11 +70,14 @@ class _Cell(LivePage):
     def __init__(self, scene: Scene):
         super().__init__("", scene)
         try:
+            from IPython import get_ipython
             from IPython.display import HTML, display
         except ImportError as reason:
             raise ImportError(
                 f"LiveView: a view in a notebook needs IPython; give file= instead ({reason})"
             ) from None
+        if get_ipython() is None:
+            raise ValueError("LiveView: there is no notebook here; give file=")
         self._html, self._display = HTML, display
         self._handle = None
 
@@ -105,7 +108,8 @@ class LiveView:
     ImportError
         No file is given, and IPython is not installed.
     ValueError
-        At the first report, if the System has no membrane force.
+        No file is given, and there is no notebook; at the first report, if the System has no
+        membrane force.
 
     Examples
     --------

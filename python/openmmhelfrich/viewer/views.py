@@ -158,8 +158,9 @@ def open_in_browser(path: Path) -> bool:
 
 def embedded(text: str, height: int = _HEIGHT) -> str:
     """A page as a part of another one, which it cannot disturb."""
+    # IPython has advice for those who hand it an iframe by itself.
     return (
-        f'<iframe srcdoc="{html.escape(text)}" width="100%" height="{height}" '
+        f'<div><iframe srcdoc="{html.escape(text)}" width="100%" height="{height}" '
         'style="border: 1px solid #8888; border-radius: 6px" loading="lazy" '
-        'title="openmm-helfrich"></iframe>'
+        'title="openmm-helfrich"></iframe></div>'
     )
