@@ -322,7 +322,8 @@ class Mesh(Generators, Measures, Transformations):
             return None
         from .viewer import view
 
-        return view(self, title=repr(self))._repr_html_()
+        title = f"{self.num_vertices} vertices, {self.num_triangles} triangles"
+        return view(self, title=title)._repr_html_()
 
     def __repr__(self) -> str:
         words = [f"{self.num_vertices} vertices", f"{self.num_triangles} triangles"]

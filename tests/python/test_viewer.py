@@ -358,7 +358,7 @@ def test_meshes_in_a_notebook(lumpy, monkeypatch):
     inside = html.unescape(re.search('srcdoc="([^"]*)"', shown)[1])
     header, frames = unpacked(inside)
     np.testing.assert_allclose(frames[0][0], lumpy.vertices, atol=1e-3)
-    assert header["title"] == repr(lumpy)
+    assert header["title"] == "42 vertices, 80 triangles"
     monkeypatch.setattr("openmmhelfrich.mesh._MOST_SHOWN", 41)
     assert lumpy._repr_html_() is None
 

@@ -5,7 +5,6 @@ the tests are skipped; HELFRICH_REQUIRE_BROWSER=1 asks for failures instead.
 """
 
 import contextlib
-import html
 import io
 import os
 import shutil
@@ -459,7 +458,10 @@ def test_notebooks(open_page, tmp_path, lumpy):
     data = frame.locator("#canvas").screenshot()
     picture = np.asarray(Image.open(io.BytesIO(data)).convert("RGB")).astype(int)
     assert (saturation(picture) > 40).mean() > 0.1
-    assert html.escape(repr(lumpy)) in frame.locator("#title").inner_text()
+    assert frame.locator("#title").inner_text() == "42 vertices, 80 triangles"
+    # Nothing is cut off in the width of a cell.
+    side = frame.locator("#side")
+    assert side.evaluate("(side) => side.scrollWidth <= side.clientWidth")
 
 
 def test_without_webgl_the_numbers_are_there(browser, tmp_path, lumpy):

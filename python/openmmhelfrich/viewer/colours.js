@@ -61,7 +61,11 @@ function showLegend(element, field) {
     words[words.length - 1] += " ≤";
   } else {
     bar.style.background = `linear-gradient(to right, ${stops.join(",")})`;
-    words = [0, 0.5, 1].map((share) => shortNumber(field.from + share * (field.to - field.from), 3));
+    words = [0, 0.5, 1].map((share) => {
+      const value = field.from + share * (field.to - field.from);
+      // The middle may miss 0 by rounding.
+      return shortNumber(Math.abs(value) < 1e-9 * (field.to - field.from) ? 0 : value, 3);
+    });
   }
   for (const word of words) ticks.appendChild(document.createElement("span")).textContent = word;
 }

@@ -3,6 +3,9 @@
 /** Frames of the scene in a second while it plays. */
 const PLAYING = 15;
 
+/** Powers of modes below this are none. */
+const ROUNDING = 1e-24;
+
 const get = (id) => document.getElementById(id);
 
 class Viewer {
@@ -154,8 +157,10 @@ class Viewer {
     for (const series of energies) this.addRow(body, series);
     this.openRow(this.row ?? keyOf(energies[0] ?? measures[0]));
     const rows = only >= 0 ? scene.spectra[only] : null;
-    get("modes").hidden = !rows;
-    if (rows) this.followers.push(spectrumPlot(get("spectrum"), rows));
+    // An exact sphere has nothing but rounding.
+    const shown = !!rows && meanSpectrum(rows).some((power) => power > ROUNDING);
+    get("modes").hidden = !shown;
+    if (shown) this.followers.push(spectrumPlot(get("spectrum"), rows));
     this.show(this.frame);
   }
 
