@@ -17,6 +17,7 @@ from openmmhelfrich import Mesh, analysis
 from openmmhelfrich.viewer import scene as scenes
 from openmmhelfrich.viewer.page import page as page_of
 from openmmhelfrich.viewer.scene import Scene
+from openmmhelfrich.viewer.views import embedded
 from PIL import Image
 from run_files import fluid_and_solid, invoke
 
@@ -424,19 +425,19 @@ def test_live_pages_renew_themselves(open_page, tmp_path, lumpy):
     """The page comes back with the next frames, and seen as before."""
     scene, path = Scene("live"), tmp_path / "live.html"
     scene.add(lumpy.vertices, lumpy.triangles, step=1, time=1.0)
-    path.write_text(page_of(scene, reload=1.0))
+    path.write_text(page_of(scene, reload=1.0, key="live"))
     view = open_page(path)
     view.page.keyboard.press("3")
     view.page.keyboard.press("Shift+ArrowRight")
     azimuth = view.js("viewer.camera.azimuth")
     scene.add(1.1 * lumpy.vertices, lumpy.triangles, step=2, time=2.0)
-    path.write_text(page_of(scene, reload=1.0))
+    path.write_text(page_of(scene, reload=1.0, key="live"))
     view.until("window.viewer?.scene.frames.length === 2")
     assert view.js("[viewer.frame, viewer.field, viewer.camera.azimuth]") == [1, 2, azimuth]
     # Who looks at an earlier frame stays there.
     view.until("viewer.frame === 0", lambda: view.page.keyboard.press("Home"))
     scene.add(1.2 * lumpy.vertices, lumpy.triangles, step=3, time=3.0)
-    path.write_text(page_of(scene))
+    path.write_text(page_of(scene, key="live"))
     view.until("window.viewer?.scene.frames.length === 3")
     assert view.js("viewer.frame") == 0
     view.js("window.same = true")
@@ -462,6 +463,26 @@ def test_notebooks(open_page, tmp_path, lumpy):
     # Nothing is cut off in the width of a cell.
     side = frame.locator("#side")
     assert side.evaluate("(side) => side.scrollWidth <= side.clientWidth")
+
+
+def test_views_in_a_cell_are_seen_as_before(open_page, tmp_path, lumpy):
+    """`LiveView` puts another page into the place of the first one."""
+    path = tmp_path / "notebook.html"
+    path.write_text("<!DOCTYPE html><link rel='icon' href='data:,'><body data-ready=1>wait</body>")
+    view = open_page(path)
+    scene = Scene("cell")
+    for step in (1, 2):
+        scene.add(lumpy.vertices, lumpy.triangles, step=step, time=step)
+        cell = embedded(page_of(scene, key="cell"))
+        view.page.evaluate("(cell) => (document.body.innerHTML = cell)", cell)
+        view.until("frames[0]?.document.body?.dataset.ready")
+        inside = view.page.frames[-1]
+        assert inside.evaluate("[viewer.frame, viewer.field]") == [step - 1, 0 if step == 1 else 2]
+        assert (inside.evaluate("viewer.camera.zoom") > 1) is (step == 2)
+        inside.locator("#canvas").focus()
+        view.page.keyboard.press("+")
+        view.page.keyboard.press("3")
+        view.page.wait_for_timeout(300)
 
 
 def test_without_webgl_the_numbers_are_there(browser, tmp_path, lumpy):

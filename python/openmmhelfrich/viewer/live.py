@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import secrets
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -38,6 +39,7 @@ class LivePage:
     def __init__(self, path, scene: Scene):
         self.path = Path(path)
         self.scene = scene
+        self._key = f"openmm-helfrich {secrets.token_hex(8)}"
         self._due = 0.0
 
     def update(self, add: Callable[[], None]) -> None:
@@ -61,7 +63,7 @@ class LivePage:
         self._put(reload)
 
     def _put(self, reload: float | None) -> None:
-        write_page(self.path, self.scene, reload)
+        write_page(self.path, self.scene, reload, self._key)
 
 
 class _Cell(LivePage):
@@ -82,7 +84,7 @@ class _Cell(LivePage):
         self._handle = None
 
     def _put(self, reload: float | None) -> None:
-        shown = self._html(embedded(page(self.scene)))
+        shown = self._html(embedded(page(self.scene, key=self._key)))
         if self._handle is None:
             self._handle = self._display(shown, display_id=True)
         else:

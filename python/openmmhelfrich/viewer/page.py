@@ -33,7 +33,7 @@ _NONE = 65535
 _RANGE = (2.0, 98.0)
 
 
-def page(scene: Scene, *, reload: float | None = None) -> str:
+def page(scene: Scene, *, reload: float | None = None, key: str | None = None) -> str:
     """The HTML of a scene.
 
     Parameters
@@ -42,13 +42,15 @@ def page(scene: Scene, *, reload: float | None = None) -> str:
         With one frame at least.
     reload : float, optional
         Seconds after which the page looks for a newer one in its place. Default: never.
+    key : str, optional
+        The same for pages that are seen as the one before was left. Default: each by itself.
 
     Returns
     -------
     str
     """
     header, block = _encoded(scene)
-    header["reload"] = reload
+    header |= {"reload": reload, "key": key}
     script = "\n".join((_HERE / name).read_text(encoding="utf-8") for name in _SCRIPTS)
     parts = {
         "generator": GENERATOR,

@@ -204,6 +204,7 @@ class Viewer {
       this.followers.push(this.follow);
     }
     this.mark(this.frame);
+    this.redraw();
   }
 
   toggle(name) {
@@ -290,40 +291,44 @@ class Viewer {
     this.waiting = true;
     requestAnimationFrame(() => {
       this.waiting = false;
+      if (this.scene.key !== null) this.keep();
       if (!this.surface.gl.isContextLost()) this.surface.draw(this.camera, this.options);
     });
   }
 
-  /** A page that is written anew during a run comes back as it was left, at the newest frame. */
+  /** A page that is made anew during a run is seen as the last one was left, at the newest frame. */
   remember() {
-    const { reload } = this.scene;
+    const { key, reload } = this.scene;
     const last = this.scene.frames.length - 1;
-    const kept = ["azimuth", "elevation", "zoom", "shift"];
     try {
-      const saved = JSON.parse(decodeURIComponent(location.hash.slice(1)));
-      for (const name of kept) this.camera[name] = saved[name];
-      this.options = saved.options;
-      Object.assign(this, { field: saved.field, row: saved.row });
+      const saved = JSON.parse(sessionStorage.getItem(key));
+      Object.assign(this.camera, saved.camera);
+      Object.assign(this, { options: saved.options, field: saved.field, row: saved.row });
       if (saved.chosen < this.scene.surfaces.length) this.chosen = saved.chosen;
       if (saved.frame >= 0) this.frame = Math.min(saved.frame, last);
     } catch {
-      // It is opened for the first time.
+      // It is seen for the first time, or the browser keeps nothing.
     }
-    if (reload !== null) setTimeout(() => this.renew(last), 1000 * reload);
+    if (reload !== null) setTimeout(() => this.renew(), 1000 * reload);
   }
 
-  renew(last) {
-    if (this.playing) {
-      setTimeout(() => this.renew(last), 1000);
-      return;
-    }
-    const { azimuth, elevation, zoom, shift } = this.camera;
+  /** Keeps how the page is seen. */
+  keep() {
     const { options, field, chosen, row } = this;
+    const { azimuth, elevation, zoom, shift } = this.camera;
     // Who looks at the newest frame sees the next one.
-    const frame = this.frame === last ? -1 : this.frame;
-    const state = { azimuth, elevation, zoom, shift, options, field, chosen, row, frame };
-    location.replace("#" + encodeURIComponent(JSON.stringify(state)));
-    location.reload();
+    const frame = this.frame === this.scene.frames.length - 1 ? -1 : this.frame;
+    const state = { camera: { azimuth, elevation, zoom, shift }, options, field, chosen, row, frame };
+    try {
+      sessionStorage.setItem(this.scene.key, JSON.stringify(state));
+    } catch {
+      // The browser keeps nothing.
+    }
+  }
+
+  renew() {
+    if (this.playing) setTimeout(() => this.renew(), 1000);
+    else location.reload();
   }
 
   /** Milliseconds for a picture that is drawn, and for a frame that is shown; means of several. */

@@ -132,7 +132,7 @@ def check_replaceable(path: Path) -> None:
                 )
 
 
-def write_page(path: Path, scene: Scene, reload: float | None = None) -> int:
+def write_page(path: Path, scene: Scene, reload: float | None = None, key=None) -> int:
     """Write a page in the place of none but another one; returns its size in bytes.
 
     Raises
@@ -143,7 +143,7 @@ def write_page(path: Path, scene: Scene, reload: float | None = None) -> int:
         If the system refuses.
     """
     check_replaceable(path)
-    data = page(scene, reload=reload).encode()
+    data = page(scene, reload=reload, key=key).encode()
     write_whole(path, data)
     return len(data)
 
