@@ -21,7 +21,7 @@ from .errors import MeshError
 __all__ = ["Mesh", "MeshError"]
 
 # Vertices of a mesh that a notebook draws.
-_MOST_SHOWN = 20_000
+MOST_SHOWN = 20_000
 
 
 class Mesh(Generators, Measures, Transformations):
@@ -318,7 +318,7 @@ class Mesh(Generators, Measures, Transformations):
     def _repr_html_(self) -> str | None:
         """What a notebook shows: the surface, or its words alone where it is large."""
         # Each cell would take megabytes, and a browser has room for few of them.
-        if self.num_vertices > _MOST_SHOWN:
+        if self.num_vertices > MOST_SHOWN:
             return None
         from .viewer import view
 

@@ -19,9 +19,11 @@ import numpy as np
 import openmm
 import openmmhelfrich as helfrich
 import pytest
+from openmm import app
 from openmmhelfrich import Mesh, analysis
 from openmmhelfrich.viewer import scene as scenes
 from openmmhelfrich.viewer.live import LivePage
+from openmmhelfrich.viewer.notebooks import register
 from openmmhelfrich.viewer.page import page
 from openmmhelfrich.viewer.scene import Scene
 from run_files import fluid_and_solid, invoke, results
@@ -359,12 +361,41 @@ def test_meshes_in_a_notebook(lumpy, monkeypatch):
     header, frames = unpacked(inside)
     np.testing.assert_allclose(frames[0][0], lumpy.vertices, atol=1e-3)
     assert header["title"] == "42 vertices, 80 triangles"
-    monkeypatch.setattr("openmmhelfrich.mesh._MOST_SHOWN", 41)
+    monkeypatch.setattr("openmmhelfrich.mesh.MOST_SHOWN", 41)
     assert lumpy._repr_html_() is None
 
 
 def simulation_of(mesh):
     return helfrich.Vesicle(mesh).simulation(openmm.LangevinMiddleIntegrator(300, 0.01, 0.1))
+
+
+def test_simulations_in_a_notebook(monkeypatch):
+    """IPython is told how to show those with membranes; others, and those not begun, stay."""
+    known = {}
+    formatter = types.SimpleNamespace(for_type=known.__setitem__)
+    display = types.SimpleNamespace(formatters={"text/html": formatter})
+    shell = types.ModuleType("IPython")
+    shell.get_ipython = lambda: types.SimpleNamespace(display_formatter=display)
+    monkeypatch.setitem(sys.modules, "IPython", shell)
+    register()
+    show = known[app.Simulation]
+    mesh = Mesh.icosphere(3, radius=300)
+    simulation = simulation_of(mesh)
+    inside = html.unescape(re.search('srcdoc="([^"]*)"', show(simulation))[1])
+    np.testing.assert_allclose(unpacked(inside)[1][0][0], mesh.vertices, atol=0.02)
+    monkeypatch.setattr("openmmhelfrich.viewer.notebooks.MOST_SHOWN", mesh.num_vertices - 1)
+    assert show(simulation) is None
+    monkeypatch.undo()
+    system = openmm.System()
+    for _ in range(mesh.num_vertices):
+        system.addParticle(1)
+    topology = mesh.topology()
+    assert show(app.Simulation(topology, system, openmm.VerletIntegrator(1))) is None
+    system.addForce(helfrich.BendingForce(mesh, rigidity=50))
+    simulation = app.Simulation(topology, system, openmm.VerletIntegrator(1))
+    assert show(simulation) is None
+    with pytest.raises(ValueError, match="no positions yet"):
+        helfrich.view(simulation)
 
 
 def test_live_pages(tmp_path, monkeypatch):

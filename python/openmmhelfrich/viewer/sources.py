@@ -92,7 +92,7 @@ def add_context(scene: Scene, context: openmm.Context, step: int, energies=None)
     Raises
     ------
     ValueError
-        If there is no membrane force.
+        If there is no membrane force, or positions have not been set.
     """
     surfaces = surfaces_of(context)
     if not surfaces:
@@ -106,6 +106,8 @@ def add_context(scene: Scene, context: openmm.Context, step: int, energies=None)
     if any(is_periodic(context, force) for force in surfaces):
         box = np.asarray(state.getPeriodicBoxVectors(asNumpy=True)._value)
     positions = np.asarray(state.getPositions(asNumpy=True)._value)
+    if not np.ptp(positions[corners.ravel()], axis=0).any():
+        raise ValueError("view: the Context has no positions yet; set them first")
     time = state.getTime()._value
     scene.add(positions, corners, step=step, time=time, box=box, energies=energies)
 
