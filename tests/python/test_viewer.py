@@ -20,8 +20,10 @@ import openmm
 import openmmhelfrich as helfrich
 import pytest
 from openmm import app
+from openmm.app.internal.xtc_utils import xtc_write_frame
 from openmmhelfrich import Mesh, analysis
 from openmmhelfrich.viewer import scene as scenes
+from openmmhelfrich.viewer import xtc
 from openmmhelfrich.viewer.live import LivePage
 from openmmhelfrich.viewer.notebooks import register
 from openmmhelfrich.viewer.page import page
@@ -290,13 +292,40 @@ def test_a_run_that_was_killed(run, tmp_path):
     """Files end in the middle of a frame, and one has more of them than the other."""
     for name in ("pair.xtc", "pair.csv", "pair.triangles"):
         data = (run / name).read_bytes()
-        (tmp_path / name).write_bytes(data[:-30] if name == "pair.csv" else data)
+        (tmp_path / name).write_bytes(data if name == "pair.triangles" else data[:-30])
     triangles = (run / "pair.triangles").read_bytes()
     (tmp_path / "pair.ply").write_bytes((run / "pair.ply").read_bytes())
     (tmp_path / "pair.triangles").write_bytes(triangles[: -len(triangles) // 11 - 7])
     scene = helfrich.view(tmp_path).scene
     assert len(scene.frames) == 9
+    xtc_only = tmp_path / "pair.triangles"
+    xtc_only.write_bytes(triangles)
+    assert len(helfrich.view(tmp_path).scene.frames) == 10
     assert np.isfinite(series(scene, None, "potential", "kJ/mol")).all()
+
+
+@pytest.mark.parametrize("particles", [5, 42])
+def test_a_frame_that_is_not_whole(tmp_path, particles):
+    """Cut anywhere, an XTC file has the frames before; of few particles they look otherwise."""
+    random = np.random.default_rng(3)
+    frames = random.normal(scale=50, size=(3, particles, 3)).astype(np.float32)
+    path, sizes = tmp_path / "cut.xtc", [0]
+    for number, frame in enumerate(frames):
+        xtc_write_frame(os.fsencode(path), frame, np.eye(3, dtype=np.float32) * 9, number, number)
+        sizes.append(path.stat().st_size)
+    data = path.read_bytes()
+    cuts = random.integers(1, sizes[3], 60)
+    for cut in {*cuts.tolist(), *sizes[1:], *(size - 1 for size in sizes[1:])}:
+        path.write_bytes(data[:cut])
+        whole = sum(size <= cut for size in sizes[1:])
+        if whole == 0:
+            with pytest.raises(ValueError, match="no whole frame"):
+                xtc.read(path)
+            continue
+        positions, boxes, times, steps = xtc.read(path)
+        np.testing.assert_allclose(positions, frames[:whole], atol=6e-4)
+        assert (boxes == 9 * np.eye(3)).all()
+        assert times.tolist() == steps.tolist() == list(range(whole))
 
 
 @pytest.mark.parametrize(
@@ -308,7 +337,7 @@ def test_a_run_that_was_killed(run, tmp_path):
         ("alone.xtc", "has no triangles beside it, neither alone.ply nor alone.triangles"),
         ("wrong.xtc", "224 particles, and .*wrong.ply 42 vertices"),
         ("mixed.xtc", r"mixed.triangles does not match the 11 frames"),
-        ("broken.xtc", "broken.xtc cannot be read|broken.xtc has no frame"),
+        ("broken.xtc", "broken.xtc has no whole frame"),
         ("broken.vtkhdf", "is no VTKHDF file"),
         ("words.txt", "unknown extension"),
     ],

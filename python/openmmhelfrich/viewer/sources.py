@@ -20,6 +20,7 @@ from ..analysis.tables import import_h5py
 from ..analysis.trajectories import Trajectory
 from ..errors import MeshError
 from ..mesh import Mesh
+from . import xtc
 from .scene import Scene
 
 __all__ = ["add_context", "scene_of"]
@@ -212,16 +213,7 @@ def _of_trajectory(path: Path, mesh) -> tuple[_Frames, list[str] | None]:
 def _positions(path: Path):
     """Positions, steps, times and boxes, if there are any, of all frames."""
     if path.suffix.lower() == ".xtc":
-        # OpenMM reads these itself.
-        from openmm.app.internal.xtc_utils import read_xtc
-
-        try:
-            frames, boxes, times, steps = read_xtc(os.fsencode(path))
-        except (OSError, RuntimeError, ValueError) as reason:
-            raise ValueError(f"view: {path} cannot be read: {reason}") from None
-        frames, boxes = np.moveaxis(frames, -1, 0), np.moveaxis(boxes, -1, 0).astype(float)
-        if len(frames) == 0:
-            raise ValueError(f"view: {path} has no frame yet")
+        frames, boxes, times, steps = xtc.read(path)
         return frames, steps, times, boxes if boxes.any(axis=2).all() else None
     trajectory = Trajectory(path)
     frames = trajectory.read()
