@@ -25,6 +25,8 @@ def main():
     assert (package / "include" / "OpenMMHelfrich.h").exists()
     assert (package / "include" / "openmm-helfrich" / "BendingForce.h").exists()
     assert (package / "py.typed").exists()
+    # The page of a mesh has all the files of the viewer in it.
+    assert "class Viewer" in helfrich.view(helfrich.Mesh.icosphere(1, 1.0))._repr_html_()
 
     (extension,) = package.glob("_forces*.so")
     for binary in (library, extension):

@@ -40,6 +40,7 @@ from .reporters import (  # noqa: E402
 )
 from .states import load_state, save_state  # noqa: E402
 from .vesicle import Vesicle  # noqa: E402
+from .viewer import LiveView, View, view  # noqa: E402
 from .virials import virial  # noqa: E402
 
 __version__ = _plugin.version()
@@ -47,6 +48,7 @@ __version__ = _plugin.version()
 __all__ = [
     "BlowUpError",
     "BlowUpReporter",
+    "LiveView",
     "MembraneReporter",
     "Mesh",
     "MeshError",
@@ -56,6 +58,7 @@ __all__ = [
     "VTKHDFReporter",
     "VirialReporter",
     "Vesicle",
+    "View",
     "adapters",
     "analysis",
     "area_difference_parameters",
@@ -74,6 +77,7 @@ __all__ = [
     "stable_time_step",
     "values_of_domains",
     "vcm",
+    "view",
     "virial",
     *_force_names,
 ]

@@ -20,6 +20,9 @@ from .errors import MeshError
 
 __all__ = ["Mesh", "MeshError"]
 
+# Vertices of a mesh that a notebook draws.
+MOST_SHOWN = 20_000
+
 
 class Mesh(Generators, Measures, Transformations):
     """An oriented, 2-manifold triangulation of one or several surfaces, closed or with borders.
@@ -311,6 +314,16 @@ class Mesh(Generators, Measures, Transformations):
     def _with(self, vertices, box=None) -> Mesh:
         """A mesh of the same triangles."""
         return Mesh(vertices, self._triangles, box)
+
+    def _repr_html_(self) -> str | None:
+        """What a notebook shows: the surface, or its words alone where it is large."""
+        # Each cell would take megabytes, and a browser has room for few of them.
+        if self.num_vertices > MOST_SHOWN:
+            return None
+        from .viewer import view
+
+        title = f"{self.num_vertices} vertices, {self.num_triangles} triangles"
+        return view(self, title=title)._repr_html_()
 
     def __repr__(self) -> str:
         words = [f"{self.num_vertices} vertices", f"{self.num_triangles} triangles"]

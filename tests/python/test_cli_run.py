@@ -237,7 +237,7 @@ class TestResume:
         self.run(path, two, at)
         self.run(path, two, 200, resume=True)
         assert results(one) == results(two)
-        assert len(results(one)) == 11 + 2 + FRAMES
+        assert len(results(one)) == 12 + 2 + FRAMES
 
     def test_what_came_after_the_checkpoint_is_undone(self, folder):
         path = config(folder)

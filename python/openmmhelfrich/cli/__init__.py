@@ -19,7 +19,7 @@ from .._writing import describe
 __all__ = ["main"]
 
 # In the order of the help.
-_COMMANDS = ("run", "info", "compare", "convert", "mesh", "spectrum", "frames", "bench")
+_COMMANDS = ("run", "view", "info", "compare", "convert", "mesh", "spectrum", "frames", "bench")
 
 
 class _Commands(click.Group):

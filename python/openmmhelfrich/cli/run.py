@@ -61,13 +61,28 @@ __all__ = ["run"]
     show_default=True,
     help="Seconds between checkpoints: what a kill can cost.",
 )
+@click.option(
+    "--live",
+    is_flag=True,
+    help="Show time, temperature and the energies of this moment below the progress.",
+)
+@click.option(
+    "--live-page",
+    type=click.Path(path_type=Path, dir_okay=False),
+    help="Write a page there that shows the membranes, and updates itself in a browser, every few "
+    "seconds. 'openmm-helfrich view' shows finished runs.",
+)
 @reader_options
-def run(config, out, steps, seed, **options):
+def run(config, out, steps, seed, live, live_page, **options):
     """Simulate what CONFIG says: a VCM configuration, or our own in TOML (name.toml).
 
     The run can be interrupted at any moment, by Ctrl-C or a kill, and goes on with --resume from
     its last checkpoint with nothing lost and nothing doubled.
     """
+    if live_page is not None:
+        from ..viewer.views import check_replaceable
+
+        check_replaceable(live_page)
     with tidy_errors():
         # OpenMM and the package take a second to load, which --help need not wait for.
         from ..vcm.runner import Run
@@ -80,7 +95,8 @@ def run(config, out, steps, seed, **options):
             **options,
         )
         try:
-            done = _simulate(job, job.cfg.num_steps if steps is None else steps, stop)
+            last_step = job.cfg.num_steps if steps is None else steps
+            done = _simulate(job, last_step, stop, live, live_page)
         finally:
             job.close()
     if not done:
@@ -88,9 +104,11 @@ def run(config, out, steps, seed, **options):
         sys.exit(128 + stop.signal)
 
 
-def _simulate(job, last_step: int, stop: _Stop) -> bool:
+def _simulate(job, last_step: int, stop: _Stop, live: bool, live_page: Path | None) -> bool:
     """Run with a progress bar; returns whether the last step was reached."""
     from tqdm import tqdm
+
+    from .live import Page, Table
 
     cfg = job.cfg
     verb = f"resumed at step {job.step}" if job.resumed else f"seed {cfg.seed}"
@@ -100,17 +118,25 @@ def _simulate(job, last_step: int, stop: _Stop) -> bool:
     )
     # Without a terminal a line per report replaces the bar.
     bar = tqdm(total=last_step, initial=job.step, unit="step", disable=None, dynamic_ncols=True)
-    with bar:
+    page = None if live_page is None else Page(job, live_page)
+    with bar, Table(job, live and not bar.disable) as table:
 
         def progress(step: int) -> None:
             bar.update(step - bar.n)
+            table.update()
+            if page is not None:
+                page.update()
 
         def report(frame) -> None:
-            bar.set_postfix_str(_summary(frame), refresh=False)
+            if not live:
+                bar.set_postfix_str(_summary(frame), refresh=False)
             if bar.disable:
-                click.echo(f"step {frame.step}/{last_step}  {_summary(frame)}")
+                speed = f"  {table.speed(frame.step):.4g} steps/s" if live else ""
+                click.echo(f"step {frame.step}/{last_step}{speed}  {_summary(frame)}")
 
         done = job.advance(last_step, progress, report, stop)
+        if page is not None:
+            page.finish()
     _print_terms(job.frame)
     return done
 

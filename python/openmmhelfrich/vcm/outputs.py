@@ -19,12 +19,12 @@ import openmm
 from openmm import unit
 from openmm.app.internal.xtc_utils import xtc_write_frame
 
-from .._mesh import geometry
+from .._mesh import files, geometry
 from .._writing import in_memory, naming
 from ..analysis import mean_curvature, shape
 from ..wireframe import write_psf
 from .connectivity import present_triangles
-from .frames import frames_writer
+from .frames import frames_writer, joined
 
 if TYPE_CHECKING:
     from .config import Config
@@ -157,6 +157,7 @@ class Outputs:
         labels = [membrane.label for membrane in cfg.membranes]
         self._frames = frames_writer(self._folder, cfg.name, frames, labels)
         self._num_frames = 0
+        self._start = self._folder / f"{cfg.name}.ply" if xtc else None
         text, binary = cfg.general["TextOutputs"], cfg.general["BinOutputs"]
         double = cfg.general["Precision"] == "double"
         self._type = np.dtype("<f8" if double else "<f4")
@@ -194,7 +195,7 @@ class Outputs:
         return self._num_frames
 
     def start(self) -> None:
-        """Make empty files, and the PSF file."""
+        """Make empty files, the PSF file, and the mesh at the start for readers of the XTC file."""
         for path in self.paths:
             path.write_bytes(b"")
         if self._frames is not None:
@@ -203,6 +204,12 @@ class Outputs:
             psf = self._folder / f"{self._cfg.name}.psf"
             with naming(psf):
                 write_psf(psf, self._cfg.topology(), self._cfg.system())
+        if self._start is not None:
+            meshes = [membrane.mesh for membrane in self._cfg.membranes]
+            vertices, triangles = joined((mesh.vertices, mesh.triangles) for mesh in meshes)
+            box = next((mesh.box for mesh in meshes if mesh.box is not None), None)
+            with naming(self._start):
+                files.write(self._start, vertices, triangles, binary=True, box=box)
 
     def write(self, frame: Frame) -> None:
         """Add one frame to every file.

@@ -227,6 +227,10 @@ class Run:
             self.save()
         return self.step >= last_step
 
+    def present(self) -> Frame:
+        """The state as it is now, without writing it; RunError if it is not finite."""
+        return self._take_frame()
+
     def _run_to(self, end: int, chunk: int) -> int:
         """Simulate up to a step; returns how many steps to take next."""
         steps, before = end - self.step, time.perf_counter()
