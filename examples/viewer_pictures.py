@@ -13,7 +13,7 @@ import shutil
 import sys
 from pathlib import Path
 
-from openmmhelfrich.vcm.runner import Run
+from openmmhelfrich.simulation.runner import Run
 from openmmhelfrich.viewer import view
 from openmmhelfrich.viewer.views import View
 from PIL import Image

@@ -16,7 +16,7 @@ import time
 from pathlib import Path
 
 import fault_kinds
-from openmmhelfrich.vcm.run_folder import RunFolder
+from openmmhelfrich.simulation.run_folder import RunFolder
 
 sys.path.append(str(Path(__file__).resolve().parent / "python"))
 from dask_processes import dask_cluster

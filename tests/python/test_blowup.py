@@ -11,7 +11,7 @@ from click.testing import CliRunner
 from openmm import unit
 from openmmhelfrich.blowup import Limits, Watch
 from openmmhelfrich.cli import main
-from openmmhelfrich.vcm.runner import Run
+from openmmhelfrich.simulation.runner import Run
 
 MESH = helfrich.Mesh.random_sphere(252, radius=500, seed=1)
 

@@ -15,9 +15,9 @@ import pytest
 from openmm.app.internal.xtc_utils import read_xtc
 from openmmhelfrich import Mesh, vcm
 from openmmhelfrich.analysis import mean_curvature
-from openmmhelfrich.vcm.outputs import report_steps
+from openmmhelfrich.simulation.outputs import report_steps
+from openmmhelfrich.simulation.runner import Run, RunError
 from openmmhelfrich.vcm.parsers import Interval
-from openmmhelfrich.vcm.runner import Run, RunError
 from run_files import config, contents, invoke, results
 from vcm_files import Folder, context, energies
 

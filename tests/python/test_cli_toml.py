@@ -23,8 +23,8 @@ from openmmhelfrich.analysis import theory
 from openmmhelfrich.cli import main
 from openmmhelfrich.config.document import Document
 from openmmhelfrich.config.keys import REQUIRED
+from openmmhelfrich.simulation.runner import Run
 from openmmhelfrich.vcm import ConfigError
-from openmmhelfrich.vcm.runner import Run
 from run_files import contents, results
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -13,8 +13,8 @@ import pytest
 from click.testing import CliRunner
 from openmmhelfrich import Mesh, Vesicle, _benchmark, config, platforms, set_backend, vcm
 from openmmhelfrich.cli import main
+from openmmhelfrich.simulation.runner import Run
 from openmmhelfrich.vcm.comparison import compare
-from openmmhelfrich.vcm.runner import Run
 from platforms import counting
 from vcm_files import Folder
 

@@ -8,8 +8,8 @@ import openmmhelfrich as helfrich
 import pytest
 from openmm import app
 from openmmhelfrich import MonteCarloBondFlip, analysis, vcm
+from openmmhelfrich.simulation.outputs import take_frame
 from openmmhelfrich.vcm.bonded import find_bond_on
-from openmmhelfrich.vcm.outputs import take_frame
 from run_files import contents, fluid_and_solid, invoke
 
 MESH = helfrich.Mesh.random_sphere(252, 500, seed=5)

@@ -5,8 +5,8 @@ import pytest
 from click.testing import CliRunner
 from openmmhelfrich import Mesh, analysis
 from openmmhelfrich.cli import main
-from openmmhelfrich.vcm.frames import MeshFrames, frames_writer
-from openmmhelfrich.vcm.runner import Run
+from openmmhelfrich.simulation.frames import MeshFrames, frames_writer
+from openmmhelfrich.simulation.runner import Run
 
 CONFIG = """
 simulation = { name = "pair", duration = 2, seed = 7, platform = "Reference" }

@@ -11,8 +11,8 @@ import numpy as np
 import openmm
 import pytest
 from openmmhelfrich import MembraneReporter, Mesh, Vesicle, analysis
+from openmmhelfrich.simulation.runner import Run, RunError
 from openmmhelfrich.sweep.cache import Cache
-from openmmhelfrich.vcm.runner import Run, RunError
 from openmmhelfrich.wireframe import write_lammps_data
 from run_files import config, contents, invoke, results
 from vcm_files import Folder

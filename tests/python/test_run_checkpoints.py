@@ -11,8 +11,8 @@ import openmm
 import pytest
 from openmmhelfrich import Mesh
 from openmmhelfrich._blocks import Block, pack, unpack
-from openmmhelfrich.vcm import runner
-from openmmhelfrich.vcm.runner import Run, RunError
+from openmmhelfrich.simulation import runner
+from openmmhelfrich.simulation.runner import Run, RunError
 from run_files import config, contents, invoke, results
 from vcm_files import Folder
 

@@ -13,8 +13,8 @@ import pytest
 from flowing import TEMPERATURE, forces_of, langevin, mover_of, start, system_of
 from openmm import unit
 from openmmhelfrich import _core, config
+from openmmhelfrich.simulation.runner import Run
 from openmmhelfrich.vcm import ConfigError
-from openmmhelfrich.vcm.runner import Run
 from platforms import CPU, HELFRICH, ON_OPENCL, REFERENCE
 from viscous import Thermostat, motion, thermostat_of, velocity_verlet, viscous
 

@@ -14,7 +14,7 @@ from openmm import app
 from openmmhelfrich import VTKHDFReporter, analysis
 from openmmhelfrich._journal import JournaledFile
 from openmmhelfrich.analysis.surface_series import SurfaceFrame, SurfaceSeries
-from openmmhelfrich.vcm.runner import Run, RunError
+from openmmhelfrich.simulation.runner import Run, RunError
 from run_files import fluid_and_solid, invoke
 from vtkhdf_files import check_layout, read
 

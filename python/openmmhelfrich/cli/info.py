@@ -208,11 +208,9 @@ def _duration(cfg, platform: str) -> str:
     """How long the run would take, from a few of its steps."""
     import openmm
 
-    from ..vcm.build import prepare, unprepared_simulation
-
     try:
-        simulation = unprepared_simulation(cfg, platform)
-        prepare(cfg, simulation.context)
+        simulation = cfg.unprepared_simulation(platform)
+        cfg.prepare(simulation.context)
         # The first step compiles kernels on a GPU.
         simulation.integrator.step(2)
         steps, elapsed = 0, 0.0

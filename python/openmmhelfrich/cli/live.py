@@ -113,7 +113,7 @@ class Page:
         self._page.finish(lambda: self._add(self._job.frame))
 
     def _add(self, frame) -> None:
-        from ..vcm.frames import joined
+        from ..simulation.frames import joined
 
         membranes = self._job.cfg.membranes
         parts = [

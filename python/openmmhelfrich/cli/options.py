@@ -51,8 +51,8 @@ def reader_options(command):
 @contextlib.contextmanager
 def tidy_errors() -> Iterator[None]:
     """Errors of the configuration and the run as one line, without a traceback."""
+    from ..simulation.runner import RunError
     from ..vcm.grammar import ConfigError, ConfigWarning
-    from ..vcm.runner import RunError
 
     shown = set()
 

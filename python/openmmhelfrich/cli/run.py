@@ -85,7 +85,7 @@ def run(config, out, steps, seed, live, live_page, **options):
         check_replaceable(live_page)
     with tidy_errors():
         # OpenMM and the package take a second to load, which --help need not wait for.
-        from ..vcm.runner import Run
+        from ..simulation.runner import Run
 
         stop = _Stop()
         job = Run(

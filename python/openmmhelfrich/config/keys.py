@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..forces import BendingForce, DihedralForce, MonteCarloMembraneTension
-from ..vcm.frames import FRAMES
+from ..simulation.frames import FRAMES
 from .values import (
     Reader,
     area_difference,

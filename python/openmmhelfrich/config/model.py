@@ -17,6 +17,7 @@ from ..blowup import Limits
 from ..errors import MeshError
 from ..forces import MonteCarloMembraneTension, SurfaceRepulsionForce
 from ..mesh import Mesh
+from ..simulation.model import Membrane, Model
 from ..vcm.grammar import GENERAL, MEMBRANE, ConfigError, nearest
 from ..vcm.parsers import Interval
 from ..vcm.settings import Settings
@@ -33,24 +34,17 @@ _MAX_SEED = 2**31 - 1
 
 
 @dataclass(frozen=True)
-class VesicleMembrane(vcm.Membrane):
-    """One vesicle of a configuration: a `vcm.Membrane`, and the `Vesicle` that it is."""
+class VesicleMembrane(Membrane):
+    """One vesicle of a configuration: a `Membrane`, and the `Vesicle` that it is."""
 
     vesicle: Vesicle
 
 
-class Configuration(vcm.Config):
-    """What a TOML file asks for. `read` makes it.
-
-    It has the attributes and methods of `vcm.Config`: `positions`, `meshes`, `membranes`, `terms`,
-    `system()`, `topology()`, `integrator()`, `simulation(platform)`, `energies(context)`; `general`
-    has the values by VCM's names.
-    """
+class Configuration(Model):
+    """What a TOML file asks for. `read` makes it; its attributes are those of `Model`."""
 
     def __init__(self, document: Document, seed: int = 0):
         self.path = document.path
-        self.vcm_compatible = False
-        self.flips = 0.0
         for name in document.data:
             if name not in _TABLES:
                 hint = nearest(name, _TABLES)
@@ -116,11 +110,6 @@ class Configuration(vcm.Config):
     def step_size(self) -> float:
         """Time step, ps."""
         return self._step_size
-
-    @property
-    def velocity_shifts(self) -> np.ndarray:
-        """Zero for every particle, shape (num_particles, 3), nm/ps."""
-        return np.zeros((self.num_particles, 3))
 
     @property
     def terms(self) -> dict[str, int]:

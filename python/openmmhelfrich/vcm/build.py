@@ -1,4 +1,4 @@
-"""From a configuration to OpenMM: the plan of its potentials, System, topology, integrator.
+"""From a configuration to OpenMM: the plan of its potentials, and the System.
 
 The plan is made when the file is read, so that what cannot be done is refused with its line; the
 forces themselves are made anew for every System.
@@ -12,18 +12,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import openmm
-from openmm import app, unit
 
-from .. import platforms
 from .._placement import NUM_GROUPS
 from . import connectivity, interactions, membrane_forces, springs
 
 if TYPE_CHECKING:
     from .config import Config
 
-__all__ = ["Term", "energies", "integrator", "plan", "simulation", "system", "topology"]
-
-_ENERGY = unit.kilojoule_per_mole
+__all__ = ["Term", "plan", "system"]
 
 
 @dataclass(frozen=True)
@@ -134,81 +130,3 @@ def _add_box(cfg: Config, result: openmm.System) -> None:
     for force in result.getForces():
         if isinstance(force, (openmm.MonteCarloBarostat, openmm.MonteCarloAnisotropicBarostat)):
             force.setRandomNumberSeed(cfg.seed)
-
-
-def topology(cfg: Config) -> app.Topology:
-    """What `Config.topology` returns: membrane n is chain n, and its atoms are called M<n>."""
-    result = app.Topology()
-    for number, membrane in enumerate(cfg.membranes):
-        chain = result.addChain(f"M{number}")
-        atoms = []
-        for _ in membrane.particles:
-            # A vertex is no chemical element; each is a residue of its own, see `Mesh.topology`.
-            residue = result.addResidue("MEM", chain)
-            atoms.append(result.addAtom(f"M{number}", None, residue))
-        for i, j in membrane.mesh.edges.tolist():
-            result.addBond(atoms[i], atoms[j])
-    if cfg.general["SimulationBoxLength"]:
-        result.setUnitCellDimensions([cfg.general["SimulationBoxLength"]] * 3)
-    return result
-
-
-def integrator(cfg: Config) -> openmm.Integrator:
-    """What `Config.integrator` returns."""
-    kind, friction = cfg.general["Integrator"], cfg.general["FrictionIninvertPs"]
-    if kind == "Verlet":
-        return openmm.VerletIntegrator(cfg.step_size)
-    cls = {
-        "Brownian": openmm.BrownianIntegrator,
-        "Langevin": openmm.LangevinIntegrator,
-        "LangevinMiddle": openmm.LangevinMiddleIntegrator,
-    }[kind]
-    result = cls(cfg.temperature, friction, cfg.step_size)
-    result.setRandomNumberSeed(cfg.seed)
-    return result
-
-
-def simulation(cfg: Config, platform=None) -> app.Simulation:
-    """What `Config.simulation` returns."""
-    made = unprepared_simulation(cfg, platform)
-    prepare(cfg, made.context)
-    return made
-
-
-def unprepared_simulation(cfg: Config, platform=None) -> app.Simulation:
-    """A Simulation without positions and velocities, which a checkpoint may give instead."""
-    system, integrator = cfg.system(), cfg.integrator()
-    if platform is None:
-        platform = platforms.choose(system, integrator).name
-    if isinstance(platform, str):
-        platform = openmm.Platform.getPlatformByName(platform)
-    properties = {}
-    if "Precision" in platform.getPropertyNames():
-        properties = {"Precision": cfg.general["Precision"]}
-    return app.Simulation(cfg.topology(), system, integrator, platform, properties)
-
-
-def prepare(cfg: Config, context: openmm.Context) -> None:
-    """Bring a Context to the start of the simulation."""
-    context.setPositions(cfg.positions)
-    general = cfg.general
-    if general["Minimise"]:
-        openmm.LocalEnergyMinimizer.minimize(
-            context, general["MinimiseTolerance"], general["MinimiseMaxIterations"]
-        )
-    if general["setVelocitiesToTemperature"]:
-        context.setVelocitiesToTemperature(cfg.temperature, cfg.seed)
-    if cfg.velocity_shifts.any():
-        state = context.getState(getVelocities=True)
-        drawn = state.getVelocities(asNumpy=True).value_in_unit(unit.nanometer / unit.picosecond)
-        context.setVelocities(drawn + cfg.velocity_shifts)
-
-
-def energies(terms: dict[str, int], context: openmm.Context) -> dict[str, float]:
-    """What `Config.energies` returns."""
-    return {
-        name: context.getState(getEnergy=True, groups={group})
-        .getPotentialEnergy()
-        .value_in_unit(_ENERGY)
-        for name, group in terms.items()
-    }

@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import secrets
-from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from types import MappingProxyType
 
 import numpy as np
 import openmm
@@ -15,9 +12,9 @@ from scipy.spatial.transform import Rotation
 
 from .._mesh import files
 from ..analysis import theory
-from ..blowup import Limits
 from ..errors import MeshError
 from ..mesh import Mesh
+from ..simulation.model import Membrane, Model
 from . import build, interactions
 from .grammar import GENERAL, MEMBRANE, TABLE, Section, read_sections
 from .settings import Settings
@@ -32,59 +29,20 @@ _MAX_FLIPS = 100
 _MAX_SEED = 2**31 - 1
 
 
-@dataclass(frozen=True)
-class Membrane:
-    """One membrane of a configuration.
-
-    label: what the file calls it
-    settings: the values of its section, by key
-    mesh: how it starts, in nm, triangles outward
-    offset: the particle that is vertex 0
-    num_reversed: how many triangles of the file faced the wrong way
-    """
-
-    label: str
-    settings: Settings
-    mesh: Mesh
-    offset: int
-    num_reversed: int
-
-    @property
-    def particles(self) -> range:
-        """Indices of its particles."""
-        return range(self.offset, self.offset + self.mesh.num_vertices)
-
-
-class Config:
+class Config(Model):
     """What a VCM configuration file asks for. `read` makes it.
 
     Attributes
     ----------
-    path : Path
-        The file.
     vcm_compatible : bool
         Whether VCM's quirks are followed that change numbers.
-    general : Settings
-        The values of the section GeneralParameters, by key, in the file's units.
-    membranes : tuple of Membrane
-        In the order of the file, which is that of their particles.
     table : list of list of str
         The interaction of each pair of membranes, lower triangular.
-    seed : int
-        Of all random numbers, above 0: the file's, or one drawn if that is 0.
-    platform : str or None
-        OpenMM platform for a run that is told no other; VCM's files name none.
     flips : float
         Attempts to flip a bond for each edge and time step; 0 for none.
-    writes : dict
-        What a run that is not told writes: "xtc", a bool, and "frames", one of `frames.FRAMES`.
-    limits : Limits
-        Beyond which a run counts as broken down; VCM's files name none.
-    """
 
-    platform: str | None = None
-    writes: Mapping[str, bool | str] = MappingProxyType({"xtc": True, "frames": "none"})
-    limits = Limits()
+    and those of `Model`.
+    """
 
     def __init__(
         self,
@@ -117,48 +75,10 @@ class Config:
         if flips:
             self.system()
 
-    def __repr__(self) -> str:
-        return f"<{self.name}: {len(self.membranes)} membranes, {self.num_particles} particles>"
-
-    @property
-    def name(self) -> str:
-        """The project's name."""
-        return self.general["ProjectName"]
-
-    @property
-    def num_particles(self) -> int:
-        """Number of particles of the System."""
-        return self.membranes[-1].particles.stop
-
-    @property
-    def meshes(self) -> tuple[Mesh, ...]:
-        """The start mesh of every membrane."""
-        return tuple(membrane.mesh for membrane in self.membranes)
-
-    @property
-    def temperature(self) -> float:
-        """T, K."""
-        return self.general["TemperatureinKelvin"]
-
     @property
     def kT(self) -> float:
         """The thermal energy kB T, kJ/mol, with VCM's kB if it is to be followed."""
         return (_VCM_BOLTZMANN if self.vcm_compatible else theory.BOLTZMANN) * self.temperature
-
-    @property
-    def step_size(self) -> float:
-        """Time step, ps."""
-        return self.general["StepSizeInFs"] / 1000
-
-    @property
-    def num_steps(self) -> int:
-        """Steps of the whole simulation."""
-        return round(self.general["SimulationTimeInPs"] / self.step_size)
-
-    @cached_property
-    def positions(self) -> np.ndarray:
-        """Start positions of all particles, shape (num_particles, 3), nm."""
-        return np.concatenate([mesh.vertices for mesh in self.meshes])
 
     @cached_property
     def velocity_shifts(self) -> np.ndarray:
@@ -186,29 +106,6 @@ class Config:
         Every potential is one force with a name and a force group, see `terms`.
         """
         return build.system(self, self._plan)
-
-    def topology(self) -> openmm.app.Topology:
-        """A chain per membrane, an atom per vertex, a bond per edge."""
-        return build.topology(self)
-
-    def integrator(self) -> openmm.Integrator:
-        """A new integrator as the file asks for, with the seed set."""
-        return build.integrator(self)
-
-    def simulation(self, platform=None) -> openmm.app.Simulation:
-        """A Simulation at its start: positions and velocities set, minimised if the file says so.
-
-        Parameters
-        ----------
-        platform : openmm.Platform or str, optional
-            Default: the fastest one for it, see `platforms.choose`. `Precision` is handed to
-            platforms that have it.
-        """
-        return build.simulation(self, platform)
-
-    def energies(self, context: openmm.Context) -> dict[str, float]:
-        """The energy of each of the `terms` in a Context of the System, kJ/mol."""
-        return build.energies(self.terms, context)
 
 
 def read(

@@ -1,4 +1,4 @@
-"""Bond flips in a run: the movers of a configuration, and what they have made of its membranes."""
+"""Bond flips in a run: the movers of a configuration."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 import openmm
 
-from .. import _present
 from ..forces import MonteCarloBondFlip
 from .bonded import find_bond_on
 from .grammar import ConfigError
@@ -15,7 +14,7 @@ from .grammar import ConfigError
 if TYPE_CHECKING:
     from .config import Config
 
-__all__ = ["add_movers", "present_triangles"]
+__all__ = ["add_movers"]
 
 #: Steps from one round of flips to the next, where only a rate is given.
 FLIP_STEPS = 10
@@ -63,12 +62,3 @@ def add_movers(cfg: Config, system: openmm.System) -> None:
         mover.setName(f"flips {membrane.label}")
         mover.setRandomNumberSeed(cfg.seed)
         system.addForce(mover)
-
-
-def present_triangles(cfg: Config, context: openmm.Context) -> tuple[np.ndarray, ...]:
-    """The triangles of each membrane as they are now, shape (num_triangles, 3), from vertex 0."""
-    return tuple(
-        _present.present_triangles(context, membrane.mesh.triangles + membrane.offset)
-        - membrane.offset
-        for membrane in cfg.membranes
-    )

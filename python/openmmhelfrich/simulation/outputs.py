@@ -23,12 +23,11 @@ from .._mesh import files, geometry
 from .._writing import in_memory, naming
 from ..analysis import mean_curvature, shape
 from ..wireframe import write_psf
-from .connectivity import present_triangles
 from .frames import frames_writer, joined
 
 if TYPE_CHECKING:
-    from .config import Config
-    from .parsers import Interval
+    from ..vcm.parsers import Interval
+    from .model import Model
 
 __all__ = ["Frame", "Outputs", "report_steps", "take_frame"]
 
@@ -90,7 +89,7 @@ class Frame:
     triangles: tuple[np.ndarray, ...]
 
 
-def take_frame(cfg: Config, context: openmm.Context, step: int) -> Frame:
+def take_frame(cfg: Model, context: openmm.Context, step: int) -> Frame:
     """The present state of a Context.
 
     Raises
@@ -124,7 +123,7 @@ def take_frame(cfg: Config, context: openmm.Context, step: int) -> Frame:
         forces,
         terms,
         np.asarray(box),
-        present_triangles(cfg, context),
+        cfg.present_triangles(context),
     )
 
 
@@ -140,7 +139,7 @@ class Outputs:
 
     Parameters
     ----------
-    cfg : Config
+    cfg : Model
     folder : str or Path
         Exists already.
     xtc : bool
@@ -150,7 +149,7 @@ class Outputs:
         membrane and frame, or ``<name>.vtkhdf`` for all.
     """
 
-    def __init__(self, cfg: Config, folder, xtc: bool = True, frames: str = "none"):
+    def __init__(self, cfg: Model, folder, xtc: bool = True, frames: str = "none"):
         self._cfg = cfg
         self._folder = Path(folder)
         self._names = [atom.name for atom in cfg.topology().atoms()]

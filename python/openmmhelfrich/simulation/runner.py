@@ -17,8 +17,8 @@ import openmm
 
 from .._snapshots import Snapshot
 from ..blowup import BlowUpError, Watch
-from . import build
-from .config import Config
+from ..config import read_any
+from .model import Model
 from .outputs import Frame, Outputs, report_steps, take_frame
 from .run_folder import CHECKPOINT, RunError, RunFolder, Saved
 
@@ -83,16 +83,13 @@ class Run:
         flips: float = 0.0,
         checkpoint_seconds: float = 10.0,
     ):
-        # Imported here, because configurations of ours build on those of VCM.
-        from ..config import read_any as read
-
         options = {
             "vcm_compatible": vcm_compatible,
             "ignore_unknown": ignore_unknown,
             "flips": flips,
         }
         self._checkpoint_seconds = checkpoint_seconds
-        self.cfg = cfg = read(config, seed=seed, **options)
+        self.cfg = cfg = read_any(config, seed=seed, **options)
         asked = {"xtc": xtc, "frames": frames or {True: "ply", False: "none"}.get(ply)}
         wanted = {name: given for name, given in asked.items() if given is not None}
         self._options = {**options, **cfg.writes, **wanted}
@@ -108,8 +105,6 @@ class Run:
 
     def _start(self, config, platform, seed: int, resume: bool, resume_previous: bool) -> None:
         """Bring Context and outputs to where the run begins or goes on."""
-        from ..config import read_any as read
-
         found = self._folder.read(resume_previous) if resume or resume_previous else None
         saved, state = (None, None) if found is None else found
         if saved is not None:
@@ -118,7 +113,7 @@ class Run:
             platform, seed = self._agree(saved, platform, seed)
             known = ("vcm_compatible", "ignore_unknown", "flips")
             options = {name: saved.options[name] for name in known if name in saved.options}
-            self.cfg = read(config, seed=seed, **options)
+            self.cfg = read_any(config, seed=seed, **options)
         cfg = self.cfg
         self._fingerprint = _fingerprint(cfg)
         if saved is not None and saved.fingerprint != self._fingerprint:
@@ -127,9 +122,9 @@ class Run:
                 "a mesh has changed since; give another folder with --out"
             )
         try:
-            self.simulation = build.unprepared_simulation(cfg, platform or cfg.platform)
+            self.simulation = cfg.unprepared_simulation(platform or cfg.platform)
             if saved is None:
-                build.prepare(cfg, self.context)
+                cfg.prepare(self.context)
         except openmm.OpenMMException as reason:
             where = "" if saved is None else f" on the platform {platform} of the checkpoint"
             raise RunError(f"OpenMM cannot start{where}: {reason}") from None
@@ -326,7 +321,7 @@ class Run:
         self._folder.leave()
 
 
-def _fingerprint(cfg: Config) -> str:
+def _fingerprint(cfg: Model) -> str:
     """Equal for equal System, integrator and outputs' schedule."""
     parts = [
         openmm.XmlSerializer.serialize(cfg.system()),
