@@ -13,7 +13,7 @@ from pathlib import Path
 
 OURS = ("libOpenMMHelfrich.so", "_forces.abi3.so")
 #: What is made once for each process, and given to OpenMM, which keeps it to the end.
-ONCE = ("registerKernelFactories", "registerPlatforms", "PyInit__forces")
+ONCE = ("registerKernelFactor", "registerPlatforms", "PyInit__forces")
 
 
 def main(reports: list[str]) -> int:
