@@ -51,7 +51,7 @@ def main():
     if not folder.is_dir():
         parser.error(f"there is no {folder}; name a checkout of OpenMM's repository")
     failed, summary = run(folder, options.files, "Helfrich", options)
-    print(f"Helfrich: {summary}")
+    print(f"Helfrich: {summary}", flush=True)
     if not failed:
         return
     theirs, summary = run(folder, failed, "Reference", options)

@@ -58,8 +58,9 @@ class ModeReporter(TableReporter):
         Added to the indices of the triangles. Default 0.
     append : bool
         Go on with an existing file, from the step of the simulation: rows of later steps are
-        dropped, since they will be written again. Load the checkpoint or state first, with
-        ``simulation.currentStep``, which `Simulation.loadCheckpoint` restores.
+        dropped, since they will be written again, and a warning says if some before it are missing.
+        Load the checkpoint or state first, with ``simulation.currentStep``, which
+        `Simulation.loadCheckpoint` restores.
 
     Raises
     ------
