@@ -38,9 +38,9 @@ fn energies(triangles: &[[i64; 3]], terms: &[Term], positions: &[f64]) -> Vec<f6
     let mut borders = BorderEvaluator::default();
     let on_borders = borders.forward(&mesh, terms, positions, None).unwrap();
     ReferenceEvaluator::new(topology)
-        .evaluate(Request::new(&terms, positions).with_energies(&mut sums))
+        .evaluate(Request::new(terms, positions).with_energies(&mut sums))
         .unwrap();
-    borders.add(&mesh, None, on_borders, Request::new(&terms, positions).with_energies(&mut sums));
+    borders.add(&mesh, None, on_borders, Request::new(terms, positions).with_energies(&mut sums));
     sums.iter().map(|sum| sum.energy).collect()
 }
 
