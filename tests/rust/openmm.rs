@@ -114,7 +114,7 @@ fn directly(terms: &[Term]) -> (f64, Vec<[f64; 3]>) {
     let mut forces = [[0.0; 3]; NUM_PARTICLES];
     CpuEvaluator::new(topology)
         .evaluate(
-            Request::new(&terms, POSITIONS.as_flattened())
+            Request::new(terms, POSITIONS.as_flattened())
                 .with_energies(&mut contributions)
                 .with_forces(forces.as_flattened_mut()),
         )
