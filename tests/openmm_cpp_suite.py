@@ -91,7 +91,7 @@ def main():
     parser.add_argument("checkout", type=Path)
     parser.add_argument("tests", nargs="*", metavar="TEST")
     parser.add_argument("--workers", type=int, default=2, help="processes (default: 2)")
-    options = parser.parse_args()
+    options = parser.parse_intermixed_args()
     checkout = options.checkout.resolve()
     folders = ("platforms/reference/tests", "plugins/*/platforms/reference/tests")
     sources = {

@@ -46,7 +46,7 @@ def main():
     parser.add_argument("files", nargs="*", metavar="FILE")
     parser.add_argument("--workers", type=int, default=2, help="processes (default: 2)")
     parser.add_argument("--minutes", type=float, default=10, help="of one test (default: 10)")
-    options = parser.parse_args()
+    options = parser.parse_intermixed_args()
     folder = options.checkout / TESTS
     if not folder.is_dir():
         parser.error(f"there is no {folder}; name a checkout of OpenMM's repository")
