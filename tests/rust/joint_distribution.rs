@@ -63,7 +63,7 @@ fn energies(mesh: &Mesh, terms: &[Term]) -> Vec<f64> {
     let topology = Arc::new(Topology::new(&mesh.1, mesh.0.len() / 3).unwrap());
     let mut sums = vec![Contribution::default(); terms.len()];
     match ReferenceEvaluator::new(topology)
-        .evaluate(Request::new(&terms, &mesh.0).with_energies(&mut sums))
+        .evaluate(Request::new(terms, &mesh.0).with_energies(&mut sums))
     {
         Ok(()) => sums.iter().map(|sum| sum.energy).collect(),
         Err(_) => vec![f64::INFINITY],
