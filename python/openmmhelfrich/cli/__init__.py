@@ -30,6 +30,7 @@ _COMMANDS = (
     "frames",
     "bench",
     "doctor",
+    "completion",
 )
 
 
