@@ -41,10 +41,10 @@ def test_text_says_the_same():
 def test_what_is_missing_is_not_wrong(monkeypatch):
     imported = doctor.importlib.import_module
 
-    def load(name):
+    def load(name, package=None):
         if name == "h5py":
             raise ModuleNotFoundError("No module named 'h5py'", name="h5py")
-        return imported(name)
+        return imported(name, package)
 
     monkeypatch.setattr(doctor.importlib, "import_module", load)
     check = checks_of()["h5py"]
@@ -55,10 +55,10 @@ def test_what_is_missing_is_not_wrong(monkeypatch):
 def test_what_does_not_load_is_wrong(monkeypatch):
     imported = doctor.importlib.import_module
 
-    def load(name):
+    def load(name, package=None):
         if name == "lz4":
             raise ImportError("libfoo.so: no such file")
-        return imported(name)
+        return imported(name, package)
 
     monkeypatch.setattr(doctor.importlib, "import_module", load)
     check = checks_of(1)["lz4"]

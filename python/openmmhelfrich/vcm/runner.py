@@ -133,8 +133,7 @@ class Run:
         except openmm.OpenMMException as reason:
             where = "" if saved is None else f" on the platform {platform} of the checkpoint"
             raise RunError(
-                f"OpenMM cannot start{where}: {reason}\n"
-                "docs/troubleshooting.md, 'Before the first step', lists messages and what to do"
+                f"OpenMM cannot start{where}: {reason}; docs/troubleshooting.md lists such messages"
             ) from None
         try:
             self.outputs = Outputs(cfg, self.folder, self._options["xtc"], self._options["frames"])
@@ -267,7 +266,7 @@ class Run:
         except BlowUpError as reason:
             raise RunError(
                 f"the simulation broke down: {reason}\nTo try again, give another folder with "
-                "--out; a mesh of this one, such as blow-up/last-good.ply, may be where it begins.\n"
+                "--out; a mesh of this one, such as blow-up/last-good.ply, may be where it begins\n"
                 "docs/troubleshooting.md lists what messages mostly mean, and what to do"
             ) from None
 
