@@ -15,33 +15,39 @@ fluctuation spectra with their theory. Units are OpenMM's: nm, ps, amu, kJ/mol.
 
 from __future__ import annotations
 
-from . import _plugin
+try:
+    from . import _plugin
 
-_plugin.load()
+    _plugin.load()
+except ImportError:
+    from .cli.doctor import doctor_if_asked
 
-from . import analysis, backend, config, platforms, vcm  # noqa: E402
-from ._paths import cmake_path, include_path, library_path  # noqa: E402
-from .area_difference import area_difference_parameters  # noqa: E402
-from .backend import adapters, get_backend, set_backend  # noqa: E402
-from .blowup import BlowUpError, BlowUpReporter, stable_time_step  # noqa: E402
-from .domains import values_of_domains  # noqa: E402
-from .errors import MeshError  # noqa: E402
-from .forces import *  # noqa: E402, F403
-from .forces import __all__ as _force_names  # noqa: E402
-from .masses import plaquette_masses  # noqa: E402
-from .mesh import Mesh  # noqa: E402
-from .ramps import harden  # noqa: E402
-from .red_cell import RedCell, RedCellModel  # noqa: E402
-from .reporters import (  # noqa: E402
+    doctor_if_asked()
+    raise
+
+from . import analysis, backend, config, platforms, vcm
+from ._paths import cmake_path, include_path, library_path
+from .area_difference import area_difference_parameters
+from .backend import adapters, get_backend, set_backend
+from .blowup import BlowUpError, BlowUpReporter, stable_time_step
+from .domains import values_of_domains
+from .errors import MeshError
+from .forces import *  # noqa: F403
+from .forces import __all__ as _force_names
+from .masses import plaquette_masses
+from .mesh import Mesh
+from .ramps import harden
+from .red_cell import RedCell, RedCellModel
+from .reporters import (
     MembraneReporter,
     ModeReporter,
     VirialReporter,
     VTKHDFReporter,
 )
-from .states import load_state, save_state  # noqa: E402
-from .vesicle import Vesicle  # noqa: E402
-from .viewer import LiveView, View, view  # noqa: E402
-from .virials import virial  # noqa: E402
+from .states import load_state, save_state
+from .vesicle import Vesicle
+from .viewer import LiveView, View, view
+from .virials import virial
 
 __version__ = _plugin.version()
 

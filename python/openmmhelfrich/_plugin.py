@@ -11,7 +11,7 @@ import openmm
 from . import _core
 from ._openmm_interface import interface_of, read_record
 
-__all__ = ["load", "version"]
+__all__ = ["built_for", "load", "version"]
 
 
 def version() -> str:
@@ -57,6 +57,13 @@ def has_same_interface() -> bool:
     return known is not None and known == interface_of(include)
 
 
+def built_for() -> str:
+    """The version of OpenMM that the library was built for."""
+    core = _core.library()
+    core.Helfrich_openmmVersion.restype = ctypes.c_char_p
+    return core.Helfrich_openmmVersion().decode()
+
+
 def load() -> None:
     """Check OpenMM's version and load the plugin, which makes its forces known to XML.
 
@@ -65,11 +72,9 @@ def load() -> None:
     ImportError
         If the library is missing, or was built for an OpenMM with another interface.
     """
-    core = _core.library()
-    core.Helfrich_openmmVersion.restype = ctypes.c_char_p
-    built, found = core.Helfrich_openmmVersion().decode(), openmm.Platform.getOpenMMVersion()
+    built, found = built_for(), openmm.Platform.getOpenMMVersion()
     if built != found:
         # To read OpenMM's headers takes a tenth of a second.
         check_openmm(built, found, has_same_interface())
-        core.Helfrich_acceptOpenMM(found.encode())
+        _core.library().Helfrich_acceptOpenMM(found.encode())
     openmm.Platform.loadPluginLibrary(str(_core.LIBRARY_PATH))

@@ -7,16 +7,25 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from . import _core
 from ._mesh import files, geometry, inputs, on_openmm, periodic
 from ._mesh.generators import Generators
 from ._mesh.measures import Measures
 from ._mesh.transformations import Transformations
+from ._types import Doubles, File, Integers, Scalar, Values
 from ._units import length as _length
 from .errors import MeshError
+
+if TYPE_CHECKING:
+    import openmm
+
+    from .forces import TriangulatedForce
 
 __all__ = ["Mesh", "MeshError"]
 
@@ -76,7 +85,7 @@ class Mesh(Generators, Measures, Transformations):
     True
     """
 
-    def __init__(self, vertices, triangles, box=None):
+    def __init__(self, vertices: Values, triangles: ArrayLike, box: Values | None = None) -> None:
         points = inputs.vertex_array(vertices)
         corners = inputs.triangle_array(triangles)
         cell = None if box is None else inputs.box_array(box, "Mesh")
@@ -86,11 +95,18 @@ class Mesh(Generators, Measures, Transformations):
         # A view of an array that cannot be written to can never be made writeable.
         self.__dict__.update(_vertices=points.view(), _triangles=corners.view(), _box=cell)
 
-    def __setattr__(self, name, value):
+    def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"Mesh: cannot set {name}, a mesh is immutable; make a new one")
 
     @classmethod
-    def read(cls, path, *, triangulate=False, merge=None, drop_unused=False) -> Mesh:
+    def read(
+        cls,
+        path: File,
+        *,
+        triangulate: bool = False,
+        merge: Scalar | None = None,
+        drop_unused: bool = False,
+    ) -> Mesh:
         """Read a mesh from a PLY, OBJ, STL, OFF, VTK, VTP, VTU or Gmsh (``.msh``) file.
 
         Numbers are taken as nm; use `scaled` for other units. Digits of text files are kept to
@@ -137,7 +153,13 @@ class Mesh(Generators, Measures, Transformations):
             files.refuse_cracks(path, mesh)
         return mesh
 
-    def write(self, path, *, point_data=None, binary=None) -> None:
+    def write(
+        self,
+        path: File,
+        *,
+        point_data: Mapping[str, ArrayLike] | None = None,
+        binary: bool | None = None,
+    ) -> None:
         """Write a PLY, OBJ, STL, OFF, VTK, VTU or Gmsh (``.msh``) file, coordinates in nm.
 
         PLY, OBJ, OFF, STL and VTK are text by default, the others binary; all carry full double
@@ -176,7 +198,7 @@ class Mesh(Generators, Measures, Transformations):
         files.write(path, self._vertices, self._triangles, point_data, binary, self._box)
 
     @classmethod
-    def from_context(cls, context, force) -> Mesh:
+    def from_context(cls, context: openmm.Context, force: TriangulatedForce) -> Mesh:
         """The surface of a force in its present state: positions, and triangles after bond flips.
 
         Parameters
@@ -193,12 +215,12 @@ class Mesh(Generators, Measures, Transformations):
         return cls(*on_openmm.present(context, force))
 
     @property
-    def vertices(self) -> np.ndarray:
+    def vertices(self) -> Doubles:
         """Positions, shape (num_vertices, 3), float64, nm, read-only."""
         return self._vertices
 
     @property
-    def triangles(self) -> np.ndarray:
+    def triangles(self) -> Integers:
         """Vertex indices, counter-clockwise seen from outside.
 
         Shape (num_triangles, 3), int64, read-only.
@@ -206,12 +228,12 @@ class Mesh(Generators, Measures, Transformations):
         return self._triangles
 
     @property
-    def box(self) -> np.ndarray | None:
+    def box(self) -> Doubles | None:
         """Periodic box, rows a, b, c, shape (3, 3), float64, nm, read-only; None without one."""
         return self._box
 
     @functools.cached_property
-    def corner_positions(self) -> np.ndarray:
+    def corner_positions(self) -> Doubles:
         """Corners of every triangle, in a box those beside the first as its nearest images.
 
         Shape (num_triangles, 3 corners, 3), float64, nm, read-only.
@@ -221,7 +243,7 @@ class Mesh(Generators, Measures, Transformations):
         return corners
 
     @functools.cached_property
-    def edges(self) -> np.ndarray:
+    def edges(self) -> Integers:
         """Every edge once, lower index first, in lexicographic order.
 
         Shape (num_edges, 2), int64, read-only.
@@ -231,7 +253,7 @@ class Mesh(Generators, Measures, Transformations):
         return edges
 
     @functools.cached_property
-    def dihedral_angles(self) -> np.ndarray:
+    def dihedral_angles(self) -> Doubles:
         """The angle φ between the normals of the two triangles of every edge, radians.
 
         0 if flat, positive if convex, in (−π, π]; 0 at borders. Shape (num_edges,), in the order
@@ -242,7 +264,7 @@ class Mesh(Generators, Measures, Transformations):
         return angles
 
     @functools.cached_property
-    def degrees(self) -> np.ndarray:
+    def degrees(self) -> Integers:
         """The number of edges at every vertex, shape (num_vertices,), int64, read-only."""
         degrees = np.bincount(self.edges.ravel(), minlength=self.num_vertices)
         degrees.flags.writeable = False
@@ -258,7 +280,7 @@ class Mesh(Generators, Measures, Transformations):
         """The number of triangles."""
         return len(self._triangles)
 
-    def unfolded(self) -> tuple[np.ndarray, np.ndarray]:
+    def unfolded(self) -> tuple[Doubles, Integers]:
         """The surface as it looks without a box: whole triangles, to draw or to write.
 
         A part that spans the box is cut at its faces, so it gets borders, and a vertex of triangles
@@ -275,7 +297,7 @@ class Mesh(Generators, Measures, Transformations):
             return self._vertices, self._triangles
         return periodic.cut(self._vertices, self._triangles, self.edges, self._box)
 
-    def topology(self):
+    def topology(self) -> openmm.app.Topology:
         """An OpenMM topology that shows the mesh as a wire frame in VMD or OVITO.
 
         Returns
@@ -290,7 +312,7 @@ class Mesh(Generators, Measures, Transformations):
         """
         return on_openmm.topology(self.num_vertices, self.edges, self._box)
 
-    def energy(self, force) -> float:
+    def energy(self, force: openmm.Force) -> float:
         """The energy of one force on this mesh, on OpenMM's Reference platform.
 
         Parameters
@@ -338,7 +360,7 @@ class Mesh(Generators, Measures, Transformations):
             words.append(f"volume={self.volume:.6g} nm³")
         return f"Mesh({', '.join(words)})"
 
-    def __eq__(self, other) -> bool:
+    def __eq__(self, other: object) -> bool:
         if not isinstance(other, Mesh):
             return NotImplemented
         return (
@@ -352,6 +374,6 @@ class Mesh(Generators, Measures, Transformations):
         # Coordinates stay out of it, since 0.0 and −0.0 are equal but differ in their bytes.
         return hash((self.num_vertices, self._triangles.tobytes()))
 
-    def __reduce__(self):
+    def __reduce__(self) -> tuple[Any, ...]:
         # Copies and pickles go through the constructor, which makes their arrays read-only too.
         return Mesh, (self._vertices, self._triangles, self._box)

@@ -4,13 +4,18 @@ Farnudi, Ejtehadi and Everaers, *Dynamics of fluid bilayer vesicles*, Phys. Rev.
 (2023), doi:10.1103/PhysRevE.108.015301; numbers in brackets are its equations.
 """
 
+from __future__ import annotations
+
 import math
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from openmm import unit
 
 from ._in_systems import InSystems
 from ._quantities import checked_field, checked_number, encloses
+from ._types import Scalar, Values
 from ._vesicle_flips import checked_flips, mover_of
 from ._vesicle_skeleton import checked_skeleton, skeleton_of
 from ._vesicle_times import TimeScales
@@ -148,35 +153,35 @@ class Vesicle(InSystems, TimeScales):
 
     def __init__(
         self,
-        mesh,
-        rigidity=20 * KBT,
-        area_modulus=1.3,
-        volume_modulus=0.04,
-        softness=0.037,
-        epsilon=4 * KBT,
-        mass=50.0,
-        scheme=BendingForce.Julicher,
-        spontaneous_curvature=0.0,
+        mesh: Mesh,
+        rigidity: Values = 20 * KBT,
+        area_modulus: Scalar = 1.3,
+        volume_modulus: Scalar = 0.04,
+        softness: float = 0.037,
+        epsilon: Scalar = 4 * KBT,
+        mass: Scalar = 50.0,
+        scheme: int = BendingForce.Julicher,
+        spontaneous_curvature: Values = 0.0,
         *,
-        area=None,
-        volume=None,
-        reduced_volume=None,
-        unsigned_spontaneous_curvature=False,
-        dihedral_stiffness=0.0,
-        dihedral_form=DihedralForce.Quartic,
-        triangle_area_modulus=0.0,
-        plaquette_stiffness=0.0,
-        min_triangle_area=0.0,
-        edge_tension=0.0,
-        gaussian_modulus=0.0,
-        pressure=0.0,
-        surface_tension=0.0,
-        osmotic=None,
-        area_difference=None,
-        skeleton=None,
-        flips=None,
-        viscosity=None,
-    ):
+        area: Scalar | None = None,
+        volume: Scalar | None = None,
+        reduced_volume: float | None = None,
+        unsigned_spontaneous_curvature: bool = False,
+        dihedral_stiffness: Scalar = 0.0,
+        dihedral_form: int = DihedralForce.Quartic,
+        triangle_area_modulus: Scalar = 0.0,
+        plaquette_stiffness: Scalar = 0.0,
+        min_triangle_area: Scalar = 0.0,
+        edge_tension: Scalar = 0.0,
+        gaussian_modulus: Scalar = 0.0,
+        pressure: Scalar = 0.0,
+        surface_tension: Scalar = 0.0,
+        osmotic: Mapping[str, Any] | None = None,
+        area_difference: Mapping[str, Any] | None = None,
+        skeleton: Mapping[str, Any] | None = None,
+        flips: float | Mapping[str, Any] | None = None,
+        viscosity: Scalar | Mapping[str, Any] | None = None,
+    ) -> None:
         nm = unit.nanometer
         if not isinstance(mesh, Mesh):
             raise TypeError(f"Vesicle: mesh needs a Mesh, got {type(mesh).__name__}")
@@ -245,7 +250,7 @@ class Vesicle(InSystems, TimeScales):
         if self._viscosity is not None:
             thermostat_of(self._viscosity, mesh, 0)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return (
             f"Vesicle({self._mesh.num_vertices} vertices, rigidity={np.mean(self._rigidity):.6g}, "
             f"area_modulus={self._area_modulus:.6g}, volume_modulus={self._volume_modulus:.6g}, "
@@ -280,12 +285,12 @@ class Vesicle(InSystems, TimeScales):
     volume = property(lambda self: self._volume, doc="Target volume V0, nm³, or None.")
 
     @property
-    def radius(self):
+    def radius(self) -> float:
         """Radius of the sphere of area A0, nm."""
         return math.sqrt(self._area / (4 * math.pi))
 
     @property
-    def reduced_volume(self):
+    def reduced_volume(self) -> float | None:
         """V0 over the volume of the sphere of area A0, or None."""
         if self._volume is None:
             return None

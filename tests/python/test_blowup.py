@@ -344,6 +344,7 @@ class TestRun:
         result = run(tmp_path, 5.0)
         assert result.exit_code == 1
         assert "the simulation broke down: between steps" in result.output
+        assert "docs/troubleshooting.md" in result.output
         assert "Time step: 5 ps is TOO LONG" in result.output
         assert "blow-up/last-good.ply" in result.output
         assert "Traceback" not in result.output

@@ -256,6 +256,7 @@ class TestForeign:
         self.repack(out, run={"platform": "Abacus"})
         text = refused(path, out, "--resume")
         assert "OpenMM cannot start on the platform Abacus of the checkpoint" in text
+        assert "docs/troubleshooting.md" in text
 
     def test_the_platform_is_that_of_the_checkpoint(self, folder):
         path, out = config(folder), folder.path / "cpu"

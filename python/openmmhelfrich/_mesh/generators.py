@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from .._types import Scalar
 from .._units import length as _length
 from . import lattices, spheres
 
@@ -20,7 +21,7 @@ class Generators:
     """
 
     @classmethod
-    def icosphere(cls, n, radius) -> Mesh:
+    def icosphere(cls, n: int, radius: Scalar) -> Mesh:
         """A regular sphere about the origin, of 10 n² + 2 vertices and 20 n² triangles.
 
         The icosahedron with every side cut into n parts, projected on the sphere (class-I
@@ -41,7 +42,7 @@ class Generators:
         return cls(*spheres.icosphere(n, _length(radius, "Mesh.icosphere", "radius")))
 
     @classmethod
-    def random_sphere(cls, num_vertices, radius, seed=0) -> Mesh:
+    def random_sphere(cls, num_vertices: int, radius: Scalar, seed: int = 0) -> Mesh:
         """An irregular, nearly even sphere about the origin, with degrees 5 to 7.
 
         A jittered lattice relaxed with Lloyd's algorithm, see `_mesh.spheres`. Vertices of degree
@@ -65,7 +66,7 @@ class Generators:
         return cls(*spheres.random_sphere(num_vertices, radius, seed))
 
     @classmethod
-    def sheet(cls, nx, ny, spacing, periodic=False) -> Mesh:
+    def sheet(cls, nx: int, ny: int, spacing: Scalar, periodic: bool = False) -> Mesh:
         """A flat sheet of equilateral triangles in the plane z = 0, its normal along z.
 
         Of ny rows along x of nx vertices each, the first vertex at the origin; odd rows are shifted
@@ -89,7 +90,9 @@ class Generators:
         return cls(*lattices.sheet(nx, ny, _length(spacing, "Mesh.sheet", "spacing"), periodic))
 
     @classmethod
-    def tube(cls, n_around, n_along, radius, length, periodic=False) -> Mesh:
+    def tube(
+        cls, n_around: int, n_along: int, radius: Scalar, length: Scalar, periodic: bool = False
+    ) -> Mesh:
         """A tube about the z axis, of rings of vertices, its normal outward.
 
         Of n_along rings of n_around vertices each, from z = 0; odd rings are turned by half of a
@@ -121,7 +124,7 @@ class Generators:
         return cls(*lattices.tube(n_around, n_along, radius, length, periodic))
 
     @classmethod
-    def disk(cls, n, radius) -> Mesh:
+    def disk(cls, n: int, radius: Scalar) -> Mesh:
         """A flat disk about the origin in the plane z = 0, of 3 n² + 3 n + 1 vertices.
 
         A hexagon of a triangular lattice drawn out to a disk: rings k = 1 … n about the middle, of
@@ -143,7 +146,7 @@ class Generators:
         return cls(*lattices.disk(n, _length(radius, "Mesh.disk", "radius")))
 
     @classmethod
-    def torus(cls, n, R, r) -> Mesh:
+    def torus(cls, n: int, R: Scalar, r: Scalar) -> Mesh:
         """A torus about the z axis, of n vertices round its tube, all of degree 6.
 
         Of m = 2 round(n R / √3 r) rings, but at least 4, so that triangles are equilateral on the
@@ -165,7 +168,7 @@ class Generators:
         return cls(*lattices.torus(n, R, r))
 
     @classmethod
-    def schwarz_p(cls, n, size) -> Mesh:
+    def schwarz_p(cls, n: int, size: Scalar) -> Mesh:
         """A cubic cell of Schwarz' P surface, which is triply periodic, nearly: of genus 3.
 
         Vertices are on the level surface cos x + cos y + cos z = 0 of the cube −π … π, whose

@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 
+from .._types import Integers, Scalar
 from .._units import length as _length
 from ..errors import MeshError
 from . import geometry, inputs, periodic
@@ -21,7 +22,7 @@ class Measures:
     """
 
     @functools.cached_property
-    def border_loops(self) -> list[np.ndarray]:
+    def border_loops(self) -> list[Integers]:
         """The borders, as the vertices round each: none if the mesh is closed.
 
         In the direction in which the triangles at the border name them, the surface on the left
@@ -98,7 +99,7 @@ class Measures:
         """The number of connected surfaces that the mesh consists of."""
         return geometry.component_count(self.num_vertices, self.edges)
 
-    def softness(self, min_height) -> float:
+    def softness(self, min_height: Scalar) -> float:
         """Softness Ξ = (d / h̄)², h̄² = √3 A / num_triangles (29–31).
 
         h̄ is the height of the equilateral triangle whose area is the mean one, d the least height
@@ -119,7 +120,7 @@ class Measures:
         )
         return height**2 / self._mean_height_squared
 
-    def min_height(self, softness) -> float:
+    def min_height(self, softness: float) -> float:
         """The least triangle height d = h̄ √Ξ that gives a softness, the inverse of `softness`.
 
         Parameters

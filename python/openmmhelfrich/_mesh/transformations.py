@@ -5,7 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from .._types import Values
 from .._units import length_array
 from ..errors import MeshError
 from . import geometry
@@ -14,6 +16,8 @@ from .inputs import integer, numbers
 from .spheroid import spheroid
 
 if TYPE_CHECKING:
+    from scipy.spatial.transform import Rotation
+
     from ..mesh import Mesh
 
 __all__ = ["Transformations"]
@@ -22,7 +26,7 @@ __all__ = ["Transformations"]
 class Transformations:
     """What `Mesh` has for moving its vertices; triangles stay connected as they are."""
 
-    def scaled(self, factor) -> Mesh:
+    def scaled(self, factor: ArrayLike) -> Mesh:
         """The mesh with coordinates multiplied by a factor, x → s x, about the origin, and its box.
 
         Parameters
@@ -48,7 +52,7 @@ class Transformations:
             box = box * factors * np.sign(factors * np.ones(3))[:, np.newaxis] + 0.0
         return self._with(self.vertices * factors, box)
 
-    def translated(self, displacement) -> Mesh:
+    def translated(self, displacement: Values) -> Mesh:
         """The mesh moved by a displacement.
 
         Parameters
@@ -69,7 +73,7 @@ class Transformations:
             )
         return self._with(self.vertices + vector, self.box)
 
-    def rotated(self, rotation) -> Mesh:
+    def rotated(self, rotation: ArrayLike | Rotation) -> Mesh:
         """The mesh rotated about the origin, x → R x.
 
         Parameters
@@ -94,7 +98,7 @@ class Transformations:
             raise MeshError(f"{where}: rotation has determinant −1; use scaled to mirror a mesh")
         return self._with(self.vertices @ matrix.T)
 
-    def deformed(self, l, m, amplitude) -> Mesh:
+    def deformed(self, l: int, m: int, amplitude: float) -> Mesh:
         """The mesh with a spherical harmonic added to its radius, r → r (1 + u Y_lm(θ, φ)).
 
         r, θ and φ are spherical coordinates about the **origin**, θ from the z axis, φ from the
@@ -141,7 +145,7 @@ class Transformations:
             )
         return self._with(self.vertices * factor[:, np.newaxis])
 
-    def oblate(self, reduced_volume) -> Mesh:
+    def oblate(self, reduced_volume: float) -> Mesh:
         """The mesh flattened along z to a reduced volume, at unchanged total area.
 
         An affine deformation about the mean of the vertices, equal along x and y. Area and volume
@@ -160,19 +164,19 @@ class Transformations:
         """
         return self._spheroid(reduced_volume, False, "Mesh.oblate")
 
-    def prolate(self, reduced_volume) -> Mesh:
+    def prolate(self, reduced_volume: float) -> Mesh:
         """The mesh stretched along z to a reduced volume, at unchanged total area.
 
         The counterpart of `oblate`, which see for arguments and errors.
         """
         return self._spheroid(reduced_volume, True, "Mesh.prolate")
 
-    def _spheroid(self, reduced_volume, prolate: bool, where: str) -> Mesh:
+    def _spheroid(self, reduced_volume: float, prolate: bool, where: str) -> Mesh:
         self._refuse_box(where)
         geometry.check_closed(self.border_loops, where)
         return self._with(spheroid(self.vertices, self.triangles, reduced_volume, prolate, where))
 
-    def fluctuating(self, softness, seed=0, duration=6.5) -> Mesh:
+    def fluctuating(self, softness: float, seed: int = 0, duration: float = 6.5) -> Mesh:
         """A sphere with the same triangles after its vertices have flowed for a short time.
 
         A run at 300 K with the potentials of area, volume and triangle heights only, from random

@@ -19,7 +19,19 @@ from .._writing import describe
 __all__ = ["main"]
 
 # In the order of the help.
-_COMMANDS = ("run", "view", "info", "compare", "convert", "mesh", "spectrum", "frames", "bench")
+_COMMANDS = (
+    "run",
+    "view",
+    "info",
+    "compare",
+    "convert",
+    "mesh",
+    "spectrum",
+    "frames",
+    "bench",
+    "doctor",
+    "completion",
+)
 
 
 class _Commands(click.Group):

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import click
+
+from .options import json_option, print_json
 
 __all__ = ["bench"]
 
@@ -57,53 +60,77 @@ def _check_size(context: click.Context, parameter: click.Parameter, sizes):
     help="Length of one run.",
 )
 @click.option("--repeats", type=click.IntRange(min=1), default=5, show_default=True)
-def bench(platforms, integrator, sizes, seconds, repeats):
+@json_option
+def bench(platforms, integrator, sizes, seconds, repeats, as_json):
     """Measure steps per second of the paper's vesicle on this machine.
 
     Every platform is raced against its own empty step, that of particles without forces, which is
     what OpenMM takes for itself. The fastest of several runs counts. Takes some ten seconds for
     each platform.
     """
+    from .. import _benchmark
+
+    targets, failed = _benchmark.targets(_known(platforms))
+    found = _head(integrator, seconds, repeats)
+    if not as_json:
+        for line in _head_lines(found):
+            click.echo(line)
+    for name, reason in failed.items():
+        click.echo(f"platform {name} does not start: {reason}", err=True)
+    if not targets:
+        raise click.ClickException("no platform to measure")
+    width = max(len(target.label) for target in targets)
+    if not as_json:
+        click.echo(f"\n{'N':>7s}  {'platform':<{width}s} {'steps/s':>10s} {'µs/step':>10s} "
+                   f"{'empty, µs':>10s} {'ratio':>6s}")  # fmt: skip
+    rows = []
+    for size in sizes:
+        for row in _rows(targets, size, integrator, seconds, repeats):
+            rows.append(row)
+            if not as_json:
+                click.echo(f"{size:>7d}  {row['platform']:<{width}s} "
+                           f"{row['steps_per_s']:>10.0f} {row['step_us']:>10.1f} "
+                           f"{row['empty_step_us']:>10.1f} {row['ratio']:>6.2f}")  # fmt: skip
+    if as_json:
+        print_json({**found, "failed": failed, "rows": rows})
+
+
+def _rows(targets, size: int, integrator: str, seconds: float, repeats: int) -> Iterator[dict]:
+    """What a step of a vesicle takes on each of the platforms."""
     import openmm
 
     from .. import _benchmark
     from ..vesicle import Vesicle
 
-    found, failed = _benchmark.targets(_known(platforms))
-    for line in _head(integrator, seconds, repeats):
-        click.echo(line)
-    for name, reason in failed.items():
-        click.echo(f"platform {name} does not start: {reason}", err=True)
-    if not found:
-        raise click.ClickException("no platform to measure")
-    width = max(len(target.label) for target in found)
-    click.echo(f"\n{'N':>7s}  {'platform':<{width}s} {'steps/s':>10s} {'µs/step':>10s} "
-               f"{'empty, µs':>10s} {'ratio':>6s}")  # fmt: skip
-    for size in sizes:
-        vesicle = Vesicle(_benchmark.sphere(math.isqrt((size - 2) // 10)))
-        systems = {"ours": vesicle.system(), "empty": _benchmark.empty_system(vesicle)}
-        steppers = {}
-        for target in found:
-            for kind, system in systems.items():
-                try:
-                    context = _benchmark.start(system, vesicle, integrator, target)
-                    context.getIntegrator().step(1)
-                except openmm.OpenMMException as reason:
-                    raise click.ClickException(
-                        f"{target.label}, N = {size}: {reason}; leave the platform out with "
-                        "--platform"
-                    ) from None
-                steppers[kind, target.label] = _benchmark.Steps(context)
-        cost = _benchmark.fastest(steppers, repeats, seconds)
-        for (kind, label), stepper in steppers.items():
+    vesicle = Vesicle(_benchmark.sphere(math.isqrt((size - 2) // 10)))
+    systems = {"ours": vesicle.system(), "empty": _benchmark.empty_system(vesicle)}
+    steppers = {}
+    for target in targets:
+        for kind, system in systems.items():
             try:
-                stepper.check()
-            except FloatingPointError as reason:
-                raise click.ClickException(f"{label}, {kind}, N = {size}: {reason}") from None
-        for target in found:
-            ours, empty = cost["ours", target.label], cost["empty", target.label]
-            click.echo(f"{size:>7d}  {target.label:<{width}s} {1e6 / ours:>10.0f} {ours:>10.1f} "
-                       f"{empty:>10.1f} {ours / empty:>6.2f}")  # fmt: skip
+                context = _benchmark.start(system, vesicle, integrator, target)
+                context.getIntegrator().step(1)
+            except openmm.OpenMMException as reason:
+                raise click.ClickException(
+                    f"{target.label}, N = {size}: {reason}; leave the platform out with --platform"
+                ) from None
+            steppers[kind, target.label] = _benchmark.Steps(context)
+    cost = _benchmark.fastest(steppers, repeats, seconds)
+    for (kind, label), stepper in steppers.items():
+        try:
+            stepper.check()
+        except FloatingPointError as reason:
+            raise click.ClickException(f"{label}, {kind}, N = {size}: {reason}") from None
+    for target in targets:
+        ours, empty = cost["ours", target.label], cost["empty", target.label]
+        yield {
+            "num_vertices": size,
+            "platform": target.label,
+            "steps_per_s": 1e6 / ours,
+            "step_us": ours,
+            "empty_step_us": empty,
+            "ratio": ours / empty,
+        }
 
 
 def _known(platforms) -> list[str] | None:
@@ -118,14 +145,23 @@ def _known(platforms) -> list[str] | None:
         raise click.BadParameter(str(reason), param_hint="--platform") from None
 
 
-def _head(integrator: str, seconds: float, repeats: int) -> list[str]:
+def _head(integrator: str, seconds: float, repeats: int) -> dict:
     from .. import _benchmark
 
-    facts = ", ".join(f"{name}: {value}" for name, value in _benchmark.machine().items())
-    versions = ", ".join(f"{name} {value}" for name, value in _benchmark.versions().items())
+    return {
+        "machine": _benchmark.machine(),
+        "versions": _benchmark.versions(),
+        "integrator": integrator,
+        "time_step_ps": _benchmark.TIME_STEP,
+        "repeats": repeats,
+        "run_s": seconds,
+    }
+
+
+def _head_lines(found: dict) -> list[str]:
     return [
-        facts,
-        versions,
-        f"{integrator}, {_benchmark.TIME_STEP:g} ps, bending + area + volume + heights, best of "
-        f"{repeats} runs of {seconds:g} s",
+        ", ".join(f"{name}: {value}" for name, value in found["machine"].items()),
+        ", ".join(f"{name} {value}" for name, value in found["versions"].items()),
+        f"{found['integrator']}, {found['time_step_ps']:g} ps, bending + area + volume + heights, "
+        f"best of {found['repeats']} runs of {found['run_s']:g} s",
     ]

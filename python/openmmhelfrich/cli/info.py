@@ -5,13 +5,15 @@ Without a file it describes the machine.
 
 from __future__ import annotations
 
+import contextlib
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import click
 
 from ..errors import MeshError
-from .options import platform_option, reader_options, tidy_errors
+from .options import json_option, platform_option, print_json, reader_options, tidy_errors
 
 __all__ = ["info"]
 
@@ -24,7 +26,8 @@ _MEASURE_SECONDS = 1.5
 @platform_option
 @click.option("--measure/--no-measure", default=True, help="Measure the time per step.")
 @reader_options
-def info(config, platform, measure, vcm_compatible, ignore_unknown):
+@json_option
+def info(config, platform, measure, vcm_compatible, ignore_unknown, as_json):
     """Say what CONFIG, of VCM or in TOML, would simulate, or describe this machine.
 
     Meshes, potentials with their start energies, time scales, the time step beside what is
@@ -33,102 +36,170 @@ def info(config, platform, measure, vcm_compatible, ignore_unknown):
     processor and GPU computes a membrane, with the timings that decide it.
     """
     if config is None:
-        from .machine import machine
+        from .machine import lines_of, machine
 
-        for line in machine():
-            click.echo(line)
-        return
-    with tidy_errors():
-        from ..config import read_any
-
-        cfg = read_any(config, vcm_compatible, ignore_unknown=ignore_unknown)
-        for line in _general(cfg):
-            click.echo(line)
-        for membrane in cfg.membranes:
-            click.echo()
-            for line in _membrane(cfg, membrane):
+        found = machine()
+        if as_json:
+            print_json(found)
+        else:
+            for line in lines_of(found):
                 click.echo(line)
-        click.echo()
-        for line in _energies(cfg):
-            click.echo(line)
-        name, reason = _platform(cfg, platform)
-        click.echo(f"\nPlatform: {name}, for {reason}")
-        for line in _evaluators(cfg, name):
-            click.echo(line)
-        if measure:
-            click.echo(_duration(cfg, name))
+        return
+    found = {}
+    with tidy_errors():
+        for name, values, lines in _parts(
+            config, platform, measure, vcm_compatible, ignore_unknown
+        ):
+            found[name] = values
+            # The text comes as it is found.
+            for line in () if as_json else lines:
+                click.echo(line)
+    if as_json:
+        print_json(found)
 
 
-def _general(cfg) -> list[str]:
+def _parts(config, platform, measure, vcm_compatible, ignore_unknown):
+    """What is found, one part after the other: its name in JSON, the values, and as text."""
+    from ..config import read_any
+
+    cfg = read_any(config, vcm_compatible, ignore_unknown=ignore_unknown)
+    general = _general(cfg)
+    yield "simulation", general, _general_lines(general)
+    membranes = [_membrane(cfg, membrane) for membrane in cfg.membranes]
+    yield "membranes", membranes, _membrane_lines(general, membranes)
+    energies = _energies(cfg)
+    yield "energies_kJ_per_mol", energies, _energy_lines(energies)
+    name, reason = _platform(cfg, platform)
+    yield (
+        "platform",
+        {"name": name, "reason": reason},
+        [f"\nPlatform: {name}, for {reason}"],
+    )
+    computed = _evaluators(cfg, name)
+    yield "computed_by", computed, _evaluator_lines(computed)
+    duration = _duration(cfg, name) if measure else None
+    yield "duration", duration, [_duration_line(duration, name)] if measure else []
+
+
+def _general(cfg) -> dict:
     general = cfg.general
+    is_damped = general["Integrator"] != "Verlet"
+    return {
+        "name": cfg.name,
+        "num_particles": cfg.num_particles,
+        "integrator": general["Integrator"],
+        "num_steps": cfg.num_steps,
+        "time_step_ps": cfg.step_size,
+        "time_ps": general["SimulationTimeInPs"],
+        "temperature_K": cfg.temperature,
+        "friction_per_ps": general["FrictionIninvertPs"] if is_damped else None,
+        "num_membranes": len(cfg.membranes),
+    }
+
+
+def _general_lines(found: dict) -> list[str]:
     lines = [
-        f"{cfg.name}: {len(cfg.membranes)} membrane(s), {cfg.num_particles} vertices",
-        f"  {general['Integrator']}, {cfg.num_steps} steps of {cfg.step_size:g} ps: "
-        f"{general['SimulationTimeInPs']:g} ps at {cfg.temperature:g} K",
+        f"{found['name']}: {found['num_membranes']} membrane(s), {found['num_particles']} vertices",
+        f"  {found['integrator']}, {found['num_steps']} steps of {found['time_step_ps']:g} ps: "
+        f"{found['time_ps']:g} ps at {found['temperature_K']:g} K",
     ]
-    if general["Integrator"] != "Verlet":
-        lines.append(f"  friction {general['FrictionIninvertPs']:g} /ps")
+    if found["friction_per_ps"] is not None:
+        lines.append(f"  friction {found['friction_per_ps']:g} /ps")
     return lines
 
 
-def _membrane(cfg, membrane) -> list[str]:
+def _membrane(cfg, membrane) -> dict:
     """The mesh of one membrane, and what its time scales are."""
     from ..vcm.springs import sticky_pairs
 
     mesh = membrane.mesh
-    lines = [
-        f"Membrane {membrane.label}: {mesh.num_vertices} vertices, {mesh.num_triangles} triangles",
-        f"  area {mesh.area:.8g} nm²" + _enclosed(mesh),
-    ]
-    if membrane.num_reversed:
-        lines.append(
-            f"  orientation mended: {membrane.num_reversed} triangles of the file faced the other "
-            "way"
-        )
-    else:
-        lines.append("  orientation as in the file")
-    if membrane.settings["Sticky"]:
-        lines.append(f"  sticky: {len(sticky_pairs(cfg, membrane))} bonds to other membranes")
-    return lines + _time_scales(cfg, membrane)
+    is_sticky = membrane.settings["Sticky"]
+    return {
+        "label": membrane.label,
+        "num_vertices": mesh.num_vertices,
+        "num_triangles": mesh.num_triangles,
+        "num_borders": 0 if mesh.is_closed else len(mesh.border_loops),
+        "area_nm2": mesh.area,
+        **_enclosed(mesh),
+        "num_reversed": membrane.num_reversed,
+        "num_sticky_bonds": len(sticky_pairs(cfg, membrane)) if is_sticky else None,
+        **_time_scales(cfg, membrane),
+    }
 
 
-def _enclosed(mesh) -> str:
-    """What a mesh encloses, or why it does not."""
-    if not mesh.is_closed:
-        return f", {len(mesh.border_loops)} border(s)"
-    try:
-        volume = mesh.volume
-    except MeshError:
-        return ", spans the periodic box"
-    return f", volume {volume:.8g} nm³, reduced volume {mesh.reduced_volume:.4f}"
+def _enclosed(mesh) -> dict:
+    """What a mesh encloses; None if it has borders or spans the box."""
+    volume = reduced = None
+    if mesh.is_closed:
+        with contextlib.suppress(MeshError):
+            volume = mesh.volume
+            reduced = mesh.reduced_volume
+    return {"volume_nm3": volume, "reduced_volume": reduced}
 
 
-def _time_scales(cfg, membrane) -> list[str]:
-    """Softness, τ_h, τ_2 and the largest stable time step, for what the membrane has.
+def _time_scales(cfg, membrane) -> dict:
+    """Softness, τ_h, τ_2 and the largest stable time step, None for what the membrane has not.
 
     The bound is 0.1 √Ξ τ of the fastest mode, Phys. Rev. E 108, 015301 (2023), equations 40 to 43
     and figure 5: a rule of thumb for the paper's moduli.
     """
     vesicle, heights, bends = _as_vesicle(cfg, membrane)
-    lines = []
-    if heights:
-        lines.append(
-            f"  softness Ξ = {vesicle.softness:.4g} (d = {vesicle.min_height:.4g} nm), "
-            f"triangle heights relax in τ_h = {vesicle.tau_heights:.4g} ps"
+    return {
+        "softness": vesicle.softness if heights else None,
+        "min_height_nm": vesicle.min_height if heights else None,
+        "tau_heights_ps": vesicle.tau_heights if heights else None,
+        "tau_2_ps": vesicle.tau_2 if bends else None,
+        "tau_fastest_ps": vesicle.tau_fastest if bends else None,
+        "max_time_step_ps": vesicle.max_time_step if heights and bends else None,
+    }
+
+
+def _membrane_lines(general: dict, membranes: list[dict]) -> Iterator[str]:
+    for found in membranes:
+        yield ""
+        yield (
+            f"Membrane {found['label']}: {found['num_vertices']} vertices, "
+            f"{found['num_triangles']} triangles"
         )
-    if not bends:
-        return lines
-    lines.append(
-        f"  slowest mode τ_2 = {vesicle.tau_2:.5g} ps, fastest {vesicle.tau_fastest:.4g} ps"
-    )
-    if heights:
-        bound = vesicle.max_time_step
-        verdict = "within" if cfg.step_size <= bound else "ABOVE"
-        lines.append(
-            f"  time step {cfg.step_size:g} ps is {verdict} the bound 0.1 √Ξ τ = {bound:.3g} ps "
+        yield f"  area {found['area_nm2']:.8g} nm²" + _enclosed_words(found)
+        if found["num_reversed"]:
+            yield (
+                f"  orientation mended: {found['num_reversed']} triangles of the file faced the "
+                "other way"
+            )
+        else:
+            yield "  orientation as in the file"
+        if found["num_sticky_bonds"] is not None:
+            yield f"  sticky: {found['num_sticky_bonds']} bonds to other membranes"
+        yield from _time_scale_lines(general["time_step_ps"], found)
+
+
+def _enclosed_words(found: dict) -> str:
+    if found["num_borders"]:
+        return f", {found['num_borders']} border(s)"
+    if found["volume_nm3"] is None:
+        return ", spans the periodic box"
+    return f", volume {found['volume_nm3']:.8g} nm³, reduced volume {found['reduced_volume']:.4f}"
+
+
+def _time_scale_lines(time_step: float, found: dict) -> Iterator[str]:
+    if found["softness"] is not None:
+        yield (
+            f"  softness Ξ = {found['softness']:.4g} (d = {found['min_height_nm']:.4g} nm), "
+            f"triangle heights relax in τ_h = {found['tau_heights_ps']:.4g} ps"
+        )
+    if found["tau_2_ps"] is not None:
+        yield (
+            f"  slowest mode τ_2 = {found['tau_2_ps']:.5g} ps, "
+            f"fastest {found['tau_fastest_ps']:.4g} ps"
+        )
+    bound = found["max_time_step_ps"]
+    if bound is not None:
+        verdict = "within" if time_step <= bound else "ABOVE"
+        yield (
+            f"  time step {time_step:g} ps is {verdict} the bound 0.1 √Ξ τ = {bound:.3g} ps "
             f"(√Ξ τ = {10 * bound:.3g} ps)"
         )
-    return lines
 
 
 def _as_vesicle(cfg, membrane):
@@ -154,7 +225,7 @@ def _as_vesicle(cfg, membrane):
     return vesicle, least > 0 and epsilon > 0, bends
 
 
-def _energies(cfg) -> list[str]:
+def _energies(cfg) -> dict[str, float]:
     """The energy of each term at the start positions, in double precision."""
     import openmm
 
@@ -169,12 +240,15 @@ def _energies(cfg) -> list[str]:
         openmm.Platform.getPlatformByName("Reference"),
     )
     context.setPositions(cfg.positions)
-    terms = cfg.energies(context)
+    return cfg.energies(context)
+
+
+def _energy_lines(terms: dict[str, float]) -> list[str]:
     if not terms:
-        return ["No potentials."]
+        return ["", "No potentials."]
     width = max(map(len, terms))
     rows = [f"  {name:<{width}s} {energy:18.6f}" for name, energy in terms.items()]
-    return ["Energies at the start, kJ/mol:", *rows]
+    return ["", "Energies at the start, kJ/mol:", *rows]
 
 
 def _platform(cfg, asked: str | None) -> tuple[str, str]:
@@ -191,20 +265,25 @@ def _platform(cfg, asked: str | None) -> tuple[str, str]:
         raise click.ClickException(str(reason)) from None
 
 
-def _evaluators(cfg, platform: str) -> list[str]:
+def _evaluators(cfg, platform: str) -> list[dict]:
     """What would compute which forces of membranes."""
     from ..platforms import evaluators
+
+    return [
+        {"by": who, "reason": reason, "forces": list(dict.fromkeys(forces))}
+        for (who, reason), forces in evaluators(cfg.system(), platform).items()
+    ]
+
+
+def _evaluator_lines(found: list[dict]) -> Iterator[str]:
     from .machine import WORDS
 
-    found = evaluators(cfg.system(), platform)
-    lines = []
-    for (who, reason), forces in found.items():
-        what = "Membranes" if len(found) == 1 else ", ".join(dict.fromkeys(forces))
-        lines.append(f"{what}: computed by {WORDS[who]}, for {reason}")
-    return lines
+    for one in found:
+        what = "Membranes" if len(found) == 1 else ", ".join(one["forces"])
+        yield f"{what}: computed by {WORDS[one['by']]}, for {one['reason']}"
 
 
-def _duration(cfg, platform: str) -> str:
+def _duration(cfg, platform: str) -> dict:
     """How long the run would take, from a few of its steps."""
     import openmm
 
@@ -224,10 +303,13 @@ def _duration(cfg, platform: str) -> str:
             elapsed = time.perf_counter() - start
     except openmm.OpenMMException as reason:
         raise click.ClickException(f"cannot measure the time per step: {reason}") from None
-    total = elapsed / steps * cfg.num_steps
+    return {"seconds_per_step": elapsed / steps, "seconds": elapsed / steps * cfg.num_steps}
+
+
+def _duration_line(found: dict, platform: str) -> str:
     return (
-        f"Expected run time: {_clock(total)} on {platform} "
-        f"({elapsed / steps * 1e3:.3g} ms a step, without outputs)"
+        f"Expected run time: {_clock(found['seconds'])} on {platform} "
+        f"({found['seconds_per_step'] * 1e3:.3g} ms a step, without outputs)"
     )
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-__all__ = ["machine"]
+from collections.abc import Iterator
+
+__all__ = ["WORDS", "lines_of", "machine"]
 
 #: What `platforms.evaluators` finds, for people.
 WORDS = {
@@ -17,41 +19,47 @@ WORDS = {
 _MEASURED = (48, 96, 192)
 
 
-def machine() -> list[str]:
-    """Lines about versions, adapters and the choice of a backend."""
+def machine() -> dict:
+    """Versions, platforms, adapters and the choice of a backend, measured now if it is not yet."""
+    import dataclasses
+
     import openmm
 
     from .. import __version__, backend
+    from ..platforms import names
 
-    found = backend.adapters()
-    lines = [
-        f"openmm-helfrich {__version__}, OpenMM {openmm.Platform.getOpenMMVersion()}",
-        *_platforms(),
-        f"Backend: {backend.get_backend()}",
-        "",
+    adapters = backend.adapters()
+    has_gpu = any(adapter.kind != "software" for adapter in adapters)
+    if has_gpu:
+        _measure()
+    timings = [
+        {
+            "machine": timing.machine,
+            "num_vertices": timing.vertices,
+            "cpu_s": timing.cpu,
+            "gpu_s": timing.gpu,
+            "choice": "gpu" if timing.gpu < timing.cpu else "cpu",
+        }
+        for timing in (backend.timings() if has_gpu else [])
     ]
-    if not found:
-        lines.append("No GPU, nor any driver of one.")
-    for adapter in found:
-        lines.append(f"GPU {adapter.index}: {adapter.name}, {adapter.kind}")
-        lines.append(f"  {adapter.interface}, {adapter.driver}")
-        double = "single and double precision" if adapter.double else "single precision only"
-        clock = "with" if adapter.timestamps else "without"
-        lines.append(f"  {double}, {clock} timestamps")
-    lines += ["", *_natively(), "", 'What "auto" chooses on other platforms:']
-    lines.append(f"  below {backend.LEAST_VERTICES} vertices the processor")
-    if all(adapter.kind == "software" for adapter in found):
-        reason = "is no GPU" if not found else "is no GPU but in software"
-        return [*lines, f"  above, too, for there {reason}"]
-    return lines + _timings()
+    return {
+        "version": __version__,
+        "openmm_version": openmm.Platform.getOpenMMVersion(),
+        "platforms": names(),
+        "default_platforms": _defaults(),
+        "backend": backend.get_backend(),
+        "gpus": [dataclasses.asdict(adapter) for adapter in adapters],
+        "computed_on_platforms": _natively(),
+        "auto": {"least_vertices": backend.LEAST_VERTICES, "timings": timings},
+    }
 
 
-def _platforms() -> list[str]:
-    """What OpenMM has, and what simulations get that name none."""
+def _defaults() -> list[dict]:
+    """What simulations get that name no platform."""
     import openmm
 
     from .. import Mesh, Vesicle
-    from ..platforms import LEAST_FOR_GPU, choose, names
+    from ..platforms import LEAST_FOR_GPU, choose
 
     vesicle = Vesicle(Mesh.icosphere(2, 100.0))
     mixed = vesicle.system()
@@ -59,51 +67,78 @@ def _platforms() -> list[str]:
     large = openmm.XmlSerializer.clone(mixed)
     while large.getNumParticles() < LEAST_FOR_GPU:
         large.addParticle(50)
-    lines = [f"OpenMM's platforms: {', '.join(names())}; where none is named:"]
+    found = []
     for subject, system in (
         ("membranes", vesicle.system()),
         ("with pairs of particles", mixed),
         (f"with pairs, from {LEAST_FOR_GPU} particles on", large),
     ):
         name, reason = choose(system, openmm.VerletIntegrator(0.1))
-        lines.append(f"  {subject}: {name}, for {reason}")
-    return [*lines, ""]
+        found.append({"of": subject, "name": name, "reason": reason})
+    return found
 
 
-def _natively() -> list[str]:
-    """Whether OpenMM's GPU platforms would compute membranes themselves."""
+def _natively() -> list[dict]:
+    """What would compute membranes on those of OpenMM's GPU platforms that are there."""
     from .. import Mesh, Vesicle
     from ..platforms import ON_DEVICES, evaluators, names
 
     system = Vesicle(Mesh.icosphere(2, 100.0)).system()
-    lines = ["What computes membranes on OpenMM's GPU platforms:"]
-    present = [name for name in ON_DEVICES if name in names()]
-    if not present:
-        return [*lines, f"  this OpenMM has none of {', '.join(ON_DEVICES)}"]
-    for name in present:
-        [(who, reason)] = evaluators(system, name)
-        lines.append(f"  {name}: {WORDS[who]}, for {reason}")
-    return lines
+    found = []
+    for name in ON_DEVICES:
+        if name in names():
+            [(who, reason)] = evaluators(system, name)
+            found.append({"platform": name, "by": who, "reason": reason})
+    return found
 
 
-def _timings() -> list[str]:
-    """The measurements behind the choice, made now where there are none yet."""
-    from .. import backend
+def lines_of(found: dict) -> Iterator[str]:
+    """What `machine` found, for people."""
+    from ..platforms import ON_DEVICES
 
-    _measure()
-    known = backend.timings()
-    lines = ["  above, by the time of an evaluation (paper's four forces, or what was simulated):"]
-    for machine in sorted({timing.machine for timing in known}):
-        lines.append(f"  {machine.replace('|', ', ')}")
-        lines.append("    vertices   processor         GPU  choice")
-        for timing in known:
-            if timing.machine == machine:
-                choice = "GPU" if timing.gpu < timing.cpu else "processor"
-                lines.append(
-                    f"    {timing.vertices:8d}  {timing.cpu * 1e3:7.2f} ms  "
-                    f"{timing.gpu * 1e3:7.2f} ms  {choice}"
+    yield f"openmm-helfrich {found['version']}, OpenMM {found['openmm_version']}"
+    yield f"OpenMM's platforms: {', '.join(found['platforms'])}; where none is named:"
+    for choice in found["default_platforms"]:
+        yield f"  {choice['of']}: {choice['name']}, for {choice['reason']}"
+    yield ""
+    yield f"Backend: {found['backend']}"
+    yield ""
+    if not found["gpus"]:
+        yield "No GPU, nor any driver of one."
+    for gpu in found["gpus"]:
+        yield f"GPU {gpu['index']}: {gpu['name']}, {gpu['kind']}"
+        yield f"  {gpu['interface']}, {gpu['driver']}"
+        double = "single and double precision" if gpu["double"] else "single precision only"
+        yield f"  {double}, {'with' if gpu['timestamps'] else 'without'} timestamps"
+    yield ""
+    yield "What computes membranes on OpenMM's GPU platforms:"
+    if not found["computed_on_platforms"]:
+        yield f"  this OpenMM has none of {', '.join(ON_DEVICES)}"
+    for one in found["computed_on_platforms"]:
+        yield f"  {one['platform']}: {WORDS[one['by']]}, for {one['reason']}"
+    yield ""
+    yield 'What "auto" chooses on other platforms:'
+    yield f"  below {found['auto']['least_vertices']} vertices the processor"
+    if all(gpu["kind"] == "software" for gpu in found["gpus"]):
+        reason = "is no GPU" if not found["gpus"] else "is no GPU but in software"
+        yield f"  above, too, for there {reason}"
+    else:
+        yield from _timing_lines(found["auto"]["timings"])
+
+
+def _timing_lines(timings: list[dict]) -> Iterator[str]:
+    """The measurements behind the choice."""
+    yield "  above, by the time of an evaluation (paper's four forces, or what was simulated):"
+    for machine in sorted({timing["machine"] for timing in timings}):
+        yield f"  {machine.replace('|', ', ')}"
+        yield "    vertices   processor         GPU  choice"
+        for timing in timings:
+            if timing["machine"] == machine:
+                choice = "GPU" if timing["choice"] == "gpu" else "processor"
+                yield (
+                    f"    {timing['num_vertices']:8d}  {timing['cpu_s'] * 1e3:7.2f} ms  "
+                    f"{timing['gpu_s'] * 1e3:7.2f} ms  {choice}"
                 )
-    return lines
 
 
 def _measure() -> None:

@@ -3,13 +3,23 @@
 from __future__ import annotations
 
 import contextlib
+import json
+import math
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
 
 import click
 
-__all__ = ["check_platform", "config_argument", "platform_option", "reader_options", "tidy_errors"]
+__all__ = [
+    "check_platform",
+    "config_argument",
+    "json_option",
+    "platform_option",
+    "print_json",
+    "reader_options",
+    "tidy_errors",
+]
 
 config_argument = click.argument("config", type=click.Path(path_type=Path, dir_okay=False))
 
@@ -34,6 +44,26 @@ platform_option = click.option(
     "default where pairs of particles interact), Reference, OpenCL, CUDA or HIP. "
     "'openmm-helfrich info CONFIG' says which would be used, and why.",
 )
+
+json_option = click.option(
+    "--json", "as_json", is_flag=True, help="Print one JSON object, for programs."
+)
+
+
+def print_json(values: dict) -> None:
+    """Print values as a JSON object; numbers that are not finite become null."""
+    click.echo(json.dumps(_plain(values), indent=2, ensure_ascii=False, allow_nan=False))
+
+
+def _plain(value):
+    """A value of what JSON has."""
+    if isinstance(value, dict):
+        return {name: _plain(item) for name, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(item) for item in value]
+    if hasattr(value, "item"):  # NumPy's scalars
+        value = value.item()
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def reader_options(command):

@@ -7,11 +7,13 @@ from pathlib import Path
 import click
 
 from .._writing import write_whole
+from .options import json_option, print_json
 from .trajectory import open_trajectory
 
 __all__ = ["spectrum"]
 
 _MODES = (".csv", ".h5", ".hdf5")
+_COLUMNS = ("l", "mean", "error", "correlation_time_frames", "theory", "ratio")
 
 
 @click.command()
@@ -65,7 +67,10 @@ _MODES = (".csv", ".h5", ".hdf5")
 )
 @click.option("--csv", "table_path", type=click.Path(path_type=Path), help="Write the table too.")
 @click.option("--plot", type=click.Path(path_type=Path), help="Draw it: .png, .pdf, .svg …")
-def spectrum(source, mesh_path, membrane, lmax, kappa, young, radius, table_path, plot, **options):
+@json_option
+def spectrum(
+    source, mesh_path, membrane, lmax, kappa, young, radius, table_path, plot, as_json, **options
+):
     """Print the fluctuation spectrum of SOURCE beside the theory.
 
     SOURCE is a trajectory (.xtc, .dcd, .pdb) or what a ModeReporter wrote (.csv, .h5). Where bonds
@@ -81,15 +86,22 @@ def spectrum(source, mesh_path, membrane, lmax, kappa, young, radius, table_path
         found = analysis.spectrum(amplitudes)
         l = found.l[2:]
         theory = analysis.theory.elastic_spectrum(l, kappa, young, radius)
-        rows = list(
-            zip(l, found.mean[2:], found.error[2:], found.correlation_time[2:], theory, strict=True)
-        )
-        for line in _lines(len(amplitudes), kappa, young, rows):
-            click.echo(line)
+        measured = found.mean[2:], found.error[2:], found.correlation_time[2:]
+        rows = [_row(*values) for values in zip(l, *measured, theory, strict=True)]
+        if not as_json:
+            for line in _lines(len(amplitudes), kappa, young, rows):
+                click.echo(line)
         if table_path is not None:
             _write(table_path, rows)
         if plot is not None:
             _plot(plot, found, l, theory, kappa, young)
+        if as_json:
+            of = {
+                "kappa_kBT": kappa,
+                "young_kBT_per_nm2": young,
+                "radius_nm": radius if young else None,
+            }
+            print_json({"num_frames": len(amplitudes), "theory": of, "modes": rows})
     except (ValueError, TypeError, ImportError, MeshError) as reason:
         raise click.ClickException(str(reason)) from None
 
@@ -114,14 +126,20 @@ def _amplitudes(source, mesh_path, membrane, lmax, skip, stride, quadrature, cen
     return analysis.mode_amplitudes(trajectory, triangles, lmax or 10, quadrature, centre)
 
 
+def _row(l, mean, error, time, theory) -> dict:
+    """One mode, by the names of the columns of the table."""
+    numbers = [float(x) for x in (mean, error, time, theory, mean / theory)]
+    return dict(zip(_COLUMNS, [int(l), *numbers], strict=True))
+
+
 def _lines(num_frames, kappa, young, rows):
     formula = "(A17)" if young == 0 else f"(A18) with Y = {young:g} kBT/nm²"
     yield f"{num_frames} frames; theory {formula}, κ = {kappa:g} kBT"
     yield "   l     ⟨|u_lm|²⟩       error    theory  ratio         correlation time"
-    for l, mean, error, time, theory in rows:
+    for l, mean, error, time, theory, ratio in map(dict.values, rows):
         yield (
             f"{l:4d}   {mean:.5e}   {error:.2e}  {theory:.2e}  "
-            f"{mean / theory:5.3f} ± {error / theory:.3f}  {time:8.1f} frames"
+            f"{ratio:5.3f} ± {error / theory:.3f}  {time:8.1f} frames"
         )
 
 
@@ -130,10 +148,9 @@ def _write(path, rows):
     import io
 
     text = io.StringIO(newline="")
-    writer = csv.writer(text)
-    writer.writerow(["l", "mean", "error", "correlation_time_frames", "theory", "ratio"])
-    for l, mean, error, time, theory in rows:
-        writer.writerow([l, *(float(x) for x in (mean, error, time, theory, mean / theory))])
+    writer = csv.DictWriter(text, _COLUMNS)
+    writer.writeheader()
+    writer.writerows(rows)
     write_whole(path, text.getvalue().encode())
 
 

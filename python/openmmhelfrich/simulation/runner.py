@@ -127,7 +127,9 @@ class Run:
                 cfg.prepare(self.context)
         except openmm.OpenMMException as reason:
             where = "" if saved is None else f" on the platform {platform} of the checkpoint"
-            raise RunError(f"OpenMM cannot start{where}: {reason}") from None
+            raise RunError(
+                f"OpenMM cannot start{where}: {reason}; docs/troubleshooting.md lists such messages"
+            ) from None
         try:
             self.outputs = Outputs(cfg, self.folder, self._options["xtc"], self._options["frames"])
         except ImportError as reason:
@@ -259,7 +261,8 @@ class Run:
         except BlowUpError as reason:
             raise RunError(
                 f"the simulation broke down: {reason}\nTo try again, give another folder with "
-                "--out; a mesh of this one, such as blow-up/last-good.ply, may be where it begins"
+                "--out; a mesh of this one, such as blow-up/last-good.ply, may be where it begins\n"
+                "docs/troubleshooting.md lists what messages mostly mean, and what to do"
             ) from None
 
     def save(self) -> None:
