@@ -1,4 +1,4 @@
-"""``openmm-helfrich frames``: the surfaces of a finished run in one file for ParaView."""
+"""``openmm-helfrich frames``: the surfaces of a finished run for ParaView, OVITO or HOOMD."""
 
 from __future__ import annotations
 
@@ -10,10 +10,19 @@ from .trajectory import open_trajectory
 
 __all__ = ["frames"]
 
+# By format; the first is that of a name that is not given.
+_SUFFIXES = {"vtkhdf": (".vtkhdf",), "gsd": (".gsd",), "xyz": (".xyz", ".extxyz")}
+
 
 @click.command()
 @click.argument("source", type=click.Path(path_type=Path, exists=True))
 @click.argument("output", required=False, type=click.Path(path_type=Path, dir_okay=False))
+@click.option(
+    "--format",
+    "kind",
+    type=click.Choice(list(_SUFFIXES)),
+    help="What to write.  [default: as OUTPUT ends, or else vtkhdf]",
+)
 @click.option(
     "--mesh",
     "mesh_path",
@@ -28,28 +37,41 @@ __all__ = ["frames"]
 @click.option("--skip", type=click.IntRange(0), default=0, help="Frames to leave out at the start.")
 @click.option("--stride", type=click.IntRange(1), default=1, help="Take every so many frames.")
 @click.option("--force", is_flag=True, help="Overwrite OUTPUT.")
-def frames(source, output, mesh_path, membrane, skip, stride, force):
-    """Write the surfaces of the trajectory SOURCE to OUTPUT as VTKHDF, which ParaView opens.
+def frames(source, output, kind, mesh_path, membrane, skip, stride, force):
+    """Write the surfaces of the trajectory SOURCE to OUTPUT, with the triangles of each frame.
 
     SOURCE is an XTC, DCD or PDB file, or the folder of a run. Where bonds flipped, the triangles of
     each frame are those of NAME.triangles beside NAME.xtc; without that file --mesh has them.
-    OUTPUT is NAME.vtkhdf beside it if it is not given. Vertices get mean curvatures, areas and
-    numbers of neighbours. A run that is still to come writes the same, in double precision, with
-    'run --frames vtkhdf'. Needs h5py.
+    OUTPUT is beside it if it is not given: NAME.vtkhdf for ParaView (needs h5py), NAME.gsd for
+    HOOMD and OVITO (needs gsd), with edges as bonds, or NAME.xyz, extended XYZ for OVITO, whose
+    surfaces are not in it. Vertices get mean curvatures, areas and numbers of neighbours. A run
+    that is still to come writes VTKHDF itself, in double precision, with 'run --frames vtkhdf'.
     """
     from .. import analysis
     from ..errors import MeshError
 
+    writers = {
+        "vtkhdf": analysis.write_vtkhdf,
+        "gsd": analysis.write_gsd,
+        "xyz": analysis.write_extended_xyz,
+    }
     source = _trajectory_in(source)
-    output = output or source.with_suffix(".vtkhdf")
+    kind = kind or _kind_of(output)
+    output = output or source.with_suffix(_SUFFIXES[kind][0])
     if output.exists() and not force:
         raise click.ClickException(f"{output} is there already; overwrite it with --force")
     try:
         found = open_trajectory(source, mesh_path, membrane, skip, stride, several=True)
-        count = analysis.write_vtkhdf(output, *found)
+        count = writers[kind](output, *found)
     except (ValueError, TypeError, ImportError, MeshError) as reason:
         raise click.ClickException(str(reason)) from None
     click.echo(f"wrote {output}: {count} frames of {found[0].num_vertices} vertices")
+
+
+def _kind_of(output: Path | None) -> str:
+    """The format that a name ends with; VTKHDF of any other."""
+    suffix = "" if output is None else output.suffix.lower()
+    return next((kind for kind, ends in _SUFFIXES.items() if suffix in ends), "vtkhdf")
 
 
 def _trajectory_in(source: Path) -> Path:
