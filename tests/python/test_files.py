@@ -4,7 +4,9 @@ import numpy as np
 import openmmhelfrich as helfrich
 import pytest
 from openmmhelfrich import analysis
+from openmmhelfrich.viewer import sources
 from run_files import fluid_and_solid, invoke
+from vtkhdf_files import read
 
 pytest.importorskip("mdtraj", reason="MDTraj is not installed")
 
@@ -157,6 +159,17 @@ class TestGSD:
         assert found.bonds.tolist() == [[0, 1]]
         assert found.vertices.tolist() == [[0, 0, 0], [11, 2, -9]]
         assert found.box.tolist() == [[10, 0, 0], [5.5, 11, 0], [0, 0, 12]]
+        trajectory = analysis.Trajectory(tmp_path / "a.gsd")
+        assert trajectory.triangles() is None and not trajectory.timed
+        assert trajectory.boxes().tolist() == [found.box.tolist()]
+        with pytest.raises(ValueError, match=r"a.gsd has no times; HOOMD writes steps only"):
+            trajectory.times()
+        with gsd.hoomd.open(str(tmp_path / "a.gsd"), "r+") as file:
+            frame.particles.N = 3
+            frame.particles.position = frame.particles.image = np.zeros((3, 3))
+            file.append(frame)
+        with pytest.raises(ValueError, match=r"a.gsd has frames of 2 and of 3 particles"):
+            trajectory.read()
 
     @pytest.mark.parametrize("options", [["--format", "gsd"], ["OUTPUT"]])
     def test_the_command_line(self, run, meshes, tmp_path, options):
@@ -170,6 +183,62 @@ class TestGSD:
         for frame, mesh in zip(found, meshes[1::3], strict=True):
             np.testing.assert_allclose(frame.vertices, mesh.vertices, rtol=0, atol=1e-3)
             assert np.array_equal(frame.triangles, mesh.triangles)
+
+    def test_a_trajectory_has_its_triangles(self, meshes, tmp_path):
+        path = tmp_path / "a.gsd"
+        vertices, triangles = arrays(meshes)
+        times, steps = 0.25 * np.arange(FRAMES), 7 * np.arange(FRAMES)
+        analysis.write_gsd(path, vertices, triangles, times, steps)
+        part = analysis.Trajectory(path, range(132), start=1, stop=9, stride=3)
+        np.testing.assert_allclose(part.read(), vertices[1:9:3, :132], rtol=1e-6)
+        assert part.times().tolist() == [0.25, 1, 1.75]
+        assert part.steps().tolist() == [7, 28, 49]
+        assert part.boxes() is None
+        assert np.array_equal(part.triangles(), triangles[1:9:3, :260])
+        whole = analysis.Trajectory(path)
+        found = analysis.shape(whole, whole.triangles()).area
+        np.testing.assert_allclose(found, analysis.shape(vertices, triangles).area, rtol=1e-6)
+        with pytest.raises(ValueError, match="bonds flipped in"):
+            analysis.shape(path, triangles[0])
+
+    def test_it_becomes_other_files(self, run, meshes, tmp_path):
+        """VTKHDF, the spectrum and the page of a GSD file are those of the run."""
+        h5py = pytest.importorskip("h5py", reason="h5py is not installed")
+        path = tmp_path / "a.gsd"
+        for words in (
+            ("frames", run, path),
+            ("frames", path),
+            ("frames", run, tmp_path / "b.vtkhdf"),
+        ):
+            result = invoke(*words)
+            assert result.exit_code == 0, result.output
+        with h5py.File(tmp_path / "a.vtkhdf") as one, h5py.File(tmp_path / "b.vtkhdf") as two:
+            for name in ("VTKHDF/Polygons/Connectivity", "VTKHDF/Steps/Values"):
+                assert np.array_equal(one[name], two[name])
+            assert np.array_equal(one["openmm-helfrich/step"], two["openmm-helfrich/step"])
+            np.testing.assert_allclose(one["VTKHDF/Points"], two["VTKHDF/Points"], rtol=1e-6)
+        words = ("--membrane", 0, "--lmax", 4)
+        spectra = [invoke("spectrum", source, *words) for source in (path, run / "run.xtc")]
+        assert spectra[0].exit_code == 0, spectra[0].output
+        rows = [
+            np.array([line.split()[:2] for line in found.output.splitlines()[2:]], dtype=float)
+            for found in spectra
+        ]
+        np.testing.assert_allclose(*rows, rtol=1e-4)
+        scene = sources.scene_of(path)
+        assert [frame.step for frame in scene.frames] == [4 * number for number in range(FRAMES)]
+
+    def test_a_surface_that_spans_its_box_becomes_vtkhdf(self, tmp_path):
+        pytest.importorskip("h5py", reason="h5py is not installed")
+        made = periodic_meshes()
+        vertices, triangles = arrays(made)
+        boxes = np.array([mesh.box for mesh in made])
+        analysis.write_gsd(tmp_path / "a.gsd", vertices, triangles, box=boxes)
+        analysis.write_vtkhdf(tmp_path / "a.vtkhdf", tmp_path / "a.gsd")
+        for step, mesh in zip(read(tmp_path / "a.vtkhdf"), made, strict=True):
+            points, corners = mesh.unfolded()
+            assert np.array_equal(step.triangles, corners)
+            np.testing.assert_allclose(step.points, points, rtol=0, atol=1e-4)
 
     def test_mistakes_leave_what_was_there(self, meshes, tmp_path):
         path = tmp_path / "a.gsd"
@@ -311,8 +380,8 @@ def test_mdtraj_reads_xtc_with_psf(run, meshes):
     assert pairs(bonds) == pairs(meshes[0].edges)
 
 
-class TestSTL:
-    """A sequence of files, each with its own triangles."""
+class TestSequences:
+    """A file for each frame, with its own triangles."""
 
     @pytest.fixture
     def folder(self, meshes, tmp_path):
@@ -322,6 +391,25 @@ class TestSTL:
         for number, mesh in enumerate(meshes):
             writer.write(number, 0, 0.0, [(mesh.vertices, mesh.triangles)])
         return tmp_path
+
+    @pytest.mark.parametrize("kind", ["ply", "obj", "stl", "vtk"])
+    def test_the_command_line(self, run, meshes, tmp_path, kind):
+        """Surfaces of an XTC file, in place of those of a longer run."""
+        for words in ((), ("--skip", 2, "--stride", 4, "--force")):
+            result = invoke("frames", run, tmp_path / "a", "--format", kind, *words)
+            assert result.exit_code == 0, result.output
+        assert result.output.endswith("a: 3 frames of 224 vertices\n")
+        names = [f"run_surface_{number:06d}.{kind}" for number in range(3)]
+        assert sorted(path.name for path in (tmp_path / "a").iterdir()) == names
+        for name, mesh in zip(names, meshes[2::4], strict=True):
+            found = helfrich.Mesh.read(tmp_path / "a" / name)
+            corners = found.vertices[found.triangles]
+            np.testing.assert_allclose(corners, mesh.vertices[mesh.triangles], rtol=0, atol=1e-3)
+        result = invoke("frames", run, tmp_path / "a" / names[0], "--format", kind, "--force")
+        assert result.exit_code == 1
+        assert "is no folder; give the name of a folder" in result.output
+        result = invoke("frames", run, tmp_path / "a", "--force")
+        assert "a is no file; give the name of a file" in result.output
 
     def test_trimesh(self, folder, meshes):
         import trimesh

@@ -12,6 +12,7 @@ chunks.
 """
 
 from . import theory
+from ._gsd import GSDFrame, read_gsd
 from .correlation import autocorrelation, autocorrelation_time, mode_autocorrelation
 from .crossings import crossings
 from .curvature import (
@@ -25,7 +26,7 @@ from .density import density_modes, structure_factor
 from .elements import edge_lengths, triangle_areas, triangle_heights
 from .extended_xyz import write_extended_xyz
 from .fits import DampingFit, ElasticFit, fit_damping, fit_young
-from .gsd_files import GSDFrame, read_gsd, write_gsd
+from .gsd_files import write_gsd
 from .harmonics import real_harmonics
 from .landscapes import Grid, landscape, plane_grid, sphere_grid
 from .lifetime import Lifetime, time_to_failure

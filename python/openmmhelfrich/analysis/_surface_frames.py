@@ -44,9 +44,12 @@ def each_surface(
         vertices = Trajectory(vertices)
     if isinstance(vertices, Trajectory):
         triangles = vertices.triangles() if triangles is None else triangles
-        if vertices.suffix == ".xtc":
+        if vertices.timed:
             times = vertices.times() if times is None else times
             steps = vertices.steps() if steps is None else steps
+        if vertices.suffix == ".gsd":
+            # Of a file of ours it is there only if the surface lives in it.
+            box = vertices.boxes() if box is None else box
     if triangles is None:
         raise ValueError(f"{where}: need triangles; there is no file of them to take")
     box = box_of(box, vertices, triangles)

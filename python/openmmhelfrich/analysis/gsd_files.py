@@ -6,37 +6,16 @@ The format and its chunks: https://gsd.readthedocs.io/en/stable/schema-hoomd.htm
 from __future__ import annotations
 
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
+from ._gsd import import_gsd
 from ._surface_frames import Types, each_surface, fresh_file
 from .curvature import vertex_quantities
 from .elements import edges_of
 from .surface_series import SurfaceFrame
 
-__all__ = ["GSDFrame", "read_gsd", "write_gsd"]
-
-
-class GSDFrame(NamedTuple):
-    """One frame of a GSD file, as `read_gsd` returns it."""
-
-    step: int
-    """Of the simulation."""
-    time: float | None
-    """ps; None in a file of another program."""
-    vertices: np.ndarray
-    """Shape (num_vertices, 3), nm, with the images of the periodic box undone."""
-    triangles: np.ndarray | None
-    """Shape (num_triangles, 3); None in a file of another program."""
-    bonds: np.ndarray
-    """Pairs of vertices, shape (num_bonds, 2): the edges."""
-    box: np.ndarray | None
-    """The periodic box, shape (3, 3), nm, in OpenMM's form; None without one."""
-    types: np.ndarray
-    """Kind of each vertex, from 0, shape (num_vertices,)."""
-    masses: np.ndarray
-    """amu, shape (num_vertices,)."""
+__all__ = ["write_gsd"]
 
 
 def write_gsd(
@@ -83,7 +62,7 @@ def write_gsd(
     --------
     >>> write_gsd("run.gsd", "run/run.xtc")  # with run/run.triangles beside it
     """
-    hoomd = _import_gsd("write_gsd")
+    hoomd = import_gsd("write_gsd")
     path = Path(path)
     if path.suffix.lower() != ".gsd":
         raise ValueError(f"write_gsd: {path}: the suffix must be .gsd")
@@ -97,40 +76,6 @@ def write_gsd(
             file.append(frames.next(frame))
 
         return each_surface("write_gsd", add, vertices, triangles, times, steps, box)
-
-
-def read_gsd(path) -> list[GSDFrame]:
-    """The frames of a GSD file, of `write_gsd` or of HOOMD.
-
-    Parameters
-    ----------
-    path : str or Path
-
-    Returns
-    -------
-    list of GSDFrame
-        All of them, in memory.
-
-    Raises
-    ------
-    FileNotFoundError
-        There is no such file.
-    ImportError
-        Without the package gsd.
-    ValueError
-        It is no GSD file, or is damaged.
-    """
-    hoomd = _import_gsd("read_gsd")
-    path = Path(path)
-    if not path.is_file():
-        raise FileNotFoundError(f"read_gsd: there is no file {path}")
-    try:
-        with hoomd.open(name=str(path), mode="r") as file:
-            return [_read(frame) for frame in file]
-    except (OSError, RuntimeError, KeyError) as reason:
-        raise ValueError(
-            f"read_gsd: {path} is no GSD file of particles, or is damaged ({reason}); write it anew"
-        ) from None
 
 
 class _Frames:
@@ -191,36 +136,3 @@ def _lengths_and_tilts(box: np.ndarray) -> np.ndarray:
     """HOOMD's Lx, Ly, Lz, xy, xz, yz of vectors of OpenMM's reduced form, shape (6,)."""
     x, y, z = np.diag(box)
     return np.array([x, y, z, box[1, 0] / y, box[2, 0] / z, box[2, 1] / z], dtype=np.float32)
-
-
-def _vectors(box: np.ndarray) -> np.ndarray:
-    """Box vectors, shape (3, 3), of HOOMD's six numbers."""
-    x, y, z, xy, xz, yz = box.astype(float)
-    return np.array([[x, 0, 0], [xy * y, y, 0], [xz * z, yz * z, z]])
-
-
-def _read(frame) -> GSDFrame:
-    box = _vectors(frame.configuration.box)
-    log, particles = frame.log, frame.particles
-    triangles = log.get("triangles")
-    return GSDFrame(
-        int(frame.configuration.step),
-        float(log["time"][0]) if "time" in log else None,
-        particles.position.astype(float) + particles.image @ box,
-        None if triangles is None else triangles.astype(np.int64),
-        frame.bonds.group.astype(np.int64),
-        box if "periodic" not in log or log["periodic"][0] else None,
-        particles.typeid.astype(np.int64),
-        particles.mass.astype(float),
-    )
-
-
-def _import_gsd(where: str):
-    try:
-        import gsd.hoomd
-    except ImportError as reason:
-        raise ImportError(
-            f"{where}: GSD files need the package gsd; install it with "
-            f"'pip install openmm-helfrich[gsd]' ({reason})"
-        ) from None
-    return gsd.hoomd

@@ -29,9 +29,10 @@ def write_vtkhdf(path, vertices, triangles=None, times=None, steps=None, *, box=
     triangles : array_like of int or Mesh, optional
         Shape (num_triangles, 3), or (num_frames, num_triangles, 3) if each frame has its own;
         counter-clockwise seen from outside, surfaces that all vertices belong to. Default: those of
-        ``<name>.triangles`` beside a trajectory.
+        a GSD file or of ``<name>.triangles`` beside a trajectory.
     times : array_like, optional
-        ps, ascending, shape (num_frames,). Default: those of an XTC file, or else 0, 1, 2, …
+        ps, ascending, shape (num_frames,). Default: those of an XTC or GSD file, or else 0, 1, 2,
+        …
     steps : array_like of int, optional
         Steps of the simulation, shape (num_frames,), with defaults as for `times`.
     box : array_like or Quantity, optional
