@@ -77,6 +77,8 @@ def fresh_file(path: Path) -> Iterator[Path]:
     fresh = path.with_name(f".{path.name}.{os.getpid()}.new")
     try:
         yield fresh
+        with fresh.open("rb") as file:
+            os.fsync(file.fileno())
         os.replace(fresh, path)
     except OSError as reason:
         if reason.errno is None:
@@ -85,6 +87,8 @@ def fresh_file(path: Path) -> Iterator[Path]:
             raise OSError(reason.errno, reason.strerror) from None
     finally:
         with contextlib.suppress(OSError):
+            # A library that fails to close it would keep its space until the process ends.
+            os.truncate(fresh, 0)
             fresh.unlink()
 
 
