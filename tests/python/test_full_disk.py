@@ -372,3 +372,21 @@ class TestFromPython:
         with pytest.raises(OSError, match="see whether its folder") as error:
             Cache(tmp_path / "results").save("name", "key", {}, {"x": 1})
         assert str(tmp_path / "results") in error.value.filename
+
+
+@pytest.mark.parametrize("name", ["a.gsd", "a.xyz"])
+def test_frames_of_a_surface_on_a_full_disk(small_disk, name):
+    """The old file stays, and the space of the new one is free again."""
+    if name == "a.gsd":
+        pytest.importorskip("gsd.hoomd", reason="gsd is not installed")
+    write = {"a.gsd": analysis.write_gsd, "a.xyz": analysis.write_extended_xyz}[name]
+    mesh = Mesh.random_sphere(1002, 400, seed=5)
+    path = small_disk("64k") / name
+    path.write_bytes(b"mine")
+    free = os.statvfs(path).f_bavail
+    with pytest.raises(OSError, match="No space left on device; free some space there") as error:
+        write(path, np.stack([mesh.vertices] * 50), mesh)
+    assert error.value.filename == str(path)
+    assert path.read_bytes() == b"mine"
+    assert os.listdir(path.parent) == [name]
+    assert os.statvfs(path).f_bavail == free

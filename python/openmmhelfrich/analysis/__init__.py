@@ -12,6 +12,7 @@ chunks.
 """
 
 from . import theory
+from ._gsd import GSDFrame, read_gsd
 from .correlation import autocorrelation, autocorrelation_time, mode_autocorrelation
 from .crossings import crossings
 from .curvature import (
@@ -23,7 +24,9 @@ from .curvature import (
 )
 from .density import density_modes, structure_factor
 from .elements import edge_lengths, triangle_areas, triangle_heights
+from .extended_xyz import write_extended_xyz
 from .fits import DampingFit, ElasticFit, fit_damping, fit_young
+from .gsd_files import write_gsd
 from .harmonics import real_harmonics
 from .landscapes import Grid, landscape, plane_grid, sphere_grid
 from .lifetime import Lifetime, time_to_failure
@@ -49,6 +52,7 @@ __all__ = [
     "DampingFit",
     "ElasticFit",
     "Estimate",
+    "GSDFrame",
     "Grid",
     "Lifetime",
     "MeanShape",
@@ -75,6 +79,7 @@ __all__ = [
     "mode_amplitudes",
     "mode_autocorrelation",
     "plane_grid",
+    "read_gsd",
     "read_modes",
     "read_table",
     "read_triangles",
@@ -90,5 +95,7 @@ __all__ = [
     "triangle_areas",
     "triangle_heights",
     "vertex_quantities",
+    "write_extended_xyz",
+    "write_gsd",
     "write_vtkhdf",
 ]

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
 from .._numbers import whole_number
+from ._gsd import GSDFrame, frames_in
 from .elements import edges_of
 
 __all__ = ["Trajectory", "read_triangles"]
 
-_SUFFIXES = (".xtc", ".dcd", ".pdb")
+_SUFFIXES = (".xtc", ".dcd", ".pdb", ".gsd")
 _ANGSTROM = 0.1  # nm
 
 
@@ -58,12 +60,13 @@ def read_triangles(path, num_triangles: int) -> np.ndarray:
 
 
 class Trajectory:
-    """Positions in an XTC, DCD or PDB file, which is read in chunks and never as a whole.
+    """Positions in an XTC, DCD, PDB or GSD file, which is read in chunks and never as a whole.
 
     All functions of this package that take vertices take a `Trajectory`, or the path of one, in
     place of an array, and refuse one set of triangles for all frames where bonds flipped: pass
     `triangles()` then. XTC and DCD need no topology. The files are read by MDTraj, which is
-    installed with ``pip install openmm-helfrich[trajectories]``; a PDB file is one chunk.
+    installed with ``pip install openmm-helfrich[trajectories]``, and GSD by the package gsd, with
+    ``openmm-helfrich[gsd]``; a PDB file is one chunk.
 
     Parameters
     ----------
@@ -80,7 +83,7 @@ class Trajectory:
     FileNotFoundError
         There is no such file.
     ImportError
-        MDTraj is not installed.
+        MDTraj, or gsd for a GSD file, is not installed.
     ValueError
         The extension is another one, a number is out of range, or the file has no frames.
 
@@ -158,13 +161,27 @@ class Trajectory:
         Raises
         ------
         ValueError
-            The file is no XTC file; the others store none.
+            The file is no XTC or GSD file, which store them, or a GSD file of another program.
         """
+        if self.suffix == ".gsd":
+            found = [frame.time for frame in self._chosen_gsd()]
+            if None in found:
+                raise ValueError(f"Trajectory: {self.path} has no times; HOOMD writes steps only")
+            return np.array(found)
         return self._column(1, "times").astype(float)
 
     def steps(self) -> np.ndarray:
         """The step of the simulation of each frame, shape (num_frames,); errors as for `times`."""
+        if self.suffix == ".gsd":
+            return np.array([frame.step for frame in self._chosen_gsd()])
         return self._column(2, "steps").astype(np.int64)
+
+    @property
+    def timed(self) -> bool:
+        """Whether the file has the time of each frame, and its step."""
+        if self.suffix == ".gsd":
+            return next(self._gsd()).time is not None
+        return self.suffix == ".xtc"
 
     def boxes(self) -> np.ndarray | None:
         """The periodic box of each frame, nm, shape (num_frames, 3, 3).
@@ -172,6 +189,9 @@ class Trajectory:
         None if the file has none, or has boxes of no size, as XTC files without a box do. All
         functions of this package that take `box=` take it.
         """
+        if self.suffix == ".gsd":
+            boxes = [frame.box for frame in self._chosen_gsd()]
+            return None if any(box is None for box in boxes) else np.stack(boxes)
         if self.suffix == ".xtc":
             found = self._rows(3)
         elif self.suffix == ".dcd":
@@ -207,7 +227,7 @@ class Trajectory:
         return None if found[0] is None else np.concatenate(found)
 
     def triangles(self, num_triangles=None) -> np.ndarray | None:
-        """The triangles of each frame, from the file ``<name>.triangles`` beside this one.
+        """The triangles of each frame, of a GSD file or of ``<name>.triangles`` beside this one.
 
         Parameters
         ----------
@@ -219,7 +239,7 @@ class Trajectory:
         ndarray of int, or None
             Shape (num_frames, num_triangles, 3), of the chosen frames, as indices among the chosen
             particles; triangles of other particles are left out. None if there is no such file:
-            bonds did not flip.
+            bonds did not flip. A GSD file of `write_gsd` has its own.
 
         Raises
         ------
@@ -232,6 +252,9 @@ class Trajectory:
         >>> trajectory = Trajectory("run/run.xtc", stride=10)
         >>> modes = mode_amplitudes(trajectory, trajectory.triangles(), lmax=10)
         """
+        if self.suffix == ".gsd" and next(self._gsd()).triangles is not None:
+            found = [frame.triangles for frame in self._chosen_gsd()]
+            return self._among_particles(np.stack(found), self.path)
         path = self.path.with_suffix(".triangles")
         if not path.is_file():
             return None
@@ -287,6 +310,11 @@ class Trajectory:
 
     def _blocks(self, size):
         """All frames of the file, in nm."""
+        if self.suffix == ".gsd":
+            frames = self._gsd()
+            while block := list(itertools.islice(frames, size)):
+                yield np.stack([frame.vertices for frame in block])
+            return
         formats = _mdtraj_formats()
         try:
             if self.suffix == ".pdb":
@@ -302,6 +330,21 @@ class Trajectory:
                     yield positions * scale
         except (OSError, RuntimeError) as reason:
             raise ValueError(f"Trajectory: {self.path} cannot be read: {reason}") from None
+
+    def _gsd(self) -> Iterator[GSDFrame]:
+        """All frames of a GSD file."""
+        count = None
+        for frame in frames_in(self.path, "Trajectory"):
+            found = len(frame.vertices)
+            if found != (count := count or found):
+                raise ValueError(
+                    f"Trajectory: {self.path} has frames of {count} and of {found} particles; need "
+                    "the same number in all"
+                )
+            yield frame
+
+    def _chosen_gsd(self) -> Iterator[GSDFrame]:
+        return itertools.islice(self._gsd(), self.start, self.stop, self.stride)
 
     def _opened(self):
         formats = _mdtraj_formats()

@@ -1,7 +1,8 @@
-"""``openmm-helfrich frames``: the surfaces of a finished run in one file for ParaView."""
+"""``openmm-helfrich frames``: the surfaces of a finished run for ParaView, OVITO or HOOMD."""
 
 from __future__ import annotations
 
+import itertools
 from pathlib import Path
 
 import click
@@ -10,10 +11,21 @@ from .trajectory import open_trajectory
 
 __all__ = ["frames"]
 
+# By format; the first is that of a name that is not given.
+_SUFFIXES = {"vtkhdf": (".vtkhdf",), "gsd": (".gsd",), "xyz": (".xyz", ".extxyz")}
+# A file for each frame, in a folder.
+_SEQUENCES = ("ply", "obj", "stl", "vtk")
+
 
 @click.command()
 @click.argument("source", type=click.Path(path_type=Path, exists=True))
-@click.argument("output", required=False, type=click.Path(path_type=Path, dir_okay=False))
+@click.argument("output", required=False, type=click.Path(path_type=Path))
+@click.option(
+    "--format",
+    "kind",
+    type=click.Choice([*_SUFFIXES, *_SEQUENCES]),
+    help="What to write.  [default: as OUTPUT ends, or else vtkhdf]",
+)
 @click.option(
     "--mesh",
     "mesh_path",
@@ -28,28 +40,68 @@ __all__ = ["frames"]
 @click.option("--skip", type=click.IntRange(0), default=0, help="Frames to leave out at the start.")
 @click.option("--stride", type=click.IntRange(1), default=1, help="Take every so many frames.")
 @click.option("--force", is_flag=True, help="Overwrite OUTPUT.")
-def frames(source, output, mesh_path, membrane, skip, stride, force):
-    """Write the surfaces of the trajectory SOURCE to OUTPUT as VTKHDF, which ParaView opens.
+def frames(source, output, kind, mesh_path, membrane, skip, stride, force):
+    """Write the surfaces of the trajectory SOURCE to OUTPUT, with the triangles of each frame.
 
-    SOURCE is an XTC, DCD or PDB file, or the folder of a run. Where bonds flipped, the triangles of
-    each frame are those of NAME.triangles beside NAME.xtc; without that file --mesh has them.
-    OUTPUT is NAME.vtkhdf beside it if it is not given. Vertices get mean curvatures, areas and
-    numbers of neighbours. A run that is still to come writes the same, in double precision, with
-    'run --frames vtkhdf'. Needs h5py.
+    SOURCE is an XTC, DCD, PDB or GSD file, or the folder of a run. Where bonds flipped, the
+    triangles of each frame are those of NAME.triangles beside NAME.xtc; without that file --mesh
+    has them. A GSD file has its own.
+
+    OUTPUT is beside it if it is not given: NAME.vtkhdf for ParaView (needs h5py), NAME.gsd for
+    HOOMD and OVITO (needs gsd), with edges as bonds, or NAME.xyz, extended XYZ for OVITO, whose
+    surfaces are not in it. PLY, OBJ, STL and VTK are files NAME_surface_000000.obj, … in the folder
+    OUTPUT, or NAME_obj. Vertices get mean curvatures, areas and numbers of neighbours, but in
+    OBJ and STL. A run that is still to come writes VTKHDF and meshes itself, in double precision,
+    with 'run --frames'.
     """
     from .. import analysis
     from ..errors import MeshError
 
+    writers = {
+        "vtkhdf": analysis.write_vtkhdf,
+        "gsd": analysis.write_gsd,
+        "xyz": analysis.write_extended_xyz,
+    }
     source = _trajectory_in(source)
-    output = output or source.with_suffix(".vtkhdf")
+    kind = kind or _kind_of(output)
+    if output is None and kind in _SEQUENCES:
+        output = source.with_name(f"{source.stem}_{kind}")
+    output = output or source.with_suffix(_SUFFIXES[kind][0])
+    if output.exists() and output.is_dir() != (kind in _SEQUENCES):
+        wanted = "folder" if kind in _SEQUENCES else "file"
+        raise click.ClickException(f"{output} is no {wanted}; give the name of a {wanted}")
     if output.exists() and not force:
         raise click.ClickException(f"{output} is there already; overwrite it with --force")
     try:
         found = open_trajectory(source, mesh_path, membrane, skip, stride, several=True)
-        count = analysis.write_vtkhdf(output, *found)
+        if kind in _SEQUENCES:
+            count = _write_sequence(output, kind, source.stem, *found)
+        else:
+            count = writers[kind](output, *found)
     except (ValueError, TypeError, ImportError, MeshError) as reason:
         raise click.ClickException(str(reason)) from None
     click.echo(f"wrote {output}: {count} frames of {found[0].num_vertices} vertices")
+
+
+def _write_sequence(folder: Path, kind: str, name: str, trajectory, triangles) -> int:
+    """A mesh for each frame in a folder, in place of those there; returns how many."""
+    from ..analysis._surface_frames import each_surface
+    from ..vcm.frames import MeshFrames
+
+    writer, numbers = MeshFrames(folder, name, kind, ["surface"]), itertools.count()
+    writer.remove_from(0)
+
+    def add(frame):
+        surface = [(frame.vertices, frame.triangles)]
+        writer.write(next(numbers), frame.step, frame.time, surface, frame.box)
+
+    return each_surface("frames", add, trajectory, triangles)
+
+
+def _kind_of(output: Path | None) -> str:
+    """The format that a name ends with; VTKHDF of any other."""
+    suffix = "" if output is None else output.suffix.lower()
+    return next((kind for kind, ends in _SUFFIXES.items() if suffix in ends), "vtkhdf")
 
 
 def _trajectory_in(source: Path) -> Path:

@@ -73,9 +73,10 @@ def spectrum(
 ):
     """Print the fluctuation spectrum of SOURCE beside the theory.
 
-    SOURCE is a trajectory (.xtc, .dcd, .pdb) or what a ModeReporter wrote (.csv, .h5). Where bonds
-    flipped, the triangles of each frame of NAME.xtc are those in NAME.triangles beside it; without
-    that file --mesh has them. The errors account for correlation in time.
+    SOURCE is a trajectory (.xtc, .dcd, .pdb, .gsd) or what a ModeReporter wrote (.csv, .h5). Where
+    bonds flipped, the triangles of each frame of NAME.xtc are those in NAME.triangles beside it,
+    and a GSD file has its own; without them --mesh has them. The errors account for correlation in
+    time.
     """
     # The package takes a second to load, which --help need not wait for.
     from .. import analysis

@@ -100,9 +100,9 @@ KEYS: tuple[Key, ...] = (
     Key("output", "interval", number(above=0), 100.0, "Time between frames, ps, in whole steps."),
     Key("output", "xtc", boolean, True, "Write a trajectory `<name>.xtc`."),
     Key("output", "frames", choice(FRAMES), "none",
-        "Write a mesh per vesicle and frame: `\"ply\"`, `\"obj\"` or `\"vtk\"`, or one file of "
-        "all for ParaView: `\"vtkhdf\"`. PLY, VTK and VTKHDF have the vertices' mean curvatures "
-        "and areas; OVITO reads OBJ and VTK."),
+        "Write a mesh per vesicle and frame: `\"ply\"`, `\"obj\"`, `\"stl\"` or `\"vtk\"`, or one "
+        "file of all for ParaView: `\"vtkhdf\"`. PLY, VTK and VTKHDF have the vertices' mean "
+        "curvatures and areas; OVITO reads OBJ, STL and VTK."),
     Key("output", "ply", boolean, False, "Short for `frames = \"ply\"`."),
     Key("output", "text", choices(_TEXTS), (),
         "Text files: an array of " + ", ".join(f"`\"{name}\"`" for name in _TEXTS) + "."),

@@ -19,7 +19,7 @@ __all__ = ["FRAMES", "MeshFrames", "SeriesFrames", "frames_writer"]
 Part = tuple[np.ndarray, np.ndarray]
 
 #: What frames can be written as; "none" writes none.
-FRAMES = ("none", "ply", "obj", "vtk", "vtkhdf")
+FRAMES = ("none", "ply", "obj", "stl", "vtk", "vtkhdf")
 # Formats that have room for values of the vertices.
 _WITH_DATA = ("ply", "vtk")
 
@@ -113,7 +113,7 @@ class MeshFrames:
     name : str
         How all names begin.
     kind : str
-        ``ply``, ``obj`` or ``vtk``.
+        ``ply``, ``obj``, ``stl`` or ``vtk``.
     labels : iterable of str
         Of the membranes.
     """

@@ -28,7 +28,7 @@ __all__ = ["add_context", "scene_of"]
 # A page of so many positions has about 30 MB, and more frames than that nobody looks at.
 _MOST_POSITIONS = 2_000_000
 _MOST_FRAMES = 2000
-_TRAJECTORIES = (".xtc", ".dcd", ".pdb")
+_TRAJECTORIES = (".xtc", ".dcd", ".pdb", ".gsd")
 
 # Columns of a run's table.
 _ENERGY = " (kJ/mol)"
@@ -217,12 +217,18 @@ def _positions(path: Path):
         return frames, steps, times, boxes if boxes.any(axis=2).all() else None
     trajectory = Trajectory(path)
     frames = trajectory.read()
-    numbers = np.arange(len(frames))
-    return frames, numbers, numbers, trajectory.boxes()
+    steps = times = np.arange(len(frames))
+    if trajectory.timed:
+        steps, times = trajectory.steps(), trajectory.times()
+    return frames, steps, times, trajectory.boxes()
 
 
 def _triangles_beside(path: Path, num_particles: int, num_frames: int, mesh):
     """Triangles, of each frame or of all, and the box of the mesh."""
+    if path.suffix.lower() == ".gsd":
+        trajectory = Trajectory(path)
+        if (own := trajectory.triangles()) is not None:
+            return own, trajectory.boxes()
     start = path.with_suffix(".ply")
     flowing = path.with_suffix(".triangles")
     box = triangles = None
