@@ -33,7 +33,7 @@ def results(tmp_path_factory):
     """A folder of results of two figures, and what the scripts printed."""
     folder = tmp_path_factory.mktemp("paper")
     # The first on the workers of a Dask scheduler, the second in one process.
-    with dask_cluster(tmp_path_factory.mktemp("dask"), 2) as (address, _):
+    with dask_cluster(tmp_path_factory.mktemp("dask"), 2) as (address, *_):
         at = ("--scheduler", address)
         text = run("sm03_distributions.py", "--quick", "--results", folder, *at).stdout
     text += run("fig04_deformation.py", "--quick", "--results", folder, "--workers", 0).stdout
