@@ -385,7 +385,7 @@ class TestSequences:
 
     @pytest.fixture
     def folder(self, meshes, tmp_path):
-        from openmmhelfrich.vcm.frames import MeshFrames
+        from openmmhelfrich.simulation.frames import MeshFrames
 
         writer = MeshFrames(tmp_path, "run", "stl", ["m"])
         for number, mesh in enumerate(meshes):

@@ -86,7 +86,7 @@ def frames(source, output, kind, mesh_path, membrane, skip, stride, force):
 def _write_sequence(folder: Path, kind: str, name: str, trajectory, triangles) -> int:
     """A mesh for each frame in a folder, in place of those there; returns how many."""
     from ..analysis._surface_frames import each_surface
-    from ..vcm.frames import MeshFrames
+    from ..simulation.frames import MeshFrames
 
     writer, numbers = MeshFrames(folder, name, kind, ["surface"]), itertools.count()
     writer.remove_from(0)
