@@ -83,6 +83,13 @@ def _outline():
     return radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
 
 
+def _round_the_vertex(points, triangles):
+    """The corners of the triangles at vertex 0, from there on."""
+    for corners in triangles:
+        if 0 in corners:
+            yield points[np.roll(corners, -int(np.flatnonzero(corners == 0)[0]))]
+
+
 def _ring(ax, letter):
     """A vertex, its edges and the triangles around it."""
     points, triangles = _draw_patch(ax, lambda k, corners: "#fed7aa" if 0 in corners else _FILL)
@@ -95,13 +102,10 @@ def _ring(ax, letter):
 def _plaquette(ax, letter):
     """A third of the triangles around a vertex."""
     points, triangles = _draw_patch(ax)
-    for corners in triangles:
-        if 0 in corners:
-            turn = np.roll(corners, -int(np.flatnonzero(corners == 0)[0]))
-            a, b, c = points[turn]
-            corner = [a, (a + b) / 2, (a + b + c) / 3, (a + c) / 2]
-            ax.add_patch(Polygon(corner, facecolor="#fed7aa", edgecolor="none"))
-            ax.plot(*np.transpose(corner[1:]), color=_MARK, lw=1.2)
+    for a, b, c in _round_the_vertex(points, triangles):
+        corner = [a, (a + b) / 2, (a + b + c) / 3, (a + c) / 2]
+        ax.add_patch(Polygon(corner, facecolor="#fed7aa", edgecolor="none"))
+        ax.plot(*np.transpose(corner[1:]), color=_MARK, lw=1.2)
     ax.plot(*points[0], "o", color=_MARK, ms=5)
     _say(ax, points[0] + (0.12, 0.1), letter)
 
@@ -152,13 +156,10 @@ def _border(ax, letter):
 
 def _angles(ax, letter):
     points, triangles = _draw_patch(ax)
-    for corners in triangles:
-        if 0 in corners:
-            turn = np.roll(corners, -int(np.flatnonzero(corners == 0)[0]))
-            a, b, c = points[turn]
-            steps = np.linspace(0, 1, 9)[:, None]
-            arc = a + 0.2 * _unit((1 - steps) * _unit(b - a) + steps * _unit(c - a))
-            ax.plot(*arc.T, color=_MARK, lw=1.4)
+    for a, b, c in _round_the_vertex(points, triangles):
+        steps = np.linspace(0, 1, 9)[:, None]
+        arc = a + 0.2 * _unit((1 - steps) * _unit(b - a) + steps * _unit(c - a))
+        ax.plot(*arc.T, color=_MARK, lw=1.4)
     _say(ax, points[0] + (0.32, 0.08), letter)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+
 import openmm as mm
 import pytest
 from flowing import measure
@@ -15,23 +17,23 @@ def step(context: mm.Context, count: int) -> mm.Context:
     return context
 
 
-class ForeignStates:
+class ForeignStates(ABC):
     """Where what a mover moves is not saved, that is noticed."""
 
     #: What the message says.
     foreign: str
 
+    @abstractmethod
     def made(self, target):
         """A Context at the start, and its mover."""
-        raise NotImplementedError
 
+    @abstractmethod
     def moved(self, context, mover):
         """What the mover has come to."""
-        raise NotImplementedError
 
+    @abstractmethod
     def put(self, context, mover, moved):
         """Go on from there."""
-        raise NotImplementedError
 
     @pytest.mark.parametrize("target", ELSEWHERE, ids=str)
     @pytest.mark.parametrize("evaluate", [True, False])
@@ -73,16 +75,16 @@ class ForeignStates:
         step(context, 1)
 
 
-class SameBits:
+class SameBits(ABC):
     """Of the same seed, on any number of threads."""
 
+    @abstractmethod
     def made(self, target, integrator, seed):
         """A Context at the start."""
-        raise NotImplementedError
 
+    @abstractmethod
     def bits(self, context):
         """All of a Context, and what has been moved."""
-        raise NotImplementedError
 
     @pytest.mark.parametrize("platform", ["Reference", "Helfrich"])
     def test_of_the_same_seed(self, platform):

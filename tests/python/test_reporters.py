@@ -7,6 +7,7 @@ import numpy as np
 import openmm
 import pytest
 from click.testing import CliRunner
+from kills import Killed, killed_at
 from openmm import app, unit
 from openmmhelfrich import MembraneReporter, Mesh, ModeReporter, Vesicle, analysis
 from openmmhelfrich.analysis import theory
@@ -416,10 +417,6 @@ class TestCommand:
             assert "Traceback" not in result.output
 
 
-class Killed(BaseException):
-    """Stands for a kill: nothing may catch it."""
-
-
 COLUMNS = {name: "" for name in ("step", "time", "x")}
 
 
@@ -437,18 +434,7 @@ class TestHdf5:
             table = open_table(path, COLUMNS, append=False)
             for number in range(rows):
                 table.add([number, 0.5, 2.0])
-            count = 0
-
-            def write(file, data, wanted=moment):
-                nonlocal count
-                count += 1
-                if count > wanted:
-                    file.write(data[: len(data) // 2])
-                    raise Killed
-                file.write(data)
-
-            with monkeypatch.context() as patch:
-                patch.setattr("openmmhelfrich._journal._write_all", write)
+            with killed_at(monkeypatch, moment):
                 try:
                     table.add([rows, 0.5, 2.0])
                 except Killed:

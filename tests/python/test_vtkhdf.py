@@ -10,6 +10,7 @@ import numpy as np
 import openmm
 import openmmhelfrich as helfrich
 import pytest
+from kills import Killed, killed_at
 from openmm import app
 from openmmhelfrich import VTKHDFReporter, analysis
 from openmmhelfrich._journal import JournaledFile
@@ -111,10 +112,6 @@ class TestSeries:
             SurfaceSeries(path).steps()
 
 
-class Killed(BaseException):
-    """Stands for a kill: nothing may catch it."""
-
-
 class TestJournal:
     """A kill at every moment of an addition: the file has the frames before, or the new ones."""
 
@@ -128,18 +125,7 @@ class TestJournal:
             series = SurfaceSeries(path)
             series.remove()
             series.add(frames[:before])
-            count = 0
-
-            def write(file, data, wanted=moment):
-                nonlocal count
-                count += 1
-                if count > wanted:
-                    file.write(data[: len(data) // 2])
-                    raise Killed
-                file.write(data)
-
-            with monkeypatch.context() as patch:
-                patch.setattr("openmmhelfrich._journal._write_all", write)
+            with killed_at(monkeypatch, moment):
                 try:
                     series.add(frames[before:])
                 except Killed:

@@ -5,6 +5,10 @@
 //! on borders come last. Triangles follow
 //! the vertices. The user's order is kept outside: `particles`, `vertex_ids` and `triangle_ids` translate.
 
+mod edges;
+#[cfg(test)]
+mod tests;
+
 use super::ghosts::Ghosts;
 use crate::lanes::BLOCK;
 use crate::lanes::tiles::TILE;
@@ -305,149 +309,5 @@ impl Layout {
             });
         }
         triangles
-    }
-
-    /// For each step and lane, where the edge opposite the vertex in the triangle is a step of its own: the
-    /// index of step and lane. Built when first asked for.
-    pub fn opposite(&self) -> &[[u32; BLOCK]] {
-        self.opposite.get_or_init(|| {
-            let nothing = 4 * self.triangle_ids.len() as u32;
-            let mut index_of_place = vec![0u32; nothing as usize];
-            for (step, lanes) in self.places.iter().enumerate() {
-                for (lane, &place) in lanes.iter().enumerate() {
-                    let block = self.steps.partition_point(|&start| start as usize <= step) - 1;
-                    let filling = block * BLOCK + lane >= self.num_vertices;
-                    if place != nothing && !filling {
-                        index_of_place[place as usize] = (step * BLOCK + lane) as u32;
-                    }
-                }
-            }
-            // The side opposite place k runs from place k + 1 to place k + 2.
-            let of = |&place: &u32| match place {
-                place if place == nothing => 0,
-                place => index_of_place[(place & !3) as usize + ((place & 3) as usize + 1) % 3],
-            };
-            self.places.iter().map(|lanes| std::array::from_fn(|lane| of(&lanes[lane]))).collect()
-        })
-    }
-
-    /// For each step and lane, the place of the edge among all edges in lexicographic order of the particles at their
-    /// ends; [`NONE`] where the step has no dihedral angle: at borders, and where a ring has ended. Built when first asked
-    /// for.
-    pub fn edge_names(&self) -> &[[u32; BLOCK]] {
-        self.edge_names.get_or_init(|| {
-            let particle = |offset: u32| {
-                let place = offset as usize / 4;
-                let ghost = place.checked_sub(self.vertex_ids.len());
-                self.particles[ghost.map_or(place, |ghost| self.ghosts.vertex_and_shift(ghost).0)]
-            };
-            let ends = |a: u32, b: u32| {
-                let (a, b) = (particle(a), particle(b));
-                [a.min(b), a.max(b)]
-            };
-            let mut all: Vec<[u32; 2]> = self
-                .corners
-                .iter()
-                .flat_map(|block| {
-                    (0..BLOCK).flat_map(move |lane| {
-                        (0..3).map(move |k| ends(block[k][lane], block[(k + 1) % 3][lane]))
-                    })
-                })
-                .collect();
-            all.sort_unstable();
-            all.dedup();
-            let nothing = 4 * self.triangle_ids.len() as u32;
-            let mut names = vec![[NONE; BLOCK]; self.places.len()];
-            for vertex in 0..self.num_vertices {
-                let (block, lane) = (vertex / BLOCK, vertex % BLOCK);
-                let mut before = self.before[block][lane];
-                for step in self.steps[block] as usize..self.steps[block + 1] as usize {
-                    let place = self.places[step][lane];
-                    if place == nothing {
-                        break;
-                    }
-                    let triangle = place & !3;
-                    // At its first edge, the ring of a vertex on a border has its first triangle on both sides.
-                    if triangle != before {
-                        let edge = ends(4 * vertex as u32, self.neighbours[step][lane]);
-                        let name = all.binary_search(&edge).expect("a side of a triangle");
-                        names[step][lane] = name as u32;
-                    }
-                    before = triangle;
-                }
-            }
-            names
-        })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::mesh::Topology;
-    use crate::mesh::numbering::breadth_first;
-    use crate::mesh::triangulation::Turn;
-    use crate::test_meshes::icosahedron;
-
-    fn icosahedral() -> Layout {
-        let mesh = Triangulation::new(&Topology::new(&icosahedron().1, 12).unwrap());
-        Layout::new(&mesh, &breadth_first(&mesh))
-    }
-
-    #[test]
-    fn an_update_is_as_good_as_a_new_layout() {
-        let mut mesh = Triangulation::new(&Topology::new(&icosahedron().1, 12).unwrap());
-        let order = breadth_first(&mesh);
-        let mut layout = Layout::new(&mesh, &order);
-        for half in [0, 7, 33, 12] {
-            mesh.flip(&mesh.quad(half), Turn::Left);
-            layout.update(&mesh, &order);
-            let anew = Layout::new(&mesh, &order);
-            assert_eq!(layout.vertex_ids, anew.vertex_ids);
-            assert_eq!(layout.triangle_ids, anew.triangle_ids);
-            assert_eq!((&layout.neighbours, &layout.places), (&anew.neighbours, &anew.places));
-            assert_eq!((&layout.steps, &layout.corners), (&anew.steps, &anew.corners));
-            assert_eq!(layout.opposite(), anew.opposite());
-            let particles = |triangle: [(u32, Vec3); 3]| triangle.map(|(particle, _)| particle);
-            assert!(
-                layout.triangles().into_iter().map(particles).eq(mesh.triangles().iter().copied())
-            );
-        }
-    }
-
-    #[test]
-    fn every_element_has_one_place() {
-        let layout = icosahedral();
-        let mut vertices = layout.vertex_ids[..12].to_vec();
-        vertices.sort_unstable();
-        assert_eq!(vertices, (0..12).collect::<Vec<_>>());
-        let mut triangles = layout.triangle_ids[..20].to_vec();
-        triangles.sort_unstable();
-        assert_eq!(triangles, (0..20).collect::<Vec<_>>());
-        assert_eq!(layout.corners.len(), 3);
-        assert_eq!(layout.steps, [0, 6, 12]);
-    }
-
-    #[test]
-    fn rings_close_and_steps_know_their_triangles() {
-        let layout = icosahedral();
-        let opposite = layout.opposite();
-        for index in 0..12 {
-            let (block, lane) = (index / BLOCK, index % BLOCK);
-            let steps = layout.steps[block] as usize..layout.steps[block + 1] as usize - 1;
-            assert_eq!(layout.neighbours[steps.start][lane], layout.neighbours[steps.end][lane]);
-            for step in steps {
-                let triangle = layout.places[step][lane] as usize / 4;
-                let place = layout.places[step][lane] as usize % 4;
-                let corners =
-                    layout.corners[triangle / BLOCK].map(|lanes| lanes[triangle % BLOCK] as usize);
-                assert_eq!(corners[place], 4 * index);
-                assert_eq!(corners[(place + 1) % 3] as u32, layout.neighbours[step][lane]);
-                assert_eq!(corners[(place + 2) % 3] as u32, layout.neighbours[step + 1][lane]);
-                let facing = opposite[step][lane] as usize;
-                let start = layout.neighbours[facing / BLOCK][facing % BLOCK];
-                assert_eq!(corners[(place + 2) % 3] as u32, start);
-            }
-        }
     }
 }
