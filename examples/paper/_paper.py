@@ -135,8 +135,12 @@ class Figure:
         rows = [list(row) for row in rows]
         self._tables.append({"caption": caption, "header": list(header), "rows": rows})
 
-    def check(self, what, measured, expected, tolerance, error=None, unit=""):
-        """Check |measured − expected| ≤ tolerance, and return whether it holds."""
+    def check(self, what, measured, expected, tolerance, error=None, unit="", why=""):
+        """Check |measured − expected| ≤ tolerance, and return whether it holds.
+
+        `why` is the cause of a difference: one sentence, which names the test or the figure that
+        supports it. It is reported where the check fails.
+        """
         passed = bool(abs(measured - expected) <= tolerance)
         uncertainty = "" if error is None or np.isnan(error) else f" ± {error:.2g}"
         self.claim(
@@ -144,14 +148,14 @@ class Figure:
             f"{measured:.4g}{uncertainty}{unit}",
             f"{expected:.4g} ± {tolerance:.2g}{unit}",
             passed,
+            why,
         )
         return passed
 
-    def claim(self, what, measured, expected, passed):
-        """Check anything else; `measured` and `expected` are texts."""
-        self._rows.append(
-            {"what": what, "measured": measured, "expected": expected, "passed": bool(passed)}
-        )
+    def claim(self, what, measured, expected, passed, why=""):
+        """Check anything else; `measured` and `expected` are texts, `why` as in `check`."""
+        row = {"what": what, "measured": measured, "expected": expected, "passed": bool(passed)}
+        self._rows.append(row if passed or not why else {**row, "why": why})
 
     def save(self, figure, suffix="", caption=""):
         """Write a matplotlib figure as a picture of the report."""
@@ -192,6 +196,8 @@ class Figure:
                 f"  {verdict}  {row['what']:{width}s}  measured {row['measured']}"
                 f"  expected {row['expected']}"
             )
+            if "why" in row:
+                print(f"        because {row['why']}")
         for note in self._notes:
             print(f"  {note}")
         for table in self._tables:
