@@ -177,9 +177,8 @@ def axisymmetric(kind, reduced_volume, delta_a0):
         value += np.pi * ALPHA * excess**2
         return value, gradient + 2 * np.pi * ALPHA * excess * d_difference
 
-    bounds = [(-4, 4)] * len(shapes.n) + [(2, 6)]
     try:
-        variables = shapes.minimum(reduced_volume, start, energy, bounds)
+        variables = shapes.minimum(reduced_volume, start, energy)
     except RuntimeError:
         return None
     contour = shapes.contour(kind, reduced_volume, variables)

@@ -15,16 +15,17 @@ high. Of
     E = π κ ∫ (dψ/ds + sin ψ / r)² r ds,    A = 2π ∫ r ds,    V = π ∫ r² sin ψ ds
 
 E is least at A = 4π and V = ν 4π/3, under the condition that the contour ends on the axis.
-Integrals are Gauss–Legendre's, gradients are exact, the minimum is found by sequential quadratic
-programming. Each shape is the start of the next one along its branch.
+Integrals are Gauss–Legendre's, gradients are exact, the minimum is found by Newton's method
+(`constrained.py`). Each shape is the start of the next one along its branch.
 """
 
 from functools import cache
 from typing import NamedTuple
 
 import numpy as np
+from constrained import minimum
 from numpy.polynomial.legendre import leggauss, legvander
-from scipy.optimize import brentq, minimize
+from scipy.optimize import brentq
 
 NODES = 200
 MODES = {"prolate": 64, "oblate": 48, "stomatocyte": 64}
@@ -128,38 +129,39 @@ class Shapes:
         return np.append(amplitudes, length)
 
     def _radius(self, psi, length):
-        """Radii r and their derivatives, the end of r and its derivatives."""
+        """Radii r, the end of r and its derivatives, and what takes Σ f ∂r of any f."""
         derivatives = np.column_stack([-np.sin(psi)[:, None] * self.sines * length, np.cos(psi)])
         r, end = length * (self.integral @ np.cos(psi)), length * self.weights @ np.cos(psi)
-        d_r, d_end = self.integral @ derivatives, self.weights @ derivatives
+        d_end = self.weights @ derivatives
+
+        def pulled(f):
+            return (f @ self.integral) @ derivatives - (f @ self.x) * d_end
+
         # On the axis at both ends, also while the constraint is not yet met.
-        return r - self.x * end, d_r - np.outer(self.x, d_end), end, d_end
+        return r - self.x * end, end, d_end, pulled
 
     def energy(self, variables):
         """E / 8πκ and its gradient."""
         length = variables[-1]
         psi, slope = self.angles(variables)
-        r, d_r, _, _ = self._radius(psi, length)
+        r, _, _, pulled = self._radius(psi, length)
         curvature = slope / length + np.sin(psi) / r
-        d_curvature = -(np.sin(psi) / r**2)[:, None] * d_r
-        d_curvature[:, :-1] += self.cosines / (length * self.stretch)[:, None]
-        d_curvature[:, :-1] += (np.cos(psi) / r)[:, None] * self.sines
-        d_curvature[:, -1] -= slope / length**2
         weights = self.weights / 8
         energy = length * weights @ (curvature**2 * r)
-        gradient = length * (
-            (weights * curvature**2) @ d_r + (2 * weights * curvature * r) @ d_curvature
-        )
-        gradient[-1] += energy / length
+        by_curvature = 2 * length * weights * curvature * r
+        gradient = pulled(length * weights * curvature**2 - by_curvature * np.sin(psi) / r**2)
+        gradient[:-1] += (by_curvature / (length * self.stretch)) @ self.cosines
+        gradient[:-1] += (by_curvature * np.cos(psi) / r) @ self.sines
+        gradient[-1] += energy / length - by_curvature @ slope / length**2
         return energy, gradient
 
     def area_difference(self, variables):
         """Δa = ∫ (dψ/ds + sin ψ / r) r ds / 4 at A = 4π, and its gradient."""
         length = variables[-1]
         psi, slope = self.angles(variables)
-        r, d_r, _, _ = self._radius(psi, length)
+        r, _, _, pulled = self._radius(psi, length)
         weights = self.weights / 4
-        gradient = (weights * slope) @ d_r
+        gradient = pulled(weights * slope)
         gradient[:-1] += (weights * r / self.stretch) @ self.cosines
         gradient[:-1] += length * (weights * np.cos(psi)) @ self.sines
         gradient[-1] += weights @ np.sin(psi)
@@ -169,44 +171,39 @@ class Shapes:
         """A / 4π and V / (4π/3), the end of r, and their gradients."""
         length, weights = variables[-1], self.weights
         psi, _ = self.angles(variables)
-        r, d_r, end, d_end = self._radius(psi, length)
+        r, end, d_end, pulled = self._radius(psi, length)
         area, volume = length / 2 * weights @ r, 0.75 * length * weights @ (r**2 * np.sin(psi))
-        d_area = length / 2 * weights @ d_r
-        d_volume = 1.5 * length * (weights * r * np.sin(psi)) @ d_r
+        d_area = pulled(length / 2 * weights)
+        d_volume = pulled(1.5 * length * weights * r * np.sin(psi))
         d_volume[:-1] += 0.75 * length * (weights * r**2 * np.cos(psi)) @ self.sines
         d_area[-1] += area / length
         d_volume[-1] += volume / length
         return np.array([area, volume, end]), np.array([d_area, d_volume, d_end])
 
-    def minimum(self, reduced_volume, start, energy=None, bounds=None):
+    def minimum(self, reduced_volume, start, energy=None):
         """Variables of the least energy near a start, or RuntimeError.
 
-        Another energy than that of bending alone is a function of the variables, with its gradient;
-        bounds are those of each of them.
+        Another energy than that of bending alone is a function of the variables, with its gradient.
         """
         targets = np.array([1, reduced_volume, 0])
         # Up-down symmetric contours end on the axis by themselves.
         used = slice(0, 3 if self.n[0] == 1 else 2)
-        found = minimize(
-            energy or self.energy,
-            start,
-            jac=True,
-            method="SLSQP",
-            bounds=bounds,
-            constraints={
-                "type": "eq",
-                "fun": lambda variables: (self.constraints(variables)[0] - targets)[used],
-                "jac": lambda variables: self.constraints(variables)[1][used],
-            },
-            options={"maxiter": 500, "ftol": 1e-12},
-        )
-        residual = np.abs(self.constraints(found.x)[0] - targets)[used].max()
-        if not residual < 1e-8:
+
+        def constraints(variables):
+            values, gradients = self.constraints(variables)
+            return (values - targets)[used], gradients[used]
+
+        def allowed(variables):
+            """A contour that crosses the axis has an area, and energy, below zero there."""
+            psi, _ = self.angles(variables)
+            return variables[-1] > 0 and self._radius(psi, variables[-1])[0].min() > 0
+
+        try:
+            return minimum(energy or self.energy, constraints, start, allowed)
+        except RuntimeError as error:
             raise RuntimeError(
-                f"axisymmetric: no shape at ν = {reduced_volume:g}, whose constraints are off by "
-                f"{residual:.1g}: {found.message}"
-            )
-        return found.x
+                f"axisymmetric: no shape at ν = {reduced_volume:g}: {error}"
+            ) from None
 
     def contour(self, branch, reduced_volume, variables):
         """The Contour of variables."""

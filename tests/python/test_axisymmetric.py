@@ -18,7 +18,7 @@ FLIPS = Path(__file__).parents[2] / "examples" / "flips"
 def scripts_importable(monkeypatch):
     monkeypatch.syspath_prepend(str(FLIPS))
     yield
-    for name in ("axisymmetric", "shapes", "fluid_run", "reports"):
+    for name in ("axisymmetric", "constrained", "shapes", "fluid_run", "reports"):
         sys.modules.pop(name, None)
 
 
