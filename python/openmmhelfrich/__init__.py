@@ -39,6 +39,8 @@ from .mesh import Mesh
 from .ramps import harden
 from .red_cell import RedCell, RedCellModel
 from .reporters import (
+    ExtendedXYZReporter,
+    GSDReporter,
     MembraneReporter,
     ModeReporter,
     VirialReporter,
@@ -54,6 +56,8 @@ __version__ = _plugin.version()
 __all__ = [
     "BlowUpError",
     "BlowUpReporter",
+    "ExtendedXYZReporter",
+    "GSDReporter",
     "LiveView",
     "MembraneReporter",
     "Mesh",

@@ -3,20 +3,26 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 import numpy as np
 import openmm
 from openmm import unit
 
+from ._frame_reporters import ExtendedXYZReporter, GSDReporter, VTKHDFReporter
 from ._numbers import whole_number
-from ._surface_reporters import SurfaceReporter, TableReporter
+from ._surface_reporters import TableReporter
 from .analysis import mode_amplitudes, shape
-from .analysis.surface_series import SurfaceFrame, SurfaceSeries
 from .forces import MonteCarloBondFlip, MonteCarloDomainSwap, MonteCarloMembraneTension
 from .virials import virial
 
-__all__ = ["MembraneReporter", "ModeReporter", "VTKHDFReporter", "VirialReporter"]
+__all__ = [
+    "ExtendedXYZReporter",
+    "GSDReporter",
+    "MembraneReporter",
+    "ModeReporter",
+    "VTKHDFReporter",
+    "VirialReporter",
+]
 
 _ENERGY = unit.kilojoule_per_mole
 
@@ -243,79 +249,6 @@ class VirialReporter(TableReporter):
             (xx + yy) / (2 * box[0, 0] * box[1, 1]),
             zz / box[2, 2],
         ]
-
-
-class VTKHDFReporter(SurfaceReporter):
-    """Writes the surface of a membrane while a Simulation runs, in one file that ParaView opens.
-
-    Each frame has its own positions and triangles, so that membranes whose bonds flip are shown as
-    they are. Vertices carry ``mean_curvature``, H = C1 + C2 by Jülicher's scheme (B13,
-    doi:10.1103/PhysRevE.108.015301), 1/nm; ``area``, a third of the triangles around, nm²;
-    ``neighbours``, how many there are; and ``component``, the number of their connected surface,
-    from 0. Triangles carry ``area``, nm², and ``component``. A surface that spans its periodic box
-    is cut at the faces of the box, where vertices are there once for each image. Coordinates are in
-    nm, times in ps. It takes VTK 9.3, ParaView 5.12 or newer ones to read them.
-
-    Every frame is on disk when it has been written, and the file is closed in between: ParaView may
-    look at it during the run. A kill in the middle of a frame leaves ``<file>.journal``, from which
-    the next reporter with ``append=True`` makes the file whole.
-
-    Parameters
-    ----------
-    file : str or Path
-        ``.vtkhdf``. It needs h5py (``pip install openmm-helfrich[hdf5]``).
-    reportInterval : int
-        Steps between frames, 1 or more.
-    triangles : Mesh or array_like of int
-        As for `ModeReporter`; point i of the file is the i-th of their particles, in ascending
-        order.
-    offset : int
-        Added to the indices of the triangles. Default 0.
-    append : bool
-        As for `ModeReporter`: frames of later steps are dropped.
-
-    Raises
-    ------
-    ImportError
-        Without h5py.
-    ValueError
-        A number out of range, or another suffix; at the first report, a file that is none of this
-        reporter or has other numbers of vertices or triangles.
-
-    Examples
-    --------
-    >>> simulation.reporters.append(VTKHDFReporter("vesicle.vtkhdf", 500, vesicle.mesh))
-    >>> simulation.step(100_000)
-    """
-
-    _spans = True
-
-    def __init__(self, file, reportInterval, triangles, *, offset=0, append=False):
-        super().__init__(file, reportInterval, triangles, offset, append)
-        if Path(file).suffix.lower() != ".vtkhdf":
-            raise ValueError(f"VTKHDFReporter: {file}: the suffix must be .vtkhdf")
-        self._series = SurfaceSeries(file)
-
-    def _begin(self, simulation):
-        self._num_frames = 0
-        if not self._append:
-            self._series.remove()
-            return None
-        try:
-            steps = self._series.steps()
-        except ValueError as reason:
-            raise ValueError(f"VTKHDFReporter: {reason}; do not append") from None
-        kept = steps[steps <= simulation.currentStep]
-        self._series.cut(len(kept))
-        self._num_frames = len(kept)
-        return kept[-1] if len(kept) else None
-
-    def _write(self, simulation, state, time, vertices, triangles, box):
-        if self._num_frames:
-            self._series.require()
-        step = int(simulation.currentStep)
-        self._series.add([SurfaceFrame(step, time, vertices, triangles, box)])
-        self._num_frames += 1
 
 
 def _group_names(system):

@@ -147,7 +147,8 @@ def test_each_frame_has_its_own_triangles(tmp_path, lumpy, kind):
 
 def test_an_unknown_format_is_refused(tmp_path):
     with pytest.raises(
-        ValueError, match="frames must be one of none, ply, obj, stl, vtk, vtkhdf, got 'off'"
+        ValueError,
+        match="frames must be one of none, ply, obj, stl, vtk, vtkhdf, gsd, extxyz, got 'off'",
     ):
         frames_writer(tmp_path, "run", "off", ["m"])
 

@@ -109,7 +109,7 @@ class Types:
     """
 
     def __init__(self, where: str, given):
-        self._where, self._number = where, 0
+        self.where, self._number = where, 0
         self._given = None if given is None else np.asarray(given)
         if self._given is None:
             return
@@ -129,12 +129,12 @@ class Types:
             return components(frame.triangles, count)
         if self._given.ndim == 2 and number >= len(self._given):
             raise ValueError(
-                f"{self._where}: types: there are those of {len(self._given)} frames, but more "
+                f"{self.where}: types: there are those of {len(self._given)} frames, but more "
                 "frames"
             )
         found = self._given[number] if self._given.ndim == 2 else self._given
         if len(found) != count:
-            raise ValueError(f"{self._where}: types: there are {len(found)}, but {count} vertices")
+            raise ValueError(f"{self.where}: types: there are {len(found)}, but {count} vertices")
         return found
 
 

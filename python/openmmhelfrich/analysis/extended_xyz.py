@@ -14,7 +14,7 @@ from .curvature import vertex_quantities
 from .elements import edges_of
 from .surface_series import SurfaceFrame, components
 
-__all__ = ["write_extended_xyz"]
+__all__ = ["text_of", "write_extended_xyz"]
 
 _SUFFIXES = (".xyz", ".extxyz")
 # X is an atom of no element, which ASE insists on.
@@ -68,13 +68,13 @@ def write_extended_xyz(
     with fresh_file(path) as fresh, fresh.open("w", encoding="ascii") as file:
 
         def add(frame):
-            file.write(_text(frame, kinds.next(frame)))
+            file.write(text_of(frame, kinds.next(frame)))
 
         return each_surface("write_extended_xyz", add, vertices, triangles, times, steps, box)
 
 
-def _text(frame: SurfaceFrame, kinds: np.ndarray) -> str:
-    """One frame."""
+def text_of(frame: SurfaceFrame, kinds: np.ndarray) -> str:
+    """One frame; kinds: the type of each vertex, shape (num_vertices,)."""
     count = len(frame.vertices)
     start, end = edges_of(frame.triangles)[:2]
     neighbours = np.bincount(np.concatenate([start, end]), minlength=count)

@@ -15,7 +15,7 @@ from .curvature import vertex_quantities
 from .elements import edges_of
 from .surface_series import SurfaceFrame
 
-__all__ = ["write_gsd"]
+__all__ = ["Frames", "masses_of", "write_gsd"]
 
 
 def write_gsd(
@@ -66,11 +66,9 @@ def write_gsd(
     path = Path(path)
     if path.suffix.lower() != ".gsd":
         raise ValueError(f"write_gsd: {path}: the suffix must be .gsd")
-    masses = np.asarray(masses, dtype=np.float32)
-    if masses.ndim > 1 or not (np.isfinite(masses) & (masses >= 0)).all():
-        raise ValueError("write_gsd: masses: need one number or shape (num_vertices,), amu, from 0")
+    masses = masses_of("write_gsd", masses)
     with fresh_file(path) as fresh, hoomd.open(name=str(fresh), mode="w") as file:
-        frames = _Frames(hoomd, Types("write_gsd", types), masses)
+        frames = Frames(hoomd, Types("write_gsd", types), masses)
 
         def add(frame):
             file.append(frames.next(frame))
@@ -78,19 +76,33 @@ def write_gsd(
         return each_surface("write_gsd", add, vertices, triangles, times, steps, box)
 
 
-class _Frames:
+def masses_of(where: str, masses) -> np.ndarray:
+    """Masses as they are written, of one or of each vertex; `where` is named in errors."""
+    masses = np.asarray(masses, dtype=np.float32)
+    if masses.ndim > 1 or not (np.isfinite(masses) & (masses >= 0)).all():
+        raise ValueError(f"{where}: masses: need one number or shape (num_vertices,), amu, from 0")
+    return masses
+
+
+class Frames:
     """Surfaces as frames of the package gsd."""
 
     def __init__(self, hoomd, types: Types, masses: np.ndarray):
         self._hoomd, self._types, self._masses = hoomd, types, masses
         self._first, self._side = None, 0.0
 
+    def go_on(self, first, last) -> None:
+        """Go on with a file of these frames, as gsd reads them."""
+        self._first = first.log.get("triangles")
+        if not first.log.get("periodic", [True])[0]:
+            self._side = float(last.configuration.box[0])
+
     def next(self, frame: SurfaceFrame):
         """The next frame."""
         count, result = len(frame.vertices), self._hoomd.Frame()
         if self._masses.ndim and len(self._masses) != count:
             raise ValueError(
-                f"write_gsd: masses: there are {len(self._masses)}, but {count} vertices"
+                f"{self._types.where}: masses: there are {len(self._masses)}, but {count} vertices"
             )
         box = self._cell(frame.vertices) if frame.box is None else frame.box
         images = np.floor(np.linalg.solve(box.T, frame.vertices.T).T + 0.5)

@@ -38,10 +38,11 @@ __all__ = ["run"]
 )
 @click.option(
     "--frames",
-    type=click.Choice(["none", "ply", "obj", "stl", "vtk", "vtkhdf"]),
-    help="Write a mesh per membrane and frame, or one file of all for ParaView (vtkhdf, which "
-    "needs h5py); PLY, VTK and VTKHDF have curvatures and areas of the vertices, OVITO "
-    "reads OBJ, STL and VTK. Default: as CONFIG says, or none.",
+    type=click.Choice(["none", "ply", "obj", "stl", "vtk", "vtkhdf", "gsd", "extxyz"]),
+    help="Write a mesh per membrane and frame, or one file of all: vtkhdf for ParaView (needs "
+    "h5py), gsd for HOOMD and OVITO (needs gsd), extxyz for OVITO and ASE. All but OBJ and STL "
+    "have curvatures and areas of the vertices; OVITO reads OBJ, STL and VTK. Default: as CONFIG "
+    "says, or none.",
 )
 @click.option("--ply", "frames", flag_value="ply", help="Short for --frames ply.")
 @click.option("--no-ply", "frames", flag_value="none", help="Short for --frames none.")

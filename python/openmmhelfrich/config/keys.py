@@ -101,8 +101,8 @@ KEYS: tuple[Key, ...] = (
     Key("output", "xtc", boolean, True, "Write a trajectory `<name>.xtc`."),
     Key("output", "frames", choice(FRAMES), "none",
         "Write a mesh per vesicle and frame: `\"ply\"`, `\"obj\"`, `\"stl\"` or `\"vtk\"`, or one "
-        "file of all for ParaView: `\"vtkhdf\"`. PLY, VTK and VTKHDF have the vertices' mean "
-        "curvatures and areas; OVITO reads OBJ, STL and VTK."),
+        "file of all: `\"vtkhdf\"` for ParaView, `\"gsd\"` for HOOMD and OVITO, `\"extxyz\"` for "
+        "OVITO and ASE. All but OBJ and STL have the vertices' mean curvatures and areas."),
     Key("output", "ply", boolean, False, "Short for `frames = \"ply\"`."),
     Key("output", "text", choices(_TEXTS), (),
         "Text files: an array of " + ", ".join(f"`\"{name}\"`" for name in _TEXTS) + "."),

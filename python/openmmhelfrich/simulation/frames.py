@@ -11,6 +11,7 @@ import numpy as np
 from .._mesh import files, geometry
 from .._mesh.periodic import cut_images
 from ..analysis.curvature import vertex_quantities
+from ..analysis.frame_files import ExtendedXYZSeries, FrameFile, GSDSeries
 from ..analysis.surface_series import SurfaceFrame, SurfaceSeries
 
 __all__ = ["FRAMES", "MeshFrames", "SeriesFrames", "frames_writer"]
@@ -19,12 +20,12 @@ __all__ = ["FRAMES", "MeshFrames", "SeriesFrames", "frames_writer"]
 Part = tuple[np.ndarray, np.ndarray]
 
 #: What frames can be written as; "none" writes none.
-FRAMES = ("none", "ply", "obj", "stl", "vtk", "vtkhdf")
+FRAMES = ("none", "ply", "obj", "stl", "vtk", "vtkhdf", "gsd", "extxyz")
 # Formats that have room for values of the vertices.
 _WITH_DATA = ("ply", "vtk")
 
 
-def frames_writer(folder: Path, name: str, kind: str, labels: Iterable[str]):
+def frames_writer(folder: Path, name: str, kind: str, labels: Iterable[str], masses=1.0):
     """What writes the meshes of a run in a format.
 
     Parameters
@@ -37,6 +38,8 @@ def frames_writer(folder: Path, name: str, kind: str, labels: Iterable[str]):
         One of `FRAMES`.
     labels : iterable of str
         Of the membranes.
+    masses : array_like, optional
+        Of their vertices, amu, for formats that have masses.
 
     Returns
     -------
@@ -48,28 +51,33 @@ def frames_writer(folder: Path, name: str, kind: str, labels: Iterable[str]):
     ValueError
         If there is no such format.
     ImportError
-        If VTKHDF is asked for without h5py.
+        If VTKHDF is asked for without h5py, or GSD without gsd.
     """
     if kind not in FRAMES:
         raise ValueError(f"frames must be one of {', '.join(FRAMES)}, got {kind!r}")
     if kind == "none":
         return None
+    path = folder / f"{name}.{kind}"
     if kind == "vtkhdf":
-        return SeriesFrames(folder / f"{name}.vtkhdf")
+        return SeriesFrames(SurfaceSeries(path))
+    if kind == "gsd":
+        return SeriesFrames(GSDSeries(path, masses, "frames"))
+    if kind == "extxyz":
+        return SeriesFrames(ExtendedXYZSeries(path, "frames"))
     return MeshFrames(folder / "frames", name, kind, labels)
 
 
 class SeriesFrames:
-    """One VTKHDF file with all membranes and all frames, see `SurfaceSeries`.
+    """One file with all membranes and all frames.
 
     Parameters
     ----------
-    path : Path
-        ``<name>.vtkhdf``.
+    series : SurfaceSeries or FrameFile
+        The file.
     """
 
-    def __init__(self, path: Path):
-        self._series = SurfaceSeries(path)
+    def __init__(self, series: SurfaceSeries | FrameFile):
+        self._series = series
 
     def write(self, number: int, step: int, time: float, parts: list[Part], box=None) -> None:
         """Add a frame; arguments as for `MeshFrames.write`."""

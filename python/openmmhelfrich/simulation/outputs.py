@@ -134,6 +134,13 @@ def _digest_of_end(path: Path, size: int) -> str:
         return hashlib.sha256(file.read(min(size, _END))).hexdigest()
 
 
+def _masses(cfg: Model) -> list[float]:
+    """Of the vertices of all membranes, amu."""
+    system = cfg.system()
+    particles = (i for membrane in cfg.membranes for i in membrane.particles)
+    return [system.getParticleMass(i).value_in_unit(unit.dalton) for i in particles]
+
+
 class Outputs:
     """All files of one run that grow, in one folder.
 
@@ -146,7 +153,7 @@ class Outputs:
         Write ``<name>.xtc`` too.
     frames : str
         One of `frames.FRAMES`: what to write meshes as, ``frames/<name>_<label>_<number>`` for each
-        membrane and frame, or ``<name>.vtkhdf`` for all.
+        membrane and frame, or ``<name>.vtkhdf``, ``.gsd`` or ``.extxyz`` for all.
     """
 
     def __init__(self, cfg: Model, folder, xtc: bool = True, frames: str = "none"):
@@ -154,7 +161,8 @@ class Outputs:
         self._folder = Path(folder)
         self._names = [atom.name for atom in cfg.topology().atoms()]
         labels = [membrane.label for membrane in cfg.membranes]
-        self._frames = frames_writer(self._folder, cfg.name, frames, labels)
+        masses = _masses(cfg) if frames == "gsd" else 1.0
+        self._frames = frames_writer(self._folder, cfg.name, frames, labels, masses)
         self._num_frames = 0
         self._start = self._folder / f"{cfg.name}.ply" if xtc else None
         text, binary = cfg.general["TextOutputs"], cfg.general["BinOutputs"]
