@@ -204,7 +204,7 @@ class TestTheoryOfDynamics:
         [
             (theory.stiffness, (3,)),
             (theory.fluid_spectrum, (3, 20)),
-            (theory.elastic_spectrum, (3, 20, 1e-4, 1000)),
+            (theory.elastic_spectrum, (3, 20, 1e-4, 1000, 1e-7)),
             (theory.tense_spectrum, (3, 20, 3e-5, 1000)),
             (theory.young_modulus, (0.2,)),
             (theory.mode_frequency, (3, 50, 50, 1002, 1000)),

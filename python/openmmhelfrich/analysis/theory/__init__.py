@@ -3,8 +3,8 @@
 Farnudi, Ejtehadi and Everaers, Phys. Rev. E 108, 015301 (2023),
 doi:10.1103/PhysRevE.108.015301; the numbers in brackets are its equations. Lengths are in nm,
 times in ps, masses in amu, energies in kJ/mol; a ratio to kBT has no unit. All functions work
-element by element on arrays, which broadcast against each other; `mode_energy` sums over modes,
-`area_excess` up to one lmax.
+element by element on arrays, which broadcast against each other; `mode_area`, `mode_volume` and
+`mode_energy` sum over modes, `area_excess` up to one lmax.
 """
 
 from .deformations import area_energy, bending_energy, volume_energy
@@ -17,11 +17,11 @@ from .dynamics import (
     newtonian_autocorrelation,
     overdamped_time,
 )
+from .mode_sums import mode_area, mode_energy, mode_volume
 from .spectra import (
     area_excess,
     elastic_spectrum,
     fluid_spectrum,
-    mode_energy,
     stiffness,
     tense_spectrum,
     young_modulus,
@@ -40,9 +40,11 @@ __all__ = [
     "fluid_spectrum",
     "internal_friction",
     "langevin_autocorrelation",
+    "mode_area",
     "mode_energy",
     "mode_frequency",
     "mode_period",
+    "mode_volume",
     "newtonian_autocorrelation",
     "overdamped_time",
     "stiffness",

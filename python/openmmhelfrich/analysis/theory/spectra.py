@@ -50,10 +50,14 @@ def fluid_spectrum(l, kappa_over_kT):
     return plain(1 / (positive("kappa_over_kT", kappa_over_kT) * stiffness(l)))
 
 
-def elastic_spectrum(l, kappa_over_kT, young_over_kT, radius):
+def elastic_spectrum(l, kappa_over_kT, young_over_kT, radius, pressure_over_kT=0.0):
     """Mean square amplitude of a mode of a vesicle with a shear modulus (A18).
 
     kBT/⟨|u_lm|²⟩ = κ (l+2)(l+1) l (l−1) + Y r0² · 3 (l² + l − 2) / (3 (l² + l) − 2)
+                    + ½ p r0³ (l+2)(l−1)
+
+    A pressure p puts the surface under the tension σ = p r0 / 2, which adds σ r0² (l+2)(l−1) as in
+    `tense_spectrum`. Y and r0 are those under the pressure, which stretches the shell.
 
     Parameters
     ----------
@@ -65,6 +69,8 @@ def elastic_spectrum(l, kappa_over_kT, young_over_kT, radius):
         Two-dimensional Young modulus Y over kBT, 1/nm². `young_modulus` gives that of a mesh.
     radius : float or array_like
         Radius r0 of the vesicle, nm.
+    pressure_over_kT : float or array_like
+        p over kBT, inside less outside, 1/nm³. Default 0.
 
     Returns
     -------
@@ -74,14 +80,21 @@ def elastic_spectrum(l, kappa_over_kT, young_over_kT, radius):
     Raises
     ------
     ValueError
-        An l below 2, a rigidity or radius that is not positive, or a negative Young modulus.
+        An l below 2, a rigidity or radius that is not positive, a negative Young modulus, or a
+        pressure at which the mode buckles.
     """
     check_modes(l)
     kappa_over_kT, radius = positive("kappa_over_kT", kappa_over_kT), positive("radius", radius)
     young_over_kT = not_negative("young_over_kT", young_over_kT)
     n = np.asarray(l, dtype=float) * (np.asarray(l, dtype=float) + 1)
     shear = young_over_kT * radius**2 * 3 * (n - 2) / (3 * n - 2)
-    return plain(1 / (kappa_over_kT * stiffness(l) + shear))
+    pressure = np.asarray(pressure_over_kT, dtype=float)
+    total = kappa_over_kT * stiffness(l) + shear + pressure * radius**3 * (n - 2) / 2
+    buckled = ~(total > 0)
+    if buckled.any():
+        first = np.broadcast_to(pressure, total.shape)[buckled][0]
+        raise ValueError(f"pressure_over_kT: a mode of the shell buckles under {first:g}")
+    return plain(1 / total)
 
 
 def young_modulus(softness):
@@ -149,40 +162,6 @@ def tense_spectrum(l, kappa_over_kT, tension_over_kT, radius):
     reduced = tension * radius**2 / kappa_over_kT
     n = np.asarray(l, dtype=float) * (np.asarray(l, dtype=float) + 1)
     return plain(1 / (kappa_over_kT * (n - 2) * (n + reduced)))
-
-
-def mode_energy(amplitudes, rigidity):
-    """Bending energy of a nearly spherical shape, to second order in its amplitudes (A16).
-
-    E = 8πκ + ½ κ Σ_lm (l+2)(l+1) l (l−1) u_lm²
-
-    By equipartition each mode has ½ kBT, which is (A17). For u_20 alone it is (38).
-
-    Parameters
-    ----------
-    amplitudes : array_like
-        u_lm at index l² + l + m, without unit, shape (…, (lmax+1)²).
-    rigidity : float or array_like
-        κ, kJ/mol, or in any other unit of energy, which the result then has; an array has one for
-        each set of amplitudes.
-
-    Returns
-    -------
-    float or ndarray
-        E, kJ/mol, shape (…).
-
-    Raises
-    ------
-    ValueError
-        The last axis has no (lmax+1)² entries, or the rigidity is not positive.
-    """
-    rigidity = positive("rigidity", rigidity)
-    u = np.asarray(amplitudes, dtype=float)
-    count = round(u.shape[-1] ** 0.5) if u.ndim else 0
-    if not count or count**2 != u.shape[-1]:
-        raise ValueError(f"amplitudes: need shape (…, (lmax+1)²), got {u.shape}")
-    l = np.repeat(np.arange(count), 2 * np.arange(count) + 1)
-    return plain(8 * np.pi * rigidity + rigidity / 2 * (u**2 @ stiffness(l)))
 
 
 def area_excess(kappa_over_kT, lmax):
