@@ -12,12 +12,22 @@ import matplotlib.pyplot as plt
 import numpy as np
 from _paper import SCHEMES, Figure, mean_and_error
 from openmmhelfrich.analysis import theory
+from spheres import (
+    AREA_MODULUS,
+    BARYCENTRIC,
+    DURATION,
+    KINDS,
+    MARKERS,
+    RADIUS,
+    RIGIDITY,
+    SOFTNESS,
+    VOLUME_MODULUS,
+    context_of,
+    fluctuating,
+    still_sphere,
+)
 
-BARYCENTRIC = {"Julicher": "JulicherVoronoi", "GompperKrollBarycentric": "GompperKroll"}
-KINDS = ("ordered", "random", "fluctuating ordered", "fluctuating random")
-AREA_MODULUS, VOLUME_MODULUS, RIGIDITY, RADIUS = 1.3, 0.04, 50.0, 1000.0
-# The bias depends on Ξ: at this one it is the paper's at both ends, see the table of others.
-SOFTNESS, DURATION = 0.22, 6.5
+# A trend with Ξ beside the softness of the figure.
 OTHER_SOFTNESSES = (0.15, 0.33)
 AMPLITUDES = [0.0, 0.02, 0.05, *np.round(np.arange(0.1, 1.01, 0.1), 1).tolist()]
 
@@ -45,51 +55,20 @@ def deformation(kind, subdivision, seed, softness, duration, amplitudes):
         (len(amplitudes), 6), kJ/mol; "folded", the runs that were made again since they folded a
         triangle over.
     """
-    import openmm
-    import openmmhelfrich as helfrich
     from openmm import unit
 
-    if "ordered" in kind:
-        mesh = helfrich.Mesh.icosphere(subdivision, RADIUS)
-    else:
-        mesh = helfrich.Mesh.random_sphere(10 * subdivision**2 + 2, RADIUS, seed)
+    mesh = still_sphere(kind, subdivision, seed)
     folded = 0
     if "fluctuating" in kind:
         mesh, folded = fluctuating(mesh, softness, seed, duration)
-    forces = [
-        helfrich.SurfaceAreaForce(mesh, AREA_MODULUS, mesh.area),
-        helfrich.EnclosedVolumeForce(mesh, VOLUME_MODULUS, mesh.volume),
-    ]
-    for scheme in SCHEMES:
-        kind_of_bending = getattr(helfrich.BendingForce, scheme)
-        forces.append(helfrich.BendingForce(mesh, RIGIDITY, scheme=kind_of_bending))
-    system = openmm.System()
-    for _ in range(mesh.num_vertices):
-        system.addParticle(1.0)
-    for group, force in enumerate(forces):
-        force.setForceGroup(group)
-        system.addForce(force)
-    platform = openmm.Platform.getPlatformByName("Reference")
-    context = openmm.Context(system, openmm.VerletIntegrator(0.001), platform)
-    energies = np.empty((len(amplitudes), len(forces)))
+    context, groups = context_of(mesh)
+    energies = np.empty((len(amplitudes), groups))
     for row, amplitude in zip(energies, amplitudes, strict=True):
         context.setPositions(mesh.deformed(2, 0, amplitude).vertices)
-        for group in range(len(forces)):
+        for group in range(groups):
             state = context.getState(energy=True, groups={group})
             row[group] = state.getPotentialEnergy().value_in_unit(unit.kilojoule_per_mole)
     return {"energies": energies, "folded": folded}
-
-
-def fluctuating(mesh, softness, seed, duration):
-    """A mesh after its run, and how many runs before folded a triangle over, as few do."""
-    import openmmhelfrich as helfrich
-
-    for attempt in range(5):
-        try:
-            return mesh.fluctuating(softness, seed + 1000 * attempt, duration), attempt
-        except helfrich.MeshError as error:
-            last = error
-    raise last
 
 
 def main():
@@ -250,13 +229,12 @@ def note_bias(figure, biases):
 def draw(figure, energies, bias):
     u = np.array(AMPLITUDES)
     graph, axes = plt.subplots(1, 3, figsize=(11, 3.8), layout="constrained")
-    markers = dict(zip(KINDS, "os^v", strict=True))
     for column, (name, expected) in enumerate(global_theory(u).items()):
         axes[0].loglog(u[1:], expected[1:], color="black", lw=1, label="theory" if column else None)
         for kind in KINDS:
             label = f"{name}, {kind}" if column == 0 else None
             mean = energies[kind].mean(axis=0)
-            axes[0].loglog(u[1:], mean[1:, column], markers[kind], ms=4, mfc="none", label=label)
+            axes[0].loglog(u[1:], mean[1:, column], MARKERS[kind], ms=4, mfc="none", label=label)
     axes[0].set(xlabel="$u_{20}$", ylabel="$E_A$ (below), $E_V$ (kJ/mol)")
     sphere = theory.bending_energy(0, RIGIDITY)
     for place, label in enumerate(SCHEMES.values()):
@@ -265,7 +243,7 @@ def draw(figure, energies, bias):
             mean = energies[kind].mean(axis=0)[:, 2 + place] / sphere
             style = {"color": color, "ms": 4, "mfc": "none"}
             axes[1].plot(
-                u, mean, markers[kind], label=label if kind == "ordered" else None, **style
+                u, mean, MARKERS[kind], label=label if kind == "ordered" else None, **style
             )
         means, errors = np.array([(mean[place], error[place]) for mean, error in bias.values()]).T
         axes[2].errorbar(list(bias), means, errors, fmt="o-", ms=4, color=color, label=label)

@@ -228,7 +228,7 @@ def test_nothing_names_a_slower_one():
         for path in (ROOT / "examples").rglob("*.py")
         if re.search(r'"(Reference|CPU|OpenCL)"', path.read_text(encoding="utf-8"))
     }
-    assert found == {"fig04_deformation.py"}
+    assert found == {"spheres.py"}
 
 
 def _evaluate(cfg, force: mm.Force) -> tuple[float, np.ndarray]:
