@@ -81,12 +81,15 @@ demo: build ## simulate a vesicle and draw it with its fluctuation spectrum (abo
 	@$(VENV)/bin/python examples/vesicle.py
 
 # A script that found a number outside its tolerance exits with 3, and report.py lists these; with 4
-# if it needs files that are not there.
-paper: build ## make the paper's figures in small versions, and a report of them, in out/paper
-	@failed=; for script in examples/paper/fig*.py examples/paper/sm*.py examples/paper/tab*.py; do \
-	    $(VENV)/bin/python $$script --quick; case $$? in 0|3|4) ;; *) failed="$$failed $$script" ;; esac; \
+# if it needs files that are not there. Results are stored one by one, so that what was stopped goes on.
+paper: SIZE ?= quick
+paper: build ## make the paper's figures in small versions, with a report, in out/paper/quick; SIZE=full takes hours
+	@case "$(SIZE)" in quick|full) ;; *) echo "paper: SIZE is quick or full, not $(SIZE)" >&2; exit 2 ;; esac; \
+	failed=; for script in examples/paper/fig*.py examples/paper/sm*.py examples/paper/tab*.py; do \
+	    $(VENV)/bin/python $$script $(if $(filter quick,$(SIZE)),--quick); \
+	    case $$? in 0|3|4) ;; *) failed="$$failed $$script" ;; esac; \
 	done; \
-	$(VENV)/bin/python examples/paper/report.py --results out/paper/quick --out out/paper && \
+	$(VENV)/bin/python examples/paper/report.py --results out/paper/$(SIZE) --out out/paper/$(SIZE) && \
 	if [ -n "$$failed" ]; then echo "paper: failed:$$failed" >&2; exit 1; fi
 
 bench: build ## race evaluations, time steps and the paper's Table III; BENCH=--quick is short (else half an hour)
