@@ -78,7 +78,7 @@ def test_plot_only_says_what_is_missing(tmp_path):
         "sm03_distributions.py", "--quick", "--results", tmp_path, "--plot-only", check=False
     )
     assert result.returncode != 0
-    assert "4 of 4 results of distributions are not stored" in result.stderr
+    assert "16 of 16 results of distributions are not stored" in result.stderr
     assert "Traceback" not in result.stderr
 
 
