@@ -192,8 +192,8 @@ def check(figure, kind, runs):
         # The paper's ± 0.005 for lengths; areas go as their squares, with a half larger spread.
         tolerance = 0.005 if name == "lengths" else 0.015
         figure.check(
-            f"{kind}, {label}: standard deviation over mean, from {STATIONARY:g} to {UNTIL:g} τ_h less "
-            "the last half",
+            f"{kind}, {label}: standard deviation over mean, from {STATIONARY:g} to {UNTIL:g} τ_h "
+            "less the last half",
             change,
             0,
             tolerance,
