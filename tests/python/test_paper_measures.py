@@ -198,3 +198,51 @@ def test_errors_of_the_papers_spectra_are_those_of_ten_samples():
     # Each of 20 τ_2 at 0.01/ps: with the memory M = γ/ω_2² of 2.9 and 5.8 τ_2 √(2 M/T (2l+1)).
     assert error_of_the_paper(2, 1002) == pytest.approx(0.077, abs=0.004)
     assert error_of_the_paper(2, 4002) == pytest.approx(0.108, abs=0.005)
+
+
+def test_energy_is_what_the_counters_of_the_packages_say(tmp_path, monkeypatch):
+    import tab03_wall_time as table
+
+    for name in ("intel-rapl:0", "intel-rapl:1", "intel-rapl:0:0"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "max_energy_range_uj").write_text("1000000000")
+        (tmp_path / name / "energy_uj").write_text("999000000")
+    clock = iter((100.0, 104.0))
+    monkeypatch.setattr(table.time, "perf_counter", lambda: next(clock))
+    meter = table.Meter(225, tmp_path)
+    meter.start()
+    # The first counter starts anew: 1 J to its end and 99 J beyond it; a part of it is not added.
+    (tmp_path / "intel-rapl:0" / "energy_uj").write_text("99000000")
+    (tmp_path / "intel-rapl:1" / "energy_uj").write_text("999500000")
+    (tmp_path / "intel-rapl:0:0" / "energy_uj").write_text("50000000")
+    assert meter.watts() == pytest.approx((100 + 0.5) / 4)
+    assert "2 package(s)" in meter.source
+    assert table.Meter(225, tmp_path / "none").watts() == 225
+    assert "225 W" in table.Meter(225, tmp_path / "none").source
+
+
+def test_runs_whose_windows_differ_are_told_from_those_that_do_not():
+    from sm03_distributions import hotelling
+
+    random = np.random.default_rng(1)
+    same = random.normal(size=(2000, 12, 3)) @ np.array([[1, 0.8, 0], [0, 1, 0], [0, 0.3, 0.1]])
+    chances = np.array([hotelling(samples)[1] for samples in same])
+    # Chances of right theories are even between 0 and 1.
+    assert np.abs(np.quantile(chances, (0.1, 0.5, 0.9)) - (0.1, 0.5, 0.9)).max() < 0.04
+    assert hotelling(same[0] + (0, 0, 0.5))[1] < 1e-3
+
+
+def test_alike_triangles_tie_bonds_to_areas():
+    from sm04_degrees import bond_of, by_degree
+
+    for degree in (5, 6, 7):
+        length = 1.7
+        area = degree / 3 * 0.5 * length**2 * np.sin(2 * np.pi / degree)
+        assert bond_of(area, degree) / bond_of(np.sqrt(0.75), 6) == pytest.approx(length)
+    mesh = Mesh.random_sphere(252, 1000.0, 3)
+    jitter = np.random.default_rng(3).normal(size=(4, 252, 3))
+    found = by_degree(mesh.vertices + 20 * jitter, mesh.triangles)
+    assert found["number"] @ (5, 6, 7) == 2 * len(mesh.edges)
+    assert found["area_sum"] == pytest.approx(1, abs=1e-12)
+    assert found["length_sum"] == pytest.approx(1, abs=1e-12)
+    assert (np.diff(found["area"]) > 0.1).all()
