@@ -43,7 +43,7 @@ def draw_meshes(path, panels, columns, label=None, size=300, views=None, edges=T
     for axis in axes:
         axis.axis("off")
     for axis, (title, mesh, scalars), view in zip(axes, panels, views, strict=False):
-        axis.imshow(_render(mesh, scalars, limits, view, size, edges))
+        axis.imshow(render(mesh, scalars, limits, view, size, edges))
         axis.set_title(title, fontsize=max(5, size / 28))
     if label:
         bar = picture.colorbar(
@@ -63,8 +63,14 @@ def along_axes(mesh):
     return mesh.translated(-mesh.vertices.mean(axis=0)).rotated(axes)
 
 
-def _render(mesh, scalars, limits, view, size, edges):
-    """One mesh as an image, shape (size, size, 3)."""
+def extent_of(mesh):
+    """The largest distance from the middle of a mesh, and some more, nm."""
+    middle = (mesh.vertices.min(axis=0) + mesh.vertices.max(axis=0)) / 2
+    return 1.06 * np.linalg.norm(mesh.vertices - middle, axis=1).max()
+
+
+def render(mesh, scalars, limits, view, size, edges, extent=None):
+    """One mesh as an image, shape (size, size, 3); half of it shows `extent`, nm, or all."""
     try:
         import pyvista
     except ImportError:
@@ -91,7 +97,7 @@ def _render(mesh, scalars, limits, view, size, edges):
         line_width=0.8,
         show_scalar_bar=False,
     )
-    extent = 1.06 * np.linalg.norm(points, axis=1).max()
+    extent = extent or extent_of(mesh)
     direction = np.array((0.0, -1.0, 0.0) if view == "cut" else (0.3, -1.0, 0.55))
     direction /= np.linalg.norm(direction)
     camera = plotter.camera

@@ -43,13 +43,13 @@ def parts_of(num_vertices):
     return parts
 
 
-def vesicle_of(num_vertices, rigidity, radius, softness, scheme):
-    """The paper's vesicle without volume constraint (kV = 0), on an ordered mesh.
+def vesicle_of(num_vertices, rigidity, radius, softness, scheme, mesh_seed=None):
+    """The paper's vesicle without volume constraint (kV = 0), on an ordered or a random mesh.
 
     Parameters
     ----------
     num_vertices : int
-        N = 10 n² + 2.
+        N, that of an ordered mesh 10 n² + 2.
     rigidity : float
         κ in units of kBT.
     radius : float
@@ -58,9 +58,15 @@ def vesicle_of(num_vertices, rigidity, radius, softness, scheme):
         Ξ.
     scheme : str
         Name of a constant of `BendingForce`.
+    mesh_seed : int, optional
+        Of the random mesh; default: the ordered one.
     """
+    if mesh_seed is None:
+        mesh = Mesh.icosphere(parts_of(num_vertices), radius)
+    else:
+        mesh = Mesh.random_sphere(num_vertices, radius, mesh_seed)
     return Vesicle(
-        Mesh.icosphere(parts_of(num_vertices), radius),
+        mesh,
         rigidity=rigidity * KBT,
         area_modulus=AREA_MODULUS,
         volume_modulus=0,
@@ -151,16 +157,23 @@ def fluctuate(
     }
 
 
-def relax(num_vertices, integrator, friction, lmax, periods, interval, time_step, seed):
+def relax(num_vertices, softness, integrator, friction, lmax, periods, interval, time_step, seed):
     """The modes of the paper's vesicle in time, under one of OpenMM's integrators.
 
-    The vesicle has κ = 20 kBT, r0 = 1000 nm, Ξ = 0.037, the scheme of Jülicher and kV = 0. It comes
-    to equilibrium under LangevinMiddle with γ = ω_2 for 3 τ_2; then the integrator takes over.
+    The vesicle is a random mesh with κ = 20 kBT, r0 = 1000 nm, the scheme of Jülicher and kV = 0.
+    It comes to equilibrium under LangevinMiddle with γ = ω_2 for 3 τ_2; then the integrator takes
+    over.
+
+    A vesicle turns: with the angular momentum of 300 K by some half a radian in 3 τ_2, which mixes
+    the modes of one l and looks like damping. So modes are those in the frame of the body, in which
+    the vertices do not turn.
 
     Parameters
     ----------
     num_vertices : int
-        N = 10 n² + 2.
+        N.
+    softness : float
+        Ξ.
     integrator : str
         "verlet", "langevin" or "brownian".
     friction : float
@@ -174,15 +187,16 @@ def relax(num_vertices, integrator, friction, lmax, periods, interval, time_step
     time_step : float
         ps.
     seed : int
-        Of velocities and noise.
+        Of the mesh, of velocities and noise.
 
     Returns
     -------
     dict
-        "fit", amplitudes of shape (num_frames, (lmax+1)²); "interval", ps between frames;
-        "temperature", K, which means nothing without inertia.
+        "fit", amplitudes of shape (num_frames, (lmax+1)²), and "space", those of the paper's sum
+        over vertices in the frame of the laboratory; "interval", ps between frames; "temperature",
+        K, which means nothing without inertia.
     """
-    vesicle = vesicle_of(num_vertices, RIGIDITY, RADIUS, SOFTNESS[0], "Julicher")
+    vesicle = vesicle_of(num_vertices, RIGIDITY, RADIUS, softness, "Julicher", mesh_seed=seed)
     settling_step = TIME_STEP * vesicle.max_time_step
     settling = integrator_of("langevin", 2 * np.pi / vesicle.tau_2, settling_step, seed)
     simulation = vesicle.simulation(settling)
@@ -196,8 +210,12 @@ def relax(num_vertices, integrator, friction, lmax, periods, interval, time_step
     stride = max(1, round(interval / time_step))
     num_frames = round(periods * vesicle.tau_2 / (stride * time_step))
     positions, temperature = frames_of(context, last, num_frames, stride)
+    triangles = vesicle.mesh.triangles
+    aligned = Displacements(vesicle.mesh.vertices, 1).aligned(positions)
     return {
-        "fit": mode_amplitudes(positions, vesicle.mesh.triangles, lmax).astype(np.float32),
+        # The mean of the vertices is centre enough for motion, and takes a quarter of the time.
+        "fit": mode_amplitudes(aligned, triangles, lmax, centre="mass").astype(np.float32),
+        "space": mode_amplitudes(positions, triangles, lmax, "vertices").astype(np.float32),
         "interval": stride * time_step,
         "temperature": temperature,
     }

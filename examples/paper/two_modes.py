@@ -12,16 +12,17 @@ with two frequencies, which looks like damping.
 """
 
 import numpy as np
-from fluctuations import MASS, RADIUS, RIGIDITY
+from fluctuations import MASS, RADIUS, RIGIDITY, SOFTNESS
 from openmmhelfrich.vesicle import KBT
 from scipy.linalg import expm
 
-# The moduli of fluid meshes at Ξ = 0.037 over N kBT, as `fig06b_shear.py` measures them.
-DENSITY_MODULUS = 0.14
-SHEAR_MODULUS = 0.06
+# The moduli of density and of shear over N kBT at each Ξ, as `fig06b_shear.py` measures them.
+MODULI = {0.037: (0.14, 0.06), 0.15: (0.21, 0.10), 0.33: (0.37, 0.23), 0.59: (1.4, 0.93)}
 
 
-def two_mode_autocorrelation(times, l, num_vertices, friction, integrator="langevin"):
+def two_mode_autocorrelation(
+    times, l, num_vertices, friction, integrator="langevin", softness=SOFTNESS[0]
+):
     """⟨u(t) u(0)⟩ / ⟨u²⟩ of the two coupled oscillators, κ = 20 kBT, r0 = 1000 nm.
 
     Parameters
@@ -36,6 +37,8 @@ def two_mode_autocorrelation(times, l, num_vertices, friction, integrator="lange
         γ of the thermostat, 1/ps; 0 for none.
     integrator : str
         "brownian" for motion without inertia.
+    softness : float
+        Ξ, one of MODULI.
 
     Returns
     -------
@@ -44,7 +47,7 @@ def two_mode_autocorrelation(times, l, num_vertices, friction, integrator="lange
     """
     n = l * (l + 1)
     bending = RIGIDITY * (l + 2) * (l + 1) * l * (l - 1)
-    area, shear = DENSITY_MODULUS * num_vertices, SHEAR_MODULUS * num_vertices
+    area, shear = (modulus * num_vertices for modulus in MODULI[softness])
     stiffness = KBT * np.array(
         [
             [bending + 4 * area, -2 * n * area],

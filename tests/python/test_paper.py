@@ -1,5 +1,6 @@
 """The figures of the paper in their quick versions, as a reader runs them, and their report."""
 
+import itertools
 import json
 import os
 import subprocess
@@ -78,7 +79,7 @@ def test_plot_only_says_what_is_missing(tmp_path):
         "sm03_distributions.py", "--quick", "--results", tmp_path, "--plot-only", check=False
     )
     assert result.returncode != 0
-    assert "4 of 4 results of distributions are not stored" in result.stderr
+    assert "16 of 16 results of distributions are not stored" in result.stderr
     assert "Traceback" not in result.stderr
 
 
@@ -94,6 +95,25 @@ def test_says_what_is_wrong(tmp_path, arguments, message):
     assert result.returncode != 0
     assert message in result.stderr
     assert "Traceback" not in result.stderr
+
+
+def test_films_are_short_and_move(tmp_path):
+    printed = run(
+        "films.py", "--quick", "--only", "oblate", "red_cell", "--out", tmp_path,
+        "--files", tmp_path, check=False,
+    )  # fmt: skip
+    assert printed.returncode == 1
+    assert "left out red_cell" in printed.stderr
+    film = tmp_path / "oblate.gif"
+    assert film.stat().st_size < 200_000
+    with Image.open(film) as image:
+        assert image.n_frames == 4
+        frames = []
+        for frame in range(4):
+            image.seek(frame)
+            frames.append(np.asarray(image.convert("RGB"), dtype=int))
+    # The caption is at the top, the membrane below it.
+    assert all(np.abs(a - b)[20:].max() > 50 for a, b in itertools.pairwise(frames))
 
 
 def test_exits_with_3_outside_of_a_tolerance(tmp_path, monkeypatch, capsys):
