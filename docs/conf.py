@@ -7,13 +7,13 @@ import openmmhelfrich
 
 sys.path.insert(0, str(Path(__file__).parent))
 
-from _site import links, pages
+from _site import links, notebooks, pages
 
 project = "openmm-helfrich"
 author = "The openmm-helfrich developers"
 version = release = openmmhelfrich.__version__
 extensions = [
-    "myst_parser",
+    "myst_nb",  # MyST-Parser, and notebooks
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
     "sphinx_copybutton",
@@ -24,6 +24,15 @@ highlight_language = "text"
 
 # Anchors of headings are GitHub's, and a link to one that is not there is a warning.
 myst_heading_anchors = 4
+
+# Tutorials run as a reader runs them: from their own folder. What has run before with the same package is taken from the
+# cache; an error in a cell ends the build.
+nb_execution_mode = "cache"
+nb_execution_cache_path = str(notebooks.cache_folder())
+nb_execution_timeout = 300  # s, for a cell
+nb_execution_raise_on_error = True
+nb_execution_show_tb = True
+nb_merge_streams = True
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "description"
