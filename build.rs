@@ -148,7 +148,10 @@ fn openmm_version(include: &Path, lib: &Path) -> String {
     let code = "#include <OpenMM.h>\n#include <iostream>\n\
                 int main() { std::cout << OpenMM::Platform::getOpenMMVersion(); }\n";
     fs::write(&source, code).expect("OUT_DIR is writable");
-    let compiler = cc::Build::new().cpp(true).std("c++17").include(include).get_compiler();
+    // It runs here, also where the library is for another machine.
+    let host = env::var("HOST").expect("cargo sets HOST");
+    let mut build = cc::Build::new();
+    let compiler = build.cpp(true).std("c++17").target(&host).include(include).get_compiler();
     let mut command = compiler.to_command();
     command.arg(&source).arg("-o").arg(&program).arg("-L").arg(lib);
     command.arg("-lOpenMM").arg(format!("-Wl,-rpath,{}", lib.display()));

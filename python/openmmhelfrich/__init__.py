@@ -36,6 +36,7 @@ from .forces import *  # noqa: F403
 from .forces import __all__ as _force_names
 from .masses import plaquette_masses
 from .mesh import Mesh
+from .pulling import pull
 from .ramps import harden
 from .red_cell import RedCell, RedCellModel
 from .reporters import (
@@ -82,6 +83,7 @@ __all__ = [
     "load_state",
     "plaquette_masses",
     "platforms",
+    "pull",
     "save_state",
     "set_backend",
     "stable_time_step",

@@ -1,15 +1,24 @@
 """What a model of a surface does with Systems: joins them, runs alone, tells its energies."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
 import openmm
 from openmm import app
 
 from . import platforms
+from ._numbers import whole_number
 from ._placement import Placement, groups_for
 from ._vesicle_flips import bath_of, mover_of
 from ._vesicle_viscosity import thermostat_of
-from .forces import MonteCarloBondFlip, SurfaceViscosityThermostat
+from .forces import MembraneForce, MonteCarloBondFlip, SurfaceViscosityThermostat
+from .mesh import Mesh
 
 __all__ = ["InSystems"]
+
+_MAX_SEED = 2**31 - 1
 
 
 class InSystems:
@@ -19,11 +28,17 @@ class InSystems:
     on.
     """
 
-    _flips = None
-    _viscosity = None
-    _placement = None
+    _mesh: Mesh
+    _mass: float
+    _flips: Mapping[str, Any] | None = None
+    _viscosity: Mapping[str, Any] | None = None
+    _placement: Placement | None = None
 
-    def add_to(self, system, force_groups=None):
+    def _forces(self, offset: int) -> dict[str, MembraneForce]:
+        """The forces by name, for particles that start at `offset`."""
+        raise NotImplementedError
+
+    def add_to(self, system: openmm.System, force_groups: Sequence[int] | None = None) -> Placement:
         """Add the particles and the forces to a System.
 
         The particles follow those which the System has, so several surfaces can share one. Each
@@ -70,7 +85,7 @@ class InSystems:
         self._placement = placement
         return placement
 
-    def system(self):
+    def system(self) -> openmm.System:
         """A new System that holds this surface alone: vertex i is particle i.
 
         Returns
@@ -81,7 +96,13 @@ class InSystems:
         self.add_to(system)
         return system
 
-    def simulation(self, integrator, platform=None):
+    def simulation(
+        self,
+        integrator: openmm.Integrator,
+        platform: openmm.Platform | str | None = None,
+        *,
+        seed: int | None = None,
+    ) -> app.Simulation:
         """A Simulation of this surface alone, with the positions of the mesh and no velocities.
 
         Parameters
@@ -89,12 +110,23 @@ class InSystems:
         integrator : openmm.Integrator
         platform : openmm.Platform or str, optional
             Default: the fastest one for it, see `platforms.choose`: mostly ``Helfrich``.
+        seed : int, optional
+            Of the random numbers of the integrator, and of flips and viscosity unless they have a
+            ``randomNumberSeed``: 1 or more; equal seeds give equal runs. Default: others each time.
 
         Returns
         -------
         openmm.app.Simulation
+
+        Raises
+        ------
+        ValueError
+            A seed out of range.
         """
         system = self.system()
+        if seed is not None:
+            name = type(self).__name__
+            self._sow(integrator, whole_number(seed, name, "seed", 1, _MAX_SEED))
         if platform is None:
             platform = platforms.choose(system, integrator).name
         if isinstance(platform, str):
@@ -109,8 +141,20 @@ class InSystems:
                 simulation.context.setParameter(cls.Temperature(), bath_of(integrator))
         return simulation
 
+    def _sow(self, integrator: openmm.Integrator, seed: int) -> None:
+        """Give all that draws random numbers, and has no seed of its own, this one."""
+        if hasattr(integrator, "setRandomNumberSeed"):
+            integrator.setRandomNumberSeed(seed)
+        placement = self.placement
+        for given, mover in (
+            (self._flips, placement.flips),
+            (self._viscosity, placement.viscosity),
+        ):
+            if given is not None and mover is not None and "randomNumberSeed" not in given:
+                mover.setRandomNumberSeed(seed)
+
     @property
-    def placement(self):
+    def placement(self) -> Placement:
         """The `Placement` in the System to which this surface was added last.
 
         Raises RuntimeError if it was not added to one yet.
@@ -122,7 +166,7 @@ class InSystems:
             )
         return self._placement
 
-    def energies(self, context):
+    def energies(self, context: openmm.Context) -> dict[str, float]:
         """Energies per term of the System to which this surface was added last.
 
         Parameters

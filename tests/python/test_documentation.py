@@ -118,19 +118,23 @@ def test_python(page, tmp_path, monkeypatch):
             Path(name.strip()).write_text(block.body, encoding="utf-8")
     space: dict = {"__name__": "__main__"}
     for block in blocks_of(page):
-        if block.language != "python" or block.note("not run,"):
-            continue
-        code = block.body
-        for kind, text in block.notes:
-            if kind == "before":
-                exec(compile(text.removeprefix("before"), f"before {block.where}", "exec"), space)
-            elif kind == "instead of":
-                old, new = text.strip().split(" => ")
-                assert old in code, f"{block.where}: there is no {old}"
-                code = code.replace(old, new)
-        # Errors name the lines of the page.
-        exec(compile("\n" * block.line + code, str(block.page), "exec"), space)
+        if block.language == "python" and not block.note("not run,"):
+            for kind, text in block.notes:
+                if kind == "before":
+                    code = text.removeprefix("before")
+                    exec(compile(code, f"before {block.where}", "exec"), space)
+            execute(block, space)
     plt.close("all")
+
+
+def execute(block: Block, space: dict) -> None:
+    """Run a block of Python in a namespace, with what its comments say instead of some texts."""
+    code = block.body
+    for old, new in (t.strip().split(" => ") for kind, t in block.notes if kind == "instead of"):
+        assert old in code, f"{block.where}: there is no {old}"
+        code = code.replace(old, new)
+    # Errors name the lines of the page.
+    exec(compile("\n" * block.line + code, str(block.page), "exec"), space)
 
 
 @pytest.mark.parametrize("block", of("toml"))

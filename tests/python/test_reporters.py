@@ -327,7 +327,7 @@ class TestReporters:
             ("step,time (ps)\n1,2\n3,x\n", "line 3"),
             ("step,time (ps)\n1,2,3\n", "line 2: need 2 numbers .there are 3"),
             ("step,time (ps),area (nm^2)\n1,2,3\n7\n", "line 3: need 3 numbers .there are 1"),
-            ("step,area (nm^2),area (a)\n1,2,3\n", "line 1: there are two columns 'area'"),
+            ("step,area (nm^2),area (nm^2)\n1,2,3\n", "line 1: there are two columns .area .nm"),
         ):
             bad.write_text(text)
             with pytest.raises(ValueError, match=culprit):

@@ -1,6 +1,7 @@
 #ifndef HELFRICH_XML_ELEMENTS_H_
 #define HELFRICH_XML_ELEMENTS_H_
 
+#include "SystemCalls.h"
 #include "openmm-helfrich/MonteCarloSurfaceMover.h"
 
 #include <openmm/serialization/SerializationNode.h>
@@ -10,7 +11,6 @@
 #include <climits>
 #include <cstdlib>
 #include <iterator>
-#include <locale.h>
 #include <set>
 #include <string>
 
@@ -64,9 +64,8 @@ inline std::string text(const std::string& force, const OpenMM::SerializationNod
 /** A number to the last character, with a point in any locale: what is broken shall not become a zero. */
 inline double number(const std::string& force, const OpenMM::SerializationNode& node, const std::string& property) {
     std::string value = text(force, node, property);
-    static const locale_t plain = newlocale(LC_ALL_MASK, "C", nullptr);
     char* end = nullptr;
-    double result = strtod_l(value.c_str(), &end, plain);
+    double result = plainNumber(value.c_str(), &end);
     if (value.empty() || *end != '\0')
         refuse(force, node, property, "a number");
     return result;

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import collections
 import contextlib
 import csv
 import os
@@ -93,6 +94,8 @@ def read_table(path) -> dict[str, np.ndarray]:
     -------
     dict of str to ndarray
         Columns by name, without the units that CSV headers have in parentheses; shape (num_rows,).
+        Where two differ by these only, they keep them: of a run with several vesicles, "area left
+        (kJ/mol)" is the energy of the term ``area``, and "area left (nm^2)" the area.
 
     Raises
     ------
@@ -117,7 +120,7 @@ def read_table(path) -> dict[str, np.ndarray]:
     lines = text[: text.rfind("\n") + 1].splitlines()
     if not lines:
         raise ValueError(f"read_table: {path} has no header")
-    names = [_UNIT.sub("", name) for name in next(csv.reader(lines[:1]))]
+    names = _names(next(csv.reader(lines[:1])))
     if len(set(names)) != len(names):
         twice = next(name for name in names if names.count(name) > 1)
         raise ValueError(f"read_table: {path}, line 1: there are two columns {twice!r}")
@@ -133,6 +136,13 @@ def read_table(path) -> dict[str, np.ndarray]:
                 f"read_table: {path}, line {number + 2}: need {len(names)} numbers ({reason})"
             ) from None
     return dict(zip(names, rows.T, strict=True))
+
+
+def _names(header: list[str]) -> list[str]:
+    """Columns of a CSV file without their units, but for those of which the name is not enough."""
+    short = [_UNIT.sub("", name) for name in header]
+    counts = collections.Counter(short)
+    return [name if counts[name] == 1 else full for name, full in zip(short, header, strict=True)]
 
 
 def _open_hdf5(path):
