@@ -10,6 +10,8 @@ mod codes;
 mod compose;
 #[path = "shaders/constants.rs"]
 mod constants;
+#[path = "wrappers/declarations.rs"]
+mod declarations;
 #[path = "shaders/dialect/mod.rs"]
 mod dialect;
 #[path = "wrappers/codes.rs"]
@@ -18,17 +20,12 @@ mod headers;
 #[allow(dead_code, reason = "the crate uses the rest")]
 mod interface;
 
-#[path = "src/moves/records.rs"]
-#[allow(dead_code, reason = "only the layouts matter here")]
-mod move_records;
-#[path = "src/ffi/records.rs"]
-mod records;
-
 /// Where the included files look for them.
 mod potentials {
-    pub use crate::codes::{CONSTANTS, Contribution, MAX_PARAMETERS, Needs};
+    pub use crate::codes::{CONSTANTS, MAX_PARAMETERS, Needs};
 }
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::process::{Command, exit};
 use std::{env, fs};
@@ -39,9 +36,7 @@ fn main() {
     }
     println!("cargo:rerun-if-changed=wrappers");
     println!("cargo:rerun-if-changed=shaders");
-    for shared in
-        ["potentials/codes.rs", "evaluator/gpu/interface.rs", "ffi/records.rs", "moves/records.rs"]
-    {
+    for shared in ["potentials/codes.rs", "evaluator/gpu/interface.rs"] {
         println!("cargo:rerun-if-changed=src/{shared}");
     }
     if let Err(message) = compose::write_modules(Path::new("shaders"), &out_dir()) {
@@ -65,6 +60,8 @@ fn main() {
     }
     fs::write(out_dir().join("NativeCodes.h"), headers::native_codes())
         .expect("OUT_DIR is writable");
+    let renamed = declarations::shim_header(Path::new("wrappers"));
+    fs::write(out_dir().join("CApi.h"), renamed).expect("OUT_DIR is writable");
     shim.include(out_dir());
     let comparison = out_dir().join("codes.cpp");
     fs::write(&comparison, headers::comparison()).expect("OUT_DIR is writable");
@@ -89,7 +86,13 @@ fn main() {
         }
     }
     println!("cargo:lib_dir={}", lib.display());
-    bind_c_api(&include, site_packages.as_deref());
+    find_libclang(site_packages.as_deref());
+    let openmm = bindgen::Builder::default()
+        .header(include.join("OpenMMCWrapper.h").display().to_string())
+        .allowlist_item("OpenMM_.*");
+    fs::write(out_dir().join("openmm.rs"), bindings(openmm)).expect("OUT_DIR is writable");
+    let folders = ["wrappers/include".into(), "wrappers/src".into(), include, out_dir()];
+    declarations::write(&folders, &out_dir(), bindings).expect("OUT_DIR is writable");
 }
 
 /// Stop with a message that a user can act on.
@@ -181,8 +184,8 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// OpenMM's own C API, for Rust users and the tests.
-fn bind_c_api(include: &Path, site_packages: Option<&Path>) {
+/// The wheel from PyPI has it where bindgen does not look.
+fn find_libclang(site_packages: Option<&Path>) {
     let wheel = site_packages.map(|path| path.join("clang/native"));
     if let Some(folder) = wheel.filter(|folder| folder.exists())
         && env::var_os("LIBCLANG_PATH").is_none()
@@ -190,18 +193,12 @@ fn bind_c_api(include: &Path, site_packages: Option<&Path>) {
         // SAFETY: a build script has one thread.
         unsafe { env::set_var("LIBCLANG_PATH", folder) };
     }
-    let out = out_dir();
-    let bindings = std::panic::catch_unwind(|| {
-        bindgen::Builder::default()
-            .header(include.join("OpenMMCWrapper.h").display().to_string())
-            .allowlist_item("OpenMM_.*")
-            .generate()
-    });
-    match bindings {
-        Ok(Ok(bindings)) => {
-            bindings.write_to_file(out.join("openmm.rs")).expect("OUT_DIR is writable");
-        }
-        Ok(Err(error)) => fail(&format!("bindgen cannot read OpenMM's C API: {error}")),
+}
+
+fn bindings(builder: bindgen::Builder) -> String {
+    match catch_unwind(AssertUnwindSafe(|| builder.generate())) {
+        Ok(Ok(bindings)) => bindings.to_string(),
+        Ok(Err(error)) => fail(&format!("bindgen cannot read the headers: {error}")),
         Err(_) => fail(
             "bindgen needs libclang: `pip install libclang` into the Python of this build, or set \
              $LIBCLANG_PATH.",

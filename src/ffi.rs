@@ -1,14 +1,16 @@
 //! The C interface: what the C++ shim, the Python package and OpenMM's plugin loader call.
 //!
 //! Every function that can fail returns 0 for success and 1 for failure; [`Helfrich_lastError`] then has
-//! the message of the calling thread. No panic leaves a function. `openmm-helfrich/internal/Core.h`
-//! in `wrappers/include` declares them for C++, as far as C++ needs them; the two change together.
+//! the message of the calling thread. No panic leaves a function. `CoreFunctions.h` in
+//! `wrappers/include/openmm-helfrich/internal/` and `wrappers/src/HelfrichDynamics.h` declare them for C++; the build
+//! stops where the two differ.
 
 #![allow(non_snake_case, reason = "names follow OpenMM's C API")]
 
 mod backend;
 pub mod c_api;
 mod crowd;
+mod declared;
 mod dynamics;
 #[cfg(test)]
 mod fuzz;
@@ -19,16 +21,17 @@ mod native;
 mod plugin;
 mod potentials;
 mod records;
+mod shim;
 mod variable_mass;
 mod viscosity;
 
 pub use backend::*;
 pub use crowd::*;
+pub use dynamics::*;
 pub use membrane::*;
 pub use mesh::*;
 pub use moves::*;
 pub use native::*;
-pub use plugin::Helfrich_register;
 pub use plugin::*;
 pub use potentials::*;
 pub use records::*;
@@ -111,6 +114,15 @@ pub(crate) unsafe fn copy_out(message: &str, buffer: *mut c_char, size: i64) -> 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn Helfrich_lastError(buffer: *mut c_char, size: i64) -> i64 {
     LAST_ERROR.with(|last| unsafe { copy_out(&last.borrow(), buffer, size) })
+}
+
+/// Lets the shim report what it caught.
+///
+/// # Safety
+/// `message` must end with a NUL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn helfrich_setLastError(message: *const c_char) {
+    set_last_error(unsafe { CStr::from_ptr(message) }.to_string_lossy().into_owned());
 }
 
 /// The message of this thread's last failure.

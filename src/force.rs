@@ -253,7 +253,7 @@ impl MembraneForce {
     /// The force as OpenMM's C API knows it. Keep it to steer a force that a System has taken over, with the
     /// functions of [`crate::ffi::c_api`]; it lives as long as the System.
     pub fn as_openmm(&self) -> *mut OpenMM_Force {
-        self.force.as_openmm()
+        self.force.as_ptr()
     }
 
     /// The force for `OpenMM_System_addForce`, which takes it over.

@@ -1,28 +1,11 @@
-//! Part of build.rs: C++ that compares the headers with `src/potentials/codes.rs`, `src/ffi/records.rs` and
-//! `src/moves/records.rs`, so that the
-//! build stops where they differ.
+//! Part of build.rs: C++ that compares the headers with `src/potentials/codes.rs`, so that the build stops where
+//! they differ.
 
-use crate::codes::{
-    Attraction, Coefficients, Contribution, Form, MAX_PARAMETERS, Scheme, SpringForm,
-};
+use crate::codes::{Attraction, Coefficients, Form, MAX_PARAMETERS, Scheme, SpringForm};
 use crate::interface::{Binding, NUMBERS};
-use crate::move_records::{FlipRules, FlipState, SwapRules, SwapState};
-use crate::records::{
-    EdgeBath, FollowerInput, NativeBuffer, NativePass, NativePlan, ParameterInfo, ParticleArrays,
-    SheetInput, TermInput, TurnInput,
-};
 use std::ffi::CStr;
-use std::mem::offset_of;
 
-/// Assertions on the size of a structure and on where its fields are.
-macro_rules! structure {
-    ($rust:ident, $cpp:literal, $($field:ident)*) => {
-        structure($cpp, size_of::<$rust>(), &[$((stringify!($field), offset_of!($rust, $field))),*])
-    };
-}
-
-/// A source that compiles only if the enumerations of the headers have the numbers of Rust's and no others, and the
-/// structures the same layout.
+/// A source that compiles only if the enumerations of the headers have the numbers of Rust's and no others.
 pub fn comparison() -> String {
     let mut text = "#include <OpenMMHelfrich.h>\n#include <OpenMMHelfrichCWrapper.h>\n\
                     #include <HelfrichDynamics.h>\n#include <cstddef>\n"
@@ -43,62 +26,6 @@ pub fn comparison() -> String {
         let in_c = format!("Helfrich_{class}_");
         text += &enumeration(&format!("{in_c}{kind}"), &in_c, names);
     }
-    // Pointers of another machine may have another size.
-    let width = std::env::var("CARGO_CFG_TARGET_POINTER_WIDTH").unwrap_or_default();
-    if width == usize::BITS.to_string() {
-        text += &structure!(ParameterInfo, "HelfrichParameterInfo", name energy length default_value per last);
-        text += &structure!(Contribution, "HelfrichContribution", energy by_parameter);
-        text += &structure!(
-            ParticleArrays,
-            "HelfrichParticleArrays",
-            num_particles positions velocities forces
-        );
-        text += &structure!(EdgeBath, "HelfrichEdgeBath", friction kt lag);
-        text += &structure!(SheetInput, "HelfrichSheet", corners num_triangles is_periodic);
-        text += &structure!(
-            FlipRules,
-            "HelfrichFlipRules",
-            temperature min_degree max_degree max_edge_length demon
-        );
-        text += &structure!(
-            FlipState,
-            "HelfrichFlipState",
-            key attempts accepted by_border by_degree by_length by_shape by_energy by_edge demon_energy
-        );
-        text += &structure!(SwapRules, "HelfrichSwapRules", temperature demon);
-        text += &structure!(
-            SwapState,
-            "HelfrichSwapState",
-            key attempts accepted by_kind by_energy demon_energy
-        );
-        text += &structure!(
-            TermInput,
-            "HelfrichTerm",
-            potential form switches wants_derivatives values fields field_lengths particles num_particles
-            numbers
-        );
-        text += &structure!(
-            TurnInput,
-            "HelfrichTurn",
-            subject membrane terms num_terms contributions box_vectors
-        );
-        text += &structure!(
-            FollowerInput,
-            "HelfrichFollower",
-            membrane first_triangle terms num_terms
-        );
-        text += &structure!(
-            NativeBuffer,
-            "HelfrichNativeBuffer",
-            item_size items data data_size version
-        );
-        text += &structure!(NativePass, "HelfrichNativePass", name groups);
-        text += &structure!(
-            NativePlan,
-            "HelfrichNativePlan",
-            num_buffers num_passes num_targets num_runs targets runs version extent unit num_vertices particles anchors
-        );
-    }
     text
 }
 
@@ -115,23 +42,6 @@ pub fn native_codes() -> String {
         text += &format!("    {name},\n");
     }
     text + "};\n} // namespace NativeCodes\n} // namespace HelfrichPlugin\n\n#endif\n"
-}
-
-fn structure(cpp: &str, size: usize, fields: &[(&str, usize)]) -> String {
-    let differs = "has another layout in Rust";
-    let mut text = format!("static_assert(sizeof({cpp}) == {size}, \"{cpp} {differs}\");\n");
-    for (field, offset) in fields {
-        let mut words = field.split('_');
-        let mut name = words.next().unwrap_or_default().to_owned();
-        for word in words {
-            name += &word[..1].to_uppercase();
-            name += &word[1..];
-        }
-        text += &format!(
-            "static_assert(offsetof({cpp}, {name}) == {offset}, \"{cpp}::{name} {differs}\");\n"
-        );
-    }
-    text
 }
 
 /// Values by assertions; that there are no more by a switch, of which the compiler says what it lacks.

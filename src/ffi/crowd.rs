@@ -3,7 +3,7 @@
 use super::membrane::{like_positions, of_terms, with_terms};
 use super::{TurnInput, guarded, slice, text};
 use crate::error::Result;
-use crate::membrane::{Crowd, Membrane};
+use crate::membrane::Crowd;
 use crate::potentials::Request;
 use crate::team::Team;
 use std::ffi::c_int;
@@ -55,7 +55,7 @@ impl Arrays<'_> {
                     (of_terms(input.contributions, terms), like_positions(self.forces, &at));
                 let request =
                     Request::new(terms, at.positions).with_energies(sums).with_forces(forces);
-                (*input.membrane.cast::<Membrane>()).evaluate(request, at.cell)
+                (*input.membrane).evaluate(request, at.cell)
             })
         }
     }
@@ -81,8 +81,7 @@ pub unsafe extern "C" fn Helfrich_Crowd_evaluate(
     let positions = unsafe { slice(positions, 3 * num_particles as usize) };
     let (crowd, team) = unsafe { (&mut *crowd, team.as_mut()) };
     let arrays = Arrays { positions, forces };
-    let size =
-        |turn: &Turn| unsafe { &*turn.input.membrane.cast::<Membrane>() }.mesh().num_vertices();
+    let size = |turn: &Turn| unsafe { &*turn.input.membrane }.mesh().num_vertices();
     let mut turns: Vec<_> = inputs.iter().map(|input| Turn { input, outcome: Ok(()) }).collect();
     let status = guarded("MembraneForce", || {
         let evaluate = |turn: &mut Turn| turn.outcome = unsafe { arrays.evaluate(turn.input) };

@@ -1,5 +1,4 @@
 //! The C interface of the platform: teams of threads, time steps and random numbers.
-//! `wrappers/src/HelfrichDynamics.h` declares these functions for C++; the two change together.
 
 use super::{ParticleArrays, guarded, slice};
 use crate::dynamics::integrate::{self, Dynamics, PARALLEL_FROM, Particles, WAKE_FROM};
@@ -58,11 +57,8 @@ pub extern "C" fn Helfrich_Dynamics_usesTeam(num_particles: i64, is_awake: c_int
 /// # Safety
 /// `key` and `bits` must hold two values.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn Helfrich_Random_bits(
-    key: *const [u32; 2],
-    number: u64,
-    bits: *mut [u64; 2],
-) {
+pub unsafe extern "C" fn Helfrich_Random_bits(key: *const u32, number: u64, bits: *mut u64) {
+    let (key, bits) = (key.cast::<[u32; 2]>(), bits.cast::<[u64; 2]>());
     unsafe { bits.write(random::bits(*key, number)) };
 }
 

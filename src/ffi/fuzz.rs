@@ -132,8 +132,8 @@ proptest! {
             forces: forces.as_ptr(),
         };
         let subject = c"Fuzz".as_ptr();
-        let vectors = [[9.0, 0.0, 0.0], [0.0, 9.0, 0.0], [0.0, 0.0, settings[6]]];
-        let vectors = if is_periodic == 1 { &vectors } else { ptr::null() };
+        let vectors = [9.0, 0.0, 0.0, 0.0, 9.0, 0.0, 0.0, 0.0, settings[6]];
+        let vectors = if is_periodic == 1 { vectors.as_ptr() } else { ptr::null() };
         let [step, friction, kt, density, lag, time, ..] = settings;
         let mut stream = Stream { key: [1, 2], draws: u64::MAX - 3 };
         let (mut membrane, mut steps) = (ptr::null_mut(), ptr::null_mut());

@@ -94,9 +94,10 @@ pub unsafe extern "C" fn Helfrich_Membrane_spans(membrane: *const Membrane) -> c
 /// The periodic box of some vectors; null for none.
 ///
 /// # Safety
-/// `vectors` must be readable or null.
-pub(super) unsafe fn cell(vectors: *const [[f64; 3]; 3]) -> Result<Option<Cell>> {
-    unsafe { vectors.as_ref() }.map(|vectors| Cell::new(*vectors)).transpose()
+/// `vectors` must hold nine values or be null.
+pub(super) unsafe fn cell(vectors: *const f64) -> Result<Option<Cell>> {
+    let vectors = unsafe { vectors.cast::<[[f64; 3]; 3]>().as_ref() };
+    vectors.map(|vectors| Cell::new(*vectors)).transpose()
 }
 
 impl TermInput {
@@ -110,9 +111,8 @@ impl TermInput {
             switches: self.switches,
             values: self.values,
             fields: std::array::from_fn(field),
-            particles: unsafe { slice(self.particles, self.num_particles as usize) },
-            numbers: unsafe { self.numbers.cast::<VertexNumbers>().as_ref() }
-                .unwrap_or(VertexNumbers::NONE),
+            particles: unsafe { slice(self.particles.cast(), self.num_particles as usize) },
+            numbers: unsafe { self.numbers.as_ref() }.unwrap_or(VertexNumbers::NONE),
             constants: TriangleConstants::NONE,
             wants_derivatives: self.wants_derivatives != 0,
         }
@@ -139,7 +139,7 @@ pub(super) unsafe fn read_terms<'a>(
 pub(super) unsafe fn with_terms<R>(
     (terms, num_terms): (*const TermInput, i64),
     (positions, num_particles): (*const f64, i64),
-    box_vectors: *const [[f64; 3]; 3],
+    box_vectors: *const f64,
     call: impl FnOnce(&[Term], Configuration) -> Result<R>,
 ) -> Result<R> {
     let terms = unsafe { read_terms(terms, num_terms) };
@@ -228,7 +228,7 @@ pub unsafe extern "C" fn Helfrich_Membrane_evaluate(
     num_terms: i64,
     num_particles: i64,
     positions: *const f64,
-    box_vectors: *const [[f64; 3]; 3],
+    box_vectors: *const f64,
     contributions: *mut Contribution,
     forces: *mut f64,
 ) -> c_int {
@@ -256,7 +256,7 @@ pub unsafe extern "C" fn Helfrich_Membrane_addVirial(
     num_terms: i64,
     num_particles: i64,
     positions: *const f64,
-    box_vectors: *const [[f64; 3]; 3],
+    box_vectors: *const f64,
     virial: *mut f64,
 ) -> c_int {
     let (given, at) = ((terms, num_terms), (positions, num_particles));

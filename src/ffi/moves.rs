@@ -38,7 +38,7 @@ pub unsafe extern "C" fn Helfrich_Membrane_flip(
     num_terms: i64,
     num_particles: i64,
     positions: *const f64,
-    box_vectors: *const [[f64; 3]; 3],
+    box_vectors: *const f64,
     rules: *const FlipRules,
     attempts: i64,
     state: *mut FlipState,
@@ -59,7 +59,7 @@ pub unsafe extern "C" fn Helfrich_Membrane_flip(
         let pairs = followers.iter().zip(&their_terms);
         let mut followers: SmallVec<[Follower; 1]> = pairs
             .map(|(follower, terms)| Follower {
-                membrane: unsafe { &mut *follower.membrane.cast() },
+                membrane: unsafe { &mut *follower.membrane },
                 first_triangle: follower.first_triangle as usize,
                 terms,
             })
@@ -89,7 +89,7 @@ pub unsafe extern "C" fn Helfrich_Membrane_swap(
     num_terms: i64,
     num_particles: i64,
     positions: *const f64,
-    box_vectors: *const [[f64; 3]; 3],
+    box_vectors: *const f64,
     rules: *const SwapRules,
     attempts: i64,
     state: *mut SwapState,

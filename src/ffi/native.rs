@@ -5,7 +5,7 @@ use super::{NativeBuffer, NativePass, NativePlan, TermInput, guarded, slice, tex
 use crate::evaluator::gpu::Precision;
 use crate::evaluator::gpu::native::{self, Native, Wanted};
 use crate::membrane::Membrane;
-use crate::potentials::{MAX_PARAMETERS, REGISTRY};
+use crate::potentials::REGISTRY;
 use std::ffi::{c_char, c_int};
 
 fn precision(is_double: c_int) -> Precision {
@@ -71,7 +71,7 @@ pub unsafe extern "C" fn Helfrich_Native_look(
     num_terms: i64,
     num_particles: i64,
     positions: *const f64,
-    box_vectors: *const [[f64; 3]; 3],
+    box_vectors: *const f64,
 ) -> c_int {
     let (given, at) = ((terms, num_terms), (positions, num_particles));
     guarded(unsafe { text(subject) }, || unsafe {
@@ -94,17 +94,17 @@ pub unsafe extern "C" fn Helfrich_Native_plan(
     subject: *const c_char,
     native: *mut Native,
     membrane: *mut Membrane,
-    box_vectors: *const [[f64; 3]; 3],
+    box_vectors: *const f64,
     terms: *const TermInput,
     num_terms: i64,
     energies: c_int,
     forces: c_int,
-    derivatives: *const [c_int; MAX_PARAMETERS],
+    derivatives: *const c_int,
     plan: *mut NativePlan,
 ) -> c_int {
     guarded(unsafe { text(subject) }, || {
         let terms = unsafe { read_terms(terms, num_terms) };
-        let derivatives = unsafe { slice(derivatives, num_terms as usize) };
+        let derivatives = unsafe { slice(derivatives.cast(), num_terms as usize) };
         let (native, membrane) = unsafe { (&mut *native, &mut *membrane) };
         for term in &terms {
             membrane.check(term)?;
@@ -127,8 +127,8 @@ pub unsafe extern "C" fn Helfrich_Native_plan(
                 num_passes: made.passes.len() as i64,
                 num_targets: made.targets.len() as i64,
                 num_runs: made.runs.len() as i64,
-                targets: made.targets.as_ptr(),
-                runs: made.runs.as_ptr(),
+                targets: made.targets.as_ptr().cast(),
+                runs: made.runs.as_ptr().cast(),
                 version: made.version,
                 extent: made.extent,
                 unit: native.unit(),

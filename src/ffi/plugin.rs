@@ -1,5 +1,6 @@
 //! The C interface of the plugin: what OpenMM calls when it loads the library, and what the force classes need.
 
+use super::shim::*;
 use std::ffi::{CStr, c_char, c_int, c_void};
 
 /// The version of OpenMM that this library was built against.
@@ -21,15 +22,6 @@ pub extern "C" fn Helfrich_openmmVersion() -> *const c_char {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn Helfrich_acceptOpenMM(version: *const c_char) {
     unsafe { helfrich_shim_acceptOpenMM(version) };
-}
-
-unsafe extern "C" {
-    fn helfrich_shim_acceptOpenMM(version: *const c_char);
-    fn helfrich_shim_registerSerialization() -> c_int;
-    fn helfrich_shim_registerPlatform();
-    fn helfrich_shim_adoptKernels();
-    fn helfrich_shim_checkPlatform(system: *const c_void, integrator: *const c_void) -> c_int;
-    fn helfrich_shim_createImpl(force: *const c_void) -> *mut c_void;
 }
 
 /// OpenMM's plugin entry point for platforms: registers the platform `Helfrich`.

@@ -145,7 +145,7 @@ pub unsafe extern "C" fn Helfrich_Potential_checkNumbers(
     potential: *const c_char,
     numbers: *const f64,
     count: i64,
-    box_vectors: *const [[f64; 3]; 3],
+    box_vectors: *const f64,
 ) -> c_int {
     let subject = unsafe { text(potential) };
     guarded(subject, || {
@@ -169,11 +169,11 @@ pub unsafe extern "C" fn Helfrich_Numbers_create(
     before: *const VertexNumbers,
     numbers: *const f64,
     count: i64,
-    box_vectors: *const [[f64; 3]; 3],
+    box_vectors: *const f64,
 ) -> *mut VertexNumbers {
     let owner = unsafe { before.as_ref() }.map(|numbers| numbers.owner);
     let values = unsafe { slice(numbers, count as usize) }.to_vec();
-    let vectors = unsafe { box_vectors.as_ref() }.copied();
+    let vectors = unsafe { box_vectors.cast::<[[f64; 3]; 3]>().as_ref() }.copied();
     Box::into_raw(Box::new(VertexNumbers::new(values, vectors, owner)))
 }
 

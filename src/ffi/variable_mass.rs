@@ -1,5 +1,4 @@
-//! The C interface to [`crate::dynamics::variable_mass`]. `wrappers/src/HelfrichDynamics.h` declares these functions for
-//! C++; the two change together.
+//! The C interface to [`crate::dynamics::variable_mass`].
 
 use super::membrane::cell;
 use super::{ParticleArrays, SheetInput, guarded, slice, text};
@@ -72,7 +71,7 @@ pub unsafe extern "C" fn Helfrich_VariableMasses_get(
     subject: *const c_char,
     masses: *mut VariableMasses,
     particles: *const ParticleArrays,
-    box_vectors: *const [[f64; 3]; 3],
+    box_vectors: *const f64,
     out: *mut f64,
 ) -> c_int {
     guarded(unsafe { text(subject) }, || {
@@ -95,7 +94,7 @@ pub unsafe extern "C" fn Helfrich_VariableMasses_begin(
     masses: *mut VariableMasses,
     team: *mut Team,
     particles: *const ParticleArrays,
-    box_vectors: *const [[f64; 3]; 3],
+    box_vectors: *const f64,
     step: f64,
 ) -> c_int {
     guarded(unsafe { text(subject) }, || {
@@ -115,7 +114,7 @@ pub unsafe extern "C" fn Helfrich_VariableMasses_finish(
     masses: *mut VariableMasses,
     team: *mut Team,
     particles: *const ParticleArrays,
-    box_vectors: *const [[f64; 3]; 3],
+    box_vectors: *const f64,
     step: f64,
 ) -> c_int {
     guarded(unsafe { text(subject) }, || {
@@ -135,7 +134,7 @@ pub unsafe extern "C" fn Helfrich_VariableMasses_bathe(
     masses: *mut VariableMasses,
     team: *mut Team,
     particles: *const ParticleArrays,
-    box_vectors: *const [[f64; 3]; 3],
+    box_vectors: *const f64,
     stream: *mut Stream,
     time: f64,
     friction: f64,

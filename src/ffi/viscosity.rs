@@ -1,4 +1,4 @@
-//! The C interface to friction and noise along edges; `wrappers/src/HelfrichDynamics.h` declares these functions for C++.
+//! The C interface to friction and noise along edges.
 
 use super::membrane::cell;
 use super::{EdgeBath, guarded, slice, text};
@@ -55,7 +55,7 @@ pub unsafe extern "C" fn Helfrich_Viscosity_sweep(
     num_particles: i64,
     positions: *mut f64,
     velocities: *mut f64,
-    box_vectors: *const [[f64; 3]; 3],
+    box_vectors: *const f64,
     bath: *const EdgeBath,
     stream: *mut Stream,
 ) -> c_int {

@@ -116,14 +116,14 @@ impl MonteCarloBondFlip {
         context: *mut OpenMM_Context,
     ) -> Result<Vec<[c_int; 3]>> {
         // SAFETY: the caller's promise.
-        let count = unsafe { c_api::Helfrich_MembraneForce_getNumTriangles(force.cast()) };
+        let count = unsafe { c_api::Helfrich_MembraneForce_getNumTriangles(force) };
         let count = usize::try_from(count).map_err(|_| Error::Contract(last_error()))?;
         let mut triangles = vec![[0; 3]; count];
         // SAFETY: the caller's promise, and there is room for all triangles.
         check(unsafe {
             c_api::Helfrich_MembraneForce_getTrianglesInContext(
-                force.cast(),
-                context.cast(),
+                force,
+                context,
                 triangles.as_flattened_mut().as_mut_ptr(),
             )
         })?;

@@ -90,8 +90,8 @@ impl MonteCarloDomainSwap {
         // SAFETY: the caller's promise, and there is room for all vertices.
         check(unsafe {
             c_api::Helfrich_MembraneForce_getPermutationInContext(
-                force.cast(),
-                context.cast(),
+                force,
+                context,
                 permutation.as_mut_ptr(),
             )
         })?;
@@ -113,8 +113,8 @@ impl MonteCarloDomainSwap {
         // SAFETY: the caller's promise, and the vertices are as many as is said.
         check(unsafe {
             c_api::Helfrich_MembraneForce_setPermutationInContext(
-                force.cast(),
-                context.cast(),
+                force,
+                context,
                 permutation.as_ptr(),
                 permutation.len() as c_int,
             )

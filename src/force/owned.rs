@@ -5,35 +5,35 @@ use crate::error::{Error, Result};
 use crate::ffi::c_api;
 use crate::ffi::last_error;
 use crate::openmm::{OpenMM_Context, OpenMM_Force};
-use std::ffi::{c_char, c_double, c_int, c_void};
+use std::ffi::{c_char, c_double, c_int};
 use std::ptr::NonNull;
 
 /// A force that no System owns yet.
-pub(super) struct Owned(NonNull<c_api::Force>);
+pub(super) struct Owned(NonNull<OpenMM_Force>);
 
 /// The C function that reads a statistic of a class of movers.
-type GetStatistic =
-    unsafe extern "C" fn(*mut c_api::Force, *mut c_void, *const c_char, *mut c_double) -> c_int;
+type GetStatistic = unsafe extern "C" fn(
+    *mut OpenMM_Force,
+    *mut OpenMM_Context,
+    *const c_char,
+    *mut c_double,
+) -> c_int;
 
 impl Owned {
     /// What a C function has made, or the message of why it has not.
     ///
     /// # Safety
     /// `force` must be null, or a force that nobody owns.
-    pub unsafe fn new(force: *mut c_api::Force) -> Result<Self> {
+    pub unsafe fn new(force: *mut OpenMM_Force) -> Result<Self> {
         NonNull::new(force).map(Self).ok_or_else(|| Error::Contract(last_error()))
     }
 
-    pub fn as_ptr(&self) -> *mut c_api::Force {
+    pub fn as_ptr(&self) -> *mut OpenMM_Force {
         self.0.as_ptr()
     }
 
-    pub fn as_openmm(&self) -> *mut OpenMM_Force {
-        self.as_ptr().cast()
-    }
-
     pub fn into_openmm(self) -> *mut OpenMM_Force {
-        let force = self.as_openmm();
+        let force = self.as_ptr();
         std::mem::forget(self);
         force
     }
@@ -62,7 +62,7 @@ pub(super) unsafe fn statistic(
     let name = c_text(name)?;
     let mut value = f64::NAN;
     // SAFETY: the caller's promise, and the name ends with a NUL.
-    check(unsafe { get(force.cast(), context.cast(), name.as_ptr(), &mut value) })?;
+    check(unsafe { get(force, context, name.as_ptr(), &mut value) })?;
     Ok(value)
 }
 
@@ -83,7 +83,7 @@ macro_rules! handed_over {
     () => {
         /// The force as OpenMM's C API knows it, to steer it when a System has taken it over.
         pub fn as_openmm(&self) -> *mut OpenMM_Force {
-            self.force.as_openmm()
+            self.force.as_ptr()
         }
 
         /// The force for `OpenMM_System_addForce`, which takes it over.

@@ -1,6 +1,6 @@
 //! What C++ tells movers, and what it keeps for them.
 //!
-//! build.rs includes this file, and has the C++ compiler compare the structures of `Core.h` with their layout.
+//! `src/ffi/records.rs` compares them with the structures of `CoreFunctions.h`.
 
 /// What flips may do. The C++ shim fills it in.
 #[repr(C)]

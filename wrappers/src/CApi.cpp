@@ -1,4 +1,7 @@
 #include "ForceFactory.h"
+#include "Shim.h"
+
+#include <CApi.h>
 
 #include <openmm/Context.h>
 
@@ -34,22 +37,6 @@ TriangulatedForce& asTriangulated(void* force) {
     return as<TriangulatedForce>("MembraneForce", force);
 }
 
-MonteCarloBondFlip& asMover(void* force) {
-    return as<MonteCarloBondFlip>("MonteCarloBondFlip", force);
-}
-
-MonteCarloDomainSwap& asSwap(void* force) {
-    return as<MonteCarloDomainSwap>("MonteCarloDomainSwap", force);
-}
-
-MonteCarloMembraneTension& asTension(void* force) {
-    return as<MonteCarloMembraneTension>("MonteCarloMembraneTension", force);
-}
-
-SurfaceViscosityThermostat& asViscosity(void* force) {
-    return as<SurfaceViscosityThermostat>("SurfaceViscosityThermostat", force);
-}
-
 OpenMM::Context& asContext(void* context) {
     return *static_cast<OpenMM::Context*>(context);
 }
@@ -81,11 +68,12 @@ int guarded(Body body) {
 
 } // namespace
 
-// What the C functions of the Rust core (src/ffi/c_api.rs) do with force objects.
+// What the functions of OpenMMHelfrichCWrapper.h do. The build makes CApi.h of it, with these names: those of the
+// header are Rust's, which only pass on (wrappers/declarations.rs).
 extern "C" {
 
-void* helfrich_shim_createForce(const char* type, const int* triangles, int numTriangles, const double* values,
-                                int numValues, int form) {
+OpenMM_Force* helfrich_shim_createForce(const char* type, const int* triangles, int numTriangles, const double* values,
+                                        int numValues, int form) {
     OpenMM::Force* created = nullptr;
     guarded([&] {
         std::unique_ptr<MembraneForce> force(makeForce(type));
@@ -102,42 +90,43 @@ void* helfrich_shim_createForce(const char* type, const int* triangles, int numT
         force->addTriangles(vector<int>(triangles, triangles + 3 * (size_t) numTriangles));
         created = force.release();
     });
-    return created;
+    return reinterpret_cast<OpenMM_Force*>(created);
 }
 
-void helfrich_shim_destroyForce(void* force) {
-    delete static_cast<OpenMM::Force*>(force);
+void helfrich_shim_MembraneForce_destroy(OpenMM_Force* force) {
+    delete reinterpret_cast<OpenMM::Force*>(force);
 }
 
-int helfrich_shim_addTriangle(void* force, int particle1, int particle2, int particle3) {
+int helfrich_shim_MembraneForce_addTriangle(OpenMM_Force* force, int particle1, int particle2, int particle3) {
     int index = -1;
     guarded([&] { index = asTriangulated(force).addTriangle(particle1, particle2, particle3); });
     return index;
 }
 
-int helfrich_shim_getNumTriangles(void* force) {
+int helfrich_shim_MembraneForce_getNumTriangles(OpenMM_Force* force) {
     int count = -1;
     guarded([&] { count = asTriangulated(force).getNumTriangles(); });
     return count;
 }
 
-int helfrich_shim_getTriangle(void* force, int index, int* corners) {
+int helfrich_shim_MembraneForce_getTriangle(OpenMM_Force* force, int index, int* corners) {
     return guarded([&] { asTriangulated(force).getTriangle(index, corners[0], corners[1], corners[2]); });
 }
 
-int helfrich_shim_getValue(void* force, const char* parameter, double* value) {
+int helfrich_shim_MembraneForce_getParameterValue(OpenMM_Force* force, const char* parameter, double* value) {
     return guarded([&] { *value = asForce(force).getParameterValue(parameter); });
 }
 
-int helfrich_shim_setValue(void* force, const char* parameter, double value) {
+int helfrich_shim_MembraneForce_setParameterValue(OpenMM_Force* force, const char* parameter, double value) {
     return guarded([&] { asForce(force).setParameterValue(parameter, value); });
 }
 
-int helfrich_shim_setElementValues(void* force, const char* parameter, const double* values, int count) {
+int helfrich_shim_MembraneForce_setElementValues(OpenMM_Force* force, const char* parameter, const double* values,
+                                                 int count) {
     return guarded([&] { asForce(force).setElementValues(parameter, vector<double>(values, values + count)); });
 }
 
-int helfrich_shim_setParticles(void* force, const int* particles, int count) {
+int helfrich_shim_ParticleSurfaceForce_setParticles(OpenMM_Force* force, const int* particles, int count) {
     return guarded([&] {
         auto& owner = as<ParticleSurfaceForce>("ParticleSurfaceForce", force);
         if (count < 0)
@@ -146,7 +135,8 @@ int helfrich_shim_setParticles(void* force, const int* particles, int count) {
     });
 }
 
-int helfrich_shim_setReference(void* force, const double* positions, int numVertices, const double* boxVectors) {
+int helfrich_shim_MembraneForce_setReference(OpenMM_Force* force, const double* positions, int numVertices,
+                                             const double* boxVectors) {
     return guarded([&] {
         MembraneForce& owner = asForce(force);
         if (numVertices < 0)
@@ -156,7 +146,7 @@ int helfrich_shim_setReference(void* force, const double* positions, int numVert
     });
 }
 
-int helfrich_shim_setDomains(void* force, const int* domains, int numVertices) {
+int helfrich_shim_LineTensionForce_setDomains(OpenMM_Force* force, const int* domains, int numVertices) {
     return guarded([&] {
         auto& owner = as<LineTensionForce>("LineTensionForce", force);
         if (numVertices < 0)
@@ -165,54 +155,55 @@ int helfrich_shim_setDomains(void* force, const int* domains, int numVertices) {
     });
 }
 
-int helfrich_shim_setForm(void* force, int form) {
+int helfrich_shim_MembraneForce_setForm(OpenMM_Force* force, int form) {
     return guarded([&] { asForce(force).setForm(form); });
 }
 
-int helfrich_shim_setSwitch(void* force, const char* name, int on) {
+int helfrich_shim_MembraneForce_setSwitch(OpenMM_Force* force, const char* name, int on) {
     return guarded([&] { asForce(force).setSwitch(name, on != 0); });
 }
 
-int helfrich_shim_setBackend(void* force, const char* backend) {
+int helfrich_shim_MembraneForce_setBackend(OpenMM_Force* force, const char* backend) {
     return guarded([&] { asForce(force).setBackend(backend); });
 }
 
-int helfrich_shim_setPeriodic(void* force, int periodic) {
+int helfrich_shim_MembraneForce_setUsesPeriodicBoundaryConditions(OpenMM_Force* force, int periodic) {
     return guarded([&] { asForce(force).setUsesPeriodicBoundaryConditions(periodic != 0); });
 }
 
-int helfrich_shim_usesPeriodic(void* force) {
+int helfrich_shim_MembraneForce_usesPeriodicBoundaryConditions(OpenMM_Force* force) {
     int periodic = -1;
     guarded([&] { periodic = asForce(force).usesPeriodicBoundaryConditions(); });
     return periodic;
 }
 
-int helfrich_shim_setContextParameter(void* force, const char* parameter, const char* name) {
+int helfrich_shim_MembraneForce_setContextParameter(OpenMM_Force* force, const char* parameter, const char* name) {
     return guarded([&] { asForce(force).setContextParameter(parameter, name); });
 }
 
-int helfrich_shim_addEnergyParameterDerivative(void* force, const char* name) {
+int helfrich_shim_MembraneForce_addEnergyParameterDerivative(OpenMM_Force* force, const char* name) {
     return guarded([&] { asForce(force).addEnergyParameterDerivative(name); });
 }
 
-int helfrich_shim_updateParametersInContext(void* force, void* context) {
+int helfrich_shim_MembraneForce_updateParametersInContext(OpenMM_Force* force, OpenMM_Context* context) {
     return guarded([&] { asForce(force).updateParametersInContext(asContext(context)); });
 }
-int helfrich_shim_getTrianglesInContext(void* force, void* context, int* corners) {
+int helfrich_shim_MembraneForce_getTrianglesInContext(OpenMM_Force* force, OpenMM_Context* context, int* corners) {
     return guarded([&] {
         vector<int> found = asTriangulated(force).getTrianglesInContext(asContext(context));
         std::copy(found.begin(), found.end(), corners);
     });
 }
 
-int helfrich_shim_getVirial(void* force, void* context, int groups, double* virial) {
+int helfrich_shim_MembraneForce_getVirial(OpenMM_Force* force, OpenMM_Context* context, int groups, double* virial) {
     return guarded([&] {
         vector<double> found = asTriangulated(force).getVirial(asContext(context), groups);
         std::copy(found.begin(), found.end(), virial);
     });
 }
 
-int helfrich_shim_setTrianglesInContext(void* force, void* context, const int* corners, int numTriangles) {
+int helfrich_shim_MembraneForce_setTrianglesInContext(OpenMM_Force* force, OpenMM_Context* context, const int* corners,
+                                                      int numTriangles) {
     return guarded([&] {
         TriangulatedForce& surface = asTriangulated(force);
         if (numTriangles < 0)
@@ -222,14 +213,16 @@ int helfrich_shim_setTrianglesInContext(void* force, void* context, const int* c
     });
 }
 
-int helfrich_shim_getPermutationInContext(void* force, void* context, int* permutation) {
+int helfrich_shim_MembraneForce_getPermutationInContext(OpenMM_Force* force, OpenMM_Context* context,
+                                                        int* permutation) {
     return guarded([&] {
         vector<int> found = asTriangulated(force).getPermutationInContext(asContext(context));
         std::copy(found.begin(), found.end(), permutation);
     });
 }
 
-int helfrich_shim_setPermutationInContext(void* force, void* context, const int* permutation, int numVertices) {
+int helfrich_shim_MembraneForce_setPermutationInContext(OpenMM_Force* force, OpenMM_Context* context,
+                                                        const int* permutation, int numVertices) {
     return guarded([&] {
         TriangulatedForce& surface = asTriangulated(force);
         if (numVertices < 0)
@@ -238,7 +231,7 @@ int helfrich_shim_setPermutationInContext(void* force, void* context, const int*
     });
 }
 
-int helfrich_shim_getDomainsInContext(void* force, void* context, int* domains) {
+int helfrich_shim_LineTensionForce_getDomainsInContext(OpenMM_Force* force, OpenMM_Context* context, int* domains) {
     return guarded([&] {
         auto& owner = as<LineTensionForce>("LineTensionForce", force);
         vector<int> found = owner.getDomainsInContext(asContext(context));
@@ -246,8 +239,9 @@ int helfrich_shim_getDomainsInContext(void* force, void* context, int* domains) 
     });
 }
 
-void* helfrich_shim_createMover(const int* triangles, int numTriangles, double temperature, int frequency,
-                                double attemptsPerEdge, int minDegree, int maxDegree, double maxEdgeLength) {
+OpenMM_Force* helfrich_shim_MonteCarloBondFlip_create(const int* triangles, int numTriangles, double temperature,
+                                                      int frequency, double attemptsPerEdge, int minDegree,
+                                                      int maxDegree, double maxEdgeLength) {
     OpenMM::Force* created = nullptr;
     guarded([&] {
         if (numTriangles < 0)
@@ -256,20 +250,24 @@ void* helfrich_shim_createMover(const int* triangles, int numTriangles, double t
         created = new MonteCarloBondFlip(corners, temperature, frequency, attemptsPerEdge, minDegree, maxDegree,
                                          maxEdgeLength);
     });
-    return created;
+    return reinterpret_cast<OpenMM_Force*>(created);
 }
 
-int helfrich_shim_updateMover(void* force, void* context) {
-    return guarded([&] { asMover(force).updateParametersInContext(asContext(context)); });
-}
-
-int helfrich_shim_getStatistic(void* force, void* context, const char* name, double* value) {
+int helfrich_shim_MonteCarloBondFlip_updateParametersInContext(OpenMM_Force* force, OpenMM_Context* context) {
     return guarded(
-        [&] { *value = pick("MonteCarloBondFlip", asMover(force).getStatistics(asContext(context)), name); });
+        [&] { as<MonteCarloBondFlip>("MonteCarloBondFlip", force).updateParametersInContext(asContext(context)); });
 }
 
-void* helfrich_shim_createSwap(const int* triangles, int numTriangles, double temperature, int frequency,
-                               double attemptsPerEdge) {
+int helfrich_shim_MonteCarloBondFlip_getStatistic(OpenMM_Force* force, OpenMM_Context* context, const char* name,
+                                                  double* value) {
+    return guarded([&] {
+        *value = pick("MonteCarloBondFlip",
+                      as<MonteCarloBondFlip>("MonteCarloBondFlip", force).getStatistics(asContext(context)), name);
+    });
+}
+
+OpenMM_Force* helfrich_shim_MonteCarloDomainSwap_create(const int* triangles, int numTriangles, double temperature,
+                                                        int frequency, double attemptsPerEdge) {
     OpenMM::Force* created = nullptr;
     guarded([&] {
         if (numTriangles < 0)
@@ -277,38 +275,49 @@ void* helfrich_shim_createSwap(const int* triangles, int numTriangles, double te
         vector<int> corners(triangles, triangles + 3 * (size_t) numTriangles);
         created = new MonteCarloDomainSwap(corners, temperature, frequency, attemptsPerEdge);
     });
-    return created;
+    return reinterpret_cast<OpenMM_Force*>(created);
 }
 
-int helfrich_shim_updateSwap(void* force, void* context) {
-    return guarded([&] { asSwap(force).updateParametersInContext(asContext(context)); });
-}
-
-int helfrich_shim_getSwapStatistic(void* force, void* context, const char* name, double* value) {
+int helfrich_shim_MonteCarloDomainSwap_updateParametersInContext(OpenMM_Force* force, OpenMM_Context* context) {
     return guarded(
-        [&] { *value = pick("MonteCarloDomainSwap", asSwap(force).getStatistics(asContext(context)), name); });
+        [&] { as<MonteCarloDomainSwap>("MonteCarloDomainSwap", force).updateParametersInContext(asContext(context)); });
 }
 
-void* helfrich_shim_createTension(double temperature, double tension, int frequency, int axes, double pullingForce) {
+int helfrich_shim_MonteCarloDomainSwap_getStatistic(OpenMM_Force* force, OpenMM_Context* context, const char* name,
+                                                    double* value) {
+    return guarded([&] {
+        *value = pick("MonteCarloDomainSwap",
+                      as<MonteCarloDomainSwap>("MonteCarloDomainSwap", force).getStatistics(asContext(context)), name);
+    });
+}
+
+OpenMM_Force* helfrich_shim_MonteCarloMembraneTension_create(double temperature, double tension, int frequency,
+                                                             int axes, double pullingForce) {
     OpenMM::Force* created = nullptr;
     guarded([&] {
         created = new MonteCarloMembraneTension(temperature, tension, frequency, (MonteCarloMembraneTension::Axes) axes,
                                                 pullingForce);
     });
-    return created;
+    return reinterpret_cast<OpenMM_Force*>(created);
 }
 
-int helfrich_shim_updateTension(void* force, void* context) {
-    return guarded([&] { asTension(force).updateParametersInContext(asContext(context)); });
+int helfrich_shim_MonteCarloMembraneTension_updateParametersInContext(OpenMM_Force* force, OpenMM_Context* context) {
+    return guarded([&] {
+        as<MonteCarloMembraneTension>("MonteCarloMembraneTension", force).updateParametersInContext(asContext(context));
+    });
 }
 
-int helfrich_shim_getTensionStatistic(void* force, void* context, const char* name, double* value) {
-    return guarded(
-        [&] { *value = pick("MonteCarloMembraneTension", asTension(force).getStatistics(asContext(context)), name); });
+int helfrich_shim_MonteCarloMembraneTension_getStatistic(OpenMM_Force* force, OpenMM_Context* context, const char* name,
+                                                         double* value) {
+    return guarded([&] {
+        *value = pick(
+            "MonteCarloMembraneTension",
+            as<MonteCarloMembraneTension>("MonteCarloMembraneTension", force).getStatistics(asContext(context)), name);
+    });
 }
 
-void* helfrich_shim_createViscosity(const int* triangles, int numTriangles, double friction, double temperature,
-                                    int frequency) {
+OpenMM_Force* helfrich_shim_SurfaceViscosityThermostat_create(const int* triangles, int numTriangles, double friction,
+                                                              double temperature, int frequency) {
     OpenMM::Force* created = nullptr;
     guarded([&] {
         if (numTriangles < 0)
@@ -316,51 +325,55 @@ void* helfrich_shim_createViscosity(const int* triangles, int numTriangles, doub
         vector<int> corners(triangles, triangles + 3 * (size_t) numTriangles);
         created = new SurfaceViscosityThermostat(corners, friction, temperature, frequency);
     });
-    return created;
+    return reinterpret_cast<OpenMM_Force*>(created);
 }
 
-int helfrich_shim_updateViscosity(void* force, void* context) {
-    return guarded([&] { asViscosity(force).updateParametersInContext(asContext(context)); });
+int helfrich_shim_SurfaceViscosityThermostat_updateParametersInContext(OpenMM_Force* force, OpenMM_Context* context) {
+    return guarded([&] {
+        as<SurfaceViscosityThermostat>("SurfaceViscosityThermostat", force)
+            .updateParametersInContext(asContext(context));
+    });
 }
 
-int helfrich_shim_setFrictionParameter(void* force, const char* name) {
-    return guarded([&] { asViscosity(force).setFrictionParameter(name); });
+int helfrich_shim_SurfaceViscosityThermostat_setFrictionParameter(OpenMM_Force* force, const char* name) {
+    return guarded(
+        [&] { as<SurfaceViscosityThermostat>("SurfaceViscosityThermostat", force).setFrictionParameter(name); });
 }
 
 // A getter, which gives a value that cannot be if the force is of another class, and a setter.
 #define MOVER_VALUE(Mover, Type, Name, Nothing, Cast)                                                                  \
-    Type helfrich_shim_get##Mover##Name(void* force) {                                                                 \
+    Type helfrich_shim_##Mover##_get##Name(OpenMM_Force* force) {                                                      \
         Type value = Nothing;                                                                                          \
-        guarded([&] { value = as##Mover(force).get##Name(); });                                                        \
+        guarded([&] { value = as<Mover>(#Mover, force).get##Name(); });                                                \
         return value;                                                                                                  \
     }                                                                                                                  \
-    int helfrich_shim_set##Mover##Name(void* force, Type value) {                                                      \
-        return guarded([&] { as##Mover(force).set##Name((Cast) value); });                                             \
+    int helfrich_shim_##Mover##_set##Name(OpenMM_Force* force, Type value) {                                           \
+        return guarded([&] { as<Mover>(#Mover, force).set##Name((Cast) value); });                                     \
     }
-MOVER_VALUE(Mover, double, DefaultTemperature, std::nan(""), double)
-MOVER_VALUE(Mover, int, Frequency, -1, int)
-MOVER_VALUE(Mover, double, AttemptsPerEdge, std::nan(""), double)
-MOVER_VALUE(Mover, int, MinDegree, -1, int)
-MOVER_VALUE(Mover, int, MaxDegree, -1, int)
-MOVER_VALUE(Mover, double, MaxEdgeLength, std::nan(""), double)
-MOVER_VALUE(Mover, int, Ensemble, -1, MonteCarloBondFlip::Ensemble)
-MOVER_VALUE(Mover, int, RandomNumberSeed, -1, int)
-MOVER_VALUE(Swap, double, DefaultTemperature, std::nan(""), double)
-MOVER_VALUE(Swap, int, Frequency, -1, int)
-MOVER_VALUE(Swap, double, AttemptsPerEdge, std::nan(""), double)
-MOVER_VALUE(Swap, int, Ensemble, -1, MonteCarloDomainSwap::Ensemble)
-MOVER_VALUE(Swap, int, RandomNumberSeed, -1, int)
-MOVER_VALUE(Tension, double, DefaultTemperature, std::nan(""), double)
-MOVER_VALUE(Tension, double, DefaultTension, std::nan(""), double)
-MOVER_VALUE(Tension, double, DefaultPullingForce, std::nan(""), double)
-MOVER_VALUE(Tension, int, Frequency, -1, int)
-MOVER_VALUE(Tension, int, Axes, -1, MonteCarloMembraneTension::Axes)
-MOVER_VALUE(Tension, int, ScaleMoleculesAsRigid, -1, bool)
-MOVER_VALUE(Tension, int, AdaptiveMoves, -1, int)
-MOVER_VALUE(Tension, int, RandomNumberSeed, -1, int)
-MOVER_VALUE(Viscosity, double, DefaultFriction, std::nan(""), double)
-MOVER_VALUE(Viscosity, double, DefaultTemperature, std::nan(""), double)
-MOVER_VALUE(Viscosity, int, Frequency, -1, int)
-MOVER_VALUE(Viscosity, int, RandomNumberSeed, -1, int)
+MOVER_VALUE(MonteCarloBondFlip, double, DefaultTemperature, std::nan(""), double)
+MOVER_VALUE(MonteCarloBondFlip, int, Frequency, -1, int)
+MOVER_VALUE(MonteCarloBondFlip, double, AttemptsPerEdge, std::nan(""), double)
+MOVER_VALUE(MonteCarloBondFlip, int, MinDegree, -1, int)
+MOVER_VALUE(MonteCarloBondFlip, int, MaxDegree, -1, int)
+MOVER_VALUE(MonteCarloBondFlip, double, MaxEdgeLength, std::nan(""), double)
+MOVER_VALUE(MonteCarloBondFlip, int, Ensemble, -1, MonteCarloBondFlip::Ensemble)
+MOVER_VALUE(MonteCarloBondFlip, int, RandomNumberSeed, -1, int)
+MOVER_VALUE(MonteCarloDomainSwap, double, DefaultTemperature, std::nan(""), double)
+MOVER_VALUE(MonteCarloDomainSwap, int, Frequency, -1, int)
+MOVER_VALUE(MonteCarloDomainSwap, double, AttemptsPerEdge, std::nan(""), double)
+MOVER_VALUE(MonteCarloDomainSwap, int, Ensemble, -1, MonteCarloDomainSwap::Ensemble)
+MOVER_VALUE(MonteCarloDomainSwap, int, RandomNumberSeed, -1, int)
+MOVER_VALUE(MonteCarloMembraneTension, double, DefaultTemperature, std::nan(""), double)
+MOVER_VALUE(MonteCarloMembraneTension, double, DefaultTension, std::nan(""), double)
+MOVER_VALUE(MonteCarloMembraneTension, double, DefaultPullingForce, std::nan(""), double)
+MOVER_VALUE(MonteCarloMembraneTension, int, Frequency, -1, int)
+MOVER_VALUE(MonteCarloMembraneTension, int, Axes, -1, MonteCarloMembraneTension::Axes)
+MOVER_VALUE(MonteCarloMembraneTension, int, ScaleMoleculesAsRigid, -1, bool)
+MOVER_VALUE(MonteCarloMembraneTension, int, AdaptiveMoves, -1, int)
+MOVER_VALUE(MonteCarloMembraneTension, int, RandomNumberSeed, -1, int)
+MOVER_VALUE(SurfaceViscosityThermostat, double, DefaultFriction, std::nan(""), double)
+MOVER_VALUE(SurfaceViscosityThermostat, double, DefaultTemperature, std::nan(""), double)
+MOVER_VALUE(SurfaceViscosityThermostat, int, Frequency, -1, int)
+MOVER_VALUE(SurfaceViscosityThermostat, int, RandomNumberSeed, -1, int)
 #undef MOVER_VALUE
 }

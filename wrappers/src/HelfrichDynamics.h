@@ -2,11 +2,10 @@
 #define HELFRICH_DYNAMICS_H_
 
 /**
- * The C functions of the Rust core for the platform (src/ffi/dynamics.rs; the two change together). Those that
- * return a status can be given to check().
+ * The C functions of the Rust core for the platform. The build compares them with Rust's, as those of CoreFunctions.h.
  */
 
-#include "openmm-helfrich/internal/Core.h"
+#include "openmm-helfrich/internal/CoreFunctions.h"
 
 extern "C" {
 
@@ -48,6 +47,14 @@ struct HelfrichEdgeBath {
     double lag;
 };
 
+/** The triangles of a force. */
+struct HelfrichSheet {
+    const int* corners;
+    int64_t numTriangles;
+    /** Whether its sides are nearest images in the periodic box. */
+    int isPeriodic;
+};
+
 int Helfrich_Team_available();
 int Helfrich_Team_create(int threads, HelfrichTeam** team);
 void Helfrich_Team_destroy(HelfrichTeam* team);
@@ -70,20 +77,14 @@ int Helfrich_Dynamics_brownian(const HelfrichDynamics* dynamics, HelfrichTeam* t
                                double friction, double kT);
 /** The 128 random bits of a number, for a key: `bits` gets two values. */
 void Helfrich_Random_bits(const uint32_t* key, uint64_t number, uint64_t* bits);
+/** The normals of a stream's present draw, which ends with it; for tests. */
+int Helfrich_Random_normals(HelfrichStream* stream, int64_t length, double* normals);
 int Helfrich_Viscosity_create(const char* subject, const HelfrichMembrane* membrane, int64_t numParticles,
                               const double* masses, HelfrichViscosity** viscosity);
 void Helfrich_Viscosity_destroy(HelfrichViscosity* viscosity);
 int Helfrich_Viscosity_sweep(const char* subject, HelfrichViscosity* viscosity, const HelfrichMembrane* membrane,
                              int64_t numParticles, double* positions, double* velocities, const double* box,
                              const HelfrichEdgeBath* bath, HelfrichStream* stream);
-/** The triangles of a force. */
-struct HelfrichSheet {
-    const int* corners;
-    int64_t numTriangles;
-    /** Whether its sides are nearest images in the periodic box. */
-    int isPeriodic;
-};
-
 int Helfrich_Dynamics_clear(HelfrichTeam* team, int64_t numParticles, double* forces);
 /** `subject` is the class that messages shall name, `boxVectors` null where no surface is periodic. */
 int Helfrich_VariableMasses_create(const char* subject, int64_t numParticles, const double* masses, double density,

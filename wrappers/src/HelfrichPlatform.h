@@ -3,6 +3,7 @@
 
 #include "HelfrichDynamics.h"
 #include "MembraneCrowd.h"
+#include "openmm-helfrich/internal/Core.h"
 
 #include <openmm/reference/ReferencePlatform.h>
 

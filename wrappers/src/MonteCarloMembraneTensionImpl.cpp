@@ -4,6 +4,7 @@
 #include "HelfrichDynamics.h"
 #include "Integrators.h"
 #include "Movers.h"
+#include "openmm-helfrich/internal/Core.h"
 
 #include <openmm/System.h>
 #include <openmm/reference/ReferencePlatform.h>

@@ -7,6 +7,7 @@
 #include "MonteCarloMembraneTensionImpl.h"
 #include "MoverProxy.h"
 #include "PlatformChoice.h"
+#include "Shim.h"
 #include "SurfaceViscosityThermostatImpl.h"
 #include "VariableMassIntegratorProxy.h"
 #include "VariableMassStepKernel.h"

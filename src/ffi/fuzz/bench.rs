@@ -112,7 +112,7 @@ impl Bench {
                 values: term.values,
                 fields,
                 field_lengths,
-                particles: term.particles.as_ptr(),
+                particles: term.particles.as_ptr().cast(),
                 num_particles: term.particles.len() as i64,
                 numbers: kept.numbers.cast(),
             });
@@ -138,8 +138,8 @@ impl Bench {
         Ok((good, kept))
     }
 
-    fn vectors(&self) -> *const [[f64; 3]; 3] {
-        self.vectors.as_ref().map_or(ptr::null(), |vectors| vectors)
+    fn vectors(&self) -> *const f64 {
+        self.vectors.as_ref().map_or(ptr::null(), |vectors| vectors.as_flattened().as_ptr())
     }
 
     fn triangles(&self) -> Vec<[c_int; 3]> {
