@@ -125,7 +125,8 @@ class Contents:
         lines = []
         for entry in self.entries:
             status, where = self._found(entry, known, link)
-            where += f". {entry.remark}" if entry.remark else ""
+            tried = not entry.figure or entry.figure in known
+            where += f". {entry.remark}" if entry.remark and tried else ""
             lines.append([entry.item, entry.claim, status, where])
         named = {entry.figure for entry in self.entries}
         for figure in figures:
