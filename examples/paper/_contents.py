@@ -10,7 +10,9 @@
     why = { "l = 2 over" = "..." }      causes, for failed rows that begin so and have none
 
 or, in place of figure and rows, `test = "tests/python/test_x.py"`, a test of it that `make test`
-runs, or `status = "not run"` with `why = "..."`. `remark` adds a sentence to any.
+runs, `script = "examples/paper/x.py"`, which makes what has no numbers, or `status = "not run"`
+with `why = "..."`. `until` says why rows may lack that a later run of the figure has; `remark` adds
+a sentence to any.
 """
 
 from __future__ import annotations
@@ -25,6 +27,10 @@ except ModuleNotFoundError:  # Python 3.10
     import tomli as tomllib
 
 HERE = Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+
+# Failed rows of one cause that the table has in figures; the section of the figure has all.
+SHOWN = 3
 
 WORKS, DIFFERS, NOT_RUN = "works", "**differs**", "not run"
 
@@ -42,20 +48,23 @@ class Entry:
     figure: str = ""
     rows: list[str] = field(default_factory=list)
     test: str = ""
+    script: str = ""
     status: str = ""
     why: str | dict[str, str] = field(default_factory=dict)
+    until: str = ""
     remark: str = ""
 
     def __post_init__(self):
         named = f"contents.toml: {self.item}"
-        kinds = [name for name in ("figure", "test", "status") if getattr(self, name)]
+        known = ("figure", "test", "script", "status")
+        kinds = [name for name in known if getattr(self, name)]
         if len(kinds) != 1:
-            raise ValueError(f"{named}: need one of figure, test and status, got {kinds or 'none'}")
+            raise ValueError(f"{named}: need one of {', '.join(known)}, got {kinds or 'none'}")
         if self.status and (self.status != NOT_RUN or not isinstance(self.why, str)):
             raise ValueError(f'{named}: status has to be "{NOT_RUN}", with a why of one sentence')
         if not self.status and not isinstance(self.why, dict):
             raise ValueError(f"{named}: why has to be a table, from beginnings of rows to causes")
-        if self.test and not (HERE.parents[1] / self.test).is_file():
+        if self.test and not (ROOT / self.test).is_file():
             raise ValueError(f"{named}: there is no test {self.test}")
 
 
@@ -116,7 +125,8 @@ class Contents:
         lines = []
         for entry in self.entries:
             status, where = self._found(entry, known, link)
-            where += f". {entry.remark}" if entry.remark else ""
+            tried = not entry.figure or entry.figure in known
+            where += f". {entry.remark}" if entry.remark and tried else ""
             lines.append([entry.item, entry.claim, status, where])
         named = {entry.figure for entry in self.entries}
         for figure in figures:
@@ -131,6 +141,9 @@ class Contents:
             return NOT_RUN, entry.why
         if entry.test:
             return WORKS, f"`{entry.test}`"
+        if entry.script:
+            made = (ROOT / entry.script).is_file()
+            return (WORKS, f"`{entry.script}`") if made else (NOT_RUN, f"no `{entry.script}` yet")
         if entry.figure not in known:
             return NOT_RUN, f"the numbers of `{entry.figure}` are not there"
         figure = known[entry.figure]
@@ -145,6 +158,9 @@ class Contents:
             if not any(row["what"].startswith(name) for row in figure["rows"])
         ]
         status, where = self._measured(figure, chosen, link)
+        if lost and entry.until:
+            where = f"{where}. " if chosen else ""
+            return status if chosen else NOT_RUN, f"{where}{entry.until}"
         if lost and figure["quick"]:
             where += f"; not in the quick version: {', '.join(lost)}"
             return status if chosen else NOT_RUN, where
@@ -158,8 +174,11 @@ class Contents:
         where = f"{link(figure)}, {len(rows) - len(failed)} of {len(rows)} checks"
         for cause, of_cause in self.causes(figure, failed):
             found = "; ".join(
-                f"{row['what']}: {row['measured']}, expected {row['expected']}" for row in of_cause
+                f"{row['what']}: {row['measured']}, expected {row['expected']}"
+                for row in of_cause[:SHOWN]
             )
+            rest = len(of_cause) - SHOWN
+            found += f"; and {rest} more of this cause" if rest > 0 else ""
             where += f"<br>{found}. Why: {cause}"
         return DIFFERS if failed else WORKS, where
 

@@ -29,9 +29,9 @@ this library. `examples/paper/` has a script for each figure.
 | `make paper` | small versions of all figures | some minutes |
 | `make paper SIZE=full` | all at the size shown | SPENT of one processor core |
 
-Each result is stored as soon as there is one, so either command goes on where it was stopped, and
-repeats nothing that is there. Runs are spread over the cores. Times are those of a busy machine,
-up to twice those of an idle one; figures that show the same runs have the same time.
+Each result is stored as soon as there is one, so either command goes on where it was stopped; only
+the timings of Table III are taken anew. Runs are spread over the cores. Times are those of a busy
+machine, up to twice those of an idle one; figures that show the same runs have the same time.
 
 This page is written by `examples/paper/report.py` from the numbers of the scripts and from
 `examples/paper/contents.toml`, which has what the paper says. "Works" means that all checks are

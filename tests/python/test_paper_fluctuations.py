@@ -9,6 +9,7 @@ from openmmhelfrich import Mesh, TriangleHeightForce
 from openmmhelfrich.analysis import real_harmonics, theory
 from openmmhelfrich.vesicle import KBT
 from scipy.spatial.transform import Rotation
+from undulating import surface_gradient
 
 PAPER = Path(__file__).parents[2] / "examples" / "paper"
 
@@ -21,18 +22,9 @@ def scripts_importable(monkeypatch):
         sys.modules.pop(name, None)
 
 
-def tangential_gradient(directions, index, lmax, step=1e-6):
-    """Surface gradient of one harmonic by differences along two tangents of each point."""
-    spare = np.eye(3)[np.argmin(np.abs(directions), axis=1)]
-    first = np.cross(directions, spare)
-    first /= np.linalg.norm(first, axis=1, keepdims=True)
-    result = 0
-    for tangent in (first, np.cross(directions, first)):
-        ahead = np.cos(step) * directions + np.sin(step) * tangent
-        behind = np.cos(step) * directions - np.sin(step) * tangent
-        rise = real_harmonics(ahead, lmax)[:, index] - real_harmonics(behind, lmax)[:, index]
-        result = result + (rise / (2 * step))[:, np.newaxis] * tangent
-    return result
+def tangential_gradient(directions, index, lmax):
+    """Surface gradient of one harmonic."""
+    return surface_gradient(lambda place: real_harmonics(place, lmax)[:, index], directions)
 
 
 def test_displacements_of_known_amplitude_come_back_from_a_rotated_vesicle():

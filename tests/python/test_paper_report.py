@@ -162,6 +162,14 @@ figure = "sm05"
     assert where[5].endswith("Why: no cause is known")
 
 
+def test_many_failures_of_one_cause_are_counted(tmp_path):
+    text = '[[entry]]\nitem = "I"\nclaim = "c"\nfigure = "fig01"\nwhy = { "r" = "so" }\n'
+    rows = [row(f"r{number}", False) for number in range(5)]
+    [line] = lines_of(tmp_path, text, figure("fig01", *rows))
+    assert "r2: 3 ± 1, expected 7 ± 1; and 2 more of this cause. Why: so" in line[3]
+    assert "r3" not in line[3]
+
+
 def test_rows_that_are_not_there_are_named(tmp_path):
     text = '[[entry]]\nitem = "I"\nclaim = "c"\nfigure = "fig01"\nrows = ["a", "gone"]\n'
     [line] = lines_of(tmp_path, text, figure("fig01", row("a"), row("b", False)))
@@ -173,10 +181,25 @@ def test_rows_that_are_not_there_are_named(tmp_path):
     assert line[2] == "not run"
 
 
+def test_rows_that_are_to_come_and_scripts_that_are_there_or_not(tmp_path):
+    text = '[[entry]]\nitem = "I"\nclaim = "c"\nfigure = "fig01"\nrows = ["a"]\nuntil = "next"\n'
+    [line] = lines_of(tmp_path, text, figure("fig01", row("b", False)))
+    assert line[2:] == ["not run", "next"]
+    [line] = lines_of(tmp_path, text, figure("fig01", row("a", False, why="so")))
+    assert line[2] == "**differs**"
+    for script, status, where in (
+        ("examples/paper/report.py", "works", "`examples/paper/report.py`"),
+        ("examples/paper/none.py", "not run", "no `examples/paper/none.py` yet"),
+    ):
+        text = f'[[entry]]\nitem = "I"\nclaim = "c"\nscript = "{script}"\n'
+        [line] = lines_of(tmp_path, text)
+        assert line[2:] == [status, where]
+
+
 @pytest.mark.parametrize(
     ("text", "culprit"),
     [
-        ("", "I: need one of figure, test and status, got none"),
+        ("", "I: need one of figure, test, script, status, got none"),
         ('figure = "fig01"\ntest = "x"', r"I: need one of .* got \['figure', 'test'\]"),
         ('status = "works"\nwhy = "so"', 'I: status has to be "not run"'),
         ('status = "not run"\nwhy = { a = "b" }', 'I: status has to be "not run", with a why'),

@@ -15,6 +15,21 @@ RADIUS = 100.0
 SUBDIVISIONS = (8, 16, 32)
 
 
+def surface_gradient(
+    function: Callable[[np.ndarray], np.ndarray], directions: np.ndarray, step: float = 1e-5
+) -> np.ndarray:
+    """Gradient on the unit sphere of a function of directions, by differences along three axes."""
+    result = np.zeros_like(directions)
+    for axis in np.eye(3):
+        along = axis - (directions @ axis)[:, np.newaxis] * directions
+        ahead, behind = (directions + sign * step * along for sign in (1, -1))
+        ahead /= np.linalg.norm(ahead, axis=1, keepdims=True)
+        behind /= np.linalg.norm(behind, axis=1, keepdims=True)
+        slope = (function(ahead) - function(behind)) / (2 * step)
+        result += slope[:, np.newaxis] * axis
+    return result
+
+
 class Undulating:
     """An icosphere with the normal field of one l, of all its m and of norm 1."""
 
@@ -31,17 +46,9 @@ class Undulating:
         lmax = round(len(self.amplitudes) ** 0.5) - 1
         return real_harmonics(directions, lmax) @ self.amplitudes
 
-    def gradient(self, step: float = 1e-5) -> np.ndarray:
-        """r0 times its gradient on the sphere, by differences along three axes."""
-        result = np.zeros_like(self.directions)
-        for axis in np.eye(3):
-            along = axis - (self.directions @ axis)[:, np.newaxis] * self.directions
-            ahead, behind = (self.directions + sign * step * along for sign in (1, -1))
-            ahead /= np.linalg.norm(ahead, axis=1, keepdims=True)
-            behind /= np.linalg.norm(behind, axis=1, keepdims=True)
-            slope = (self.of(ahead) - self.of(behind)) / (2 * step)
-            result += slope[:, np.newaxis] * axis
-        return result
+    def gradient(self) -> np.ndarray:
+        """r0 times its gradient on the sphere."""
+        return surface_gradient(self.of, self.directions)
 
     def bulged(self, amplitude: float) -> helfrich.Mesh:
         """r = r0 (1 + u Y)."""
