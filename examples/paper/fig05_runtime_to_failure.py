@@ -1,8 +1,10 @@
 """Fig. 5: how long Newtonian dynamics runs before it fails, against the time step.
 
-Verlet dynamics of the four bending models on a hard (Ξ = 0.59) and on a soft mesh (Ξ = 0.037). Time
-steps are given in units of √Ξ τ, where τ is the period of the fastest mode of the mesh. A run fails
-when a position or an energy is not finite or its kinetic energy has grown tenfold.
+Verlet dynamics of the four bending models on a hard (Ξ = 0.59) and on a soft mesh (Ξ = 0.037), five
+random meshes for each point, and one icosphere as a second curve. Time steps are given in units of
+√Ξ τ, where τ is the period of the fastest mode of the mesh. A run fails when its energy has risen
+by half, or when its kinetic energy has doubled; both times are recorded. Runs that live are ended
+after DURATION, or after a number of steps where these are short.
 """
 
 from typing import NamedTuple
@@ -10,152 +12,216 @@ from typing import NamedTuple
 import matplotlib.pyplot as plt
 import numpy as np
 from _paper import SCHEMES, Figure
-from openmmhelfrich.sweep import grid
+from newtonian import failing_run
 
 SOFTNESSES = (0.59, 0.037)
 BARYCENTRIC = ("Julicher", "GompperKrollBarycentric")
+VORONOI = tuple(scheme for scheme in SCHEMES if scheme not in BARYCENTRIC)
+CRITERIA = {"energy": "energy up by half", "kinetic": "kinetic energy doubled"}
+ALLOWED = 0.1
+# Looks at the energies in a time of √Ξ τ.
+LOOKS = 2
+COUNT = 1002
 
 
-def runtime(scheme, softness, fraction, subdivision, duration, seed):
-    """Time to failure of one run.
+class Size(NamedTuple):
+    """How much is run."""
 
-    Parameters
-    ----------
-    scheme : str
-        Name of a constant of `BendingForce`.
-    softness : float
-        Ξ.
-    fraction : float
-        Time step in units of √Ξ τ.
-    subdivision : int
-        n of N = 10 n² + 2.
-    duration : float
-        When a run that lives is ended, τ_2.
-    seed : int
-        Of the velocities.
+    fractions: list  # time steps, √Ξ τ
+    seeds: int
+    duration: float  # τ_2
+    steps: int  # of a run with a time step below ALLOWED
+    failing: int  # of one that should fail
 
-    Returns
-    -------
-    dict
-        "lifetime", τ_2; "failed", and the "reason"; "time_step" and "unit" (√Ξ τ), ps.
-    """
-    import openmm
-    import openmmhelfrich as helfrich
-    from openmmhelfrich.analysis import time_to_failure
 
-    mesh = helfrich.Mesh.icosphere(subdivision, 1000.0)
-    vesicle = helfrich.Vesicle(
-        mesh, softness=softness, scheme=getattr(helfrich.BendingForce, scheme)
-    )
-    time_step = fraction * np.sqrt(softness) * vesicle.tau_fastest
-    simulation = vesicle.simulation(openmm.VerletIntegrator(time_step))
-    simulation.context.setVelocitiesToTemperature(300, seed)
-    # Looked at every half percent of τ_2, so that a heated run is not taken for a living one.
-    interval = max(1, round(0.005 * vesicle.tau_2 / time_step))
-    life = time_to_failure(simulation, duration * vesicle.tau_2, interval)
-    return {
-        "lifetime": life.time / vesicle.tau_2,
-        "failed": life.failed,
-        "reason": life.reason,
-        "time_step": time_step,
-        "unit": np.sqrt(softness) * vesicle.tau_fastest,
+FULL = Size([0.001, 0.003, 0.01, 0.03, 0.1, 0.2, 0.3, 0.5, 1.0], 5, 30.0, 60_000, 300_000)
+QUICK = Size([0.03, 0.1, 1.0], 1, 1.0, 8_000, 10_000)
+
+
+def points_of(size):
+    """The points of the sweep; τ_2 = τ N / √24."""
+    points = []
+    for mesh, seeds in (("random", size.seeds), ("ordered", 1)):
+        for softness in SOFTNESSES:
+            for scheme in SCHEMES:
+                for fraction in size.fractions:
+                    fails = softness < 0.1 and scheme in VORONOI
+                    steps = size.failing if fails else size.steps
+                    longest = steps * fraction * softness**0.5 * 24**0.5 / COUNT
+                    duration = size.duration
+                    if fraction < ALLOWED:
+                        duration = min(duration, float(f"{longest:.3g}"))
+                    point = {"mesh": mesh, "scheme": scheme, "softness": softness}
+                    point |= {"fraction": fraction, "num_vertices": COUNT, "looks": LOOKS}
+                    points += [
+                        {**point, "duration": duration, "seed": seed}
+                        for seed in range(1, seeds + 1)
+                    ]
+    return points
+
+
+class Life(NamedTuple):
+    """The runs of one point."""
+
+    times: dict  # median time to failure by each criterion, or that simulated, τ_2
+    alive: int  # runs that failed by neither
+    runs: int
+    lived: float  # shortest time that was simulated, τ_2
+
+    @property
+    def median(self):
+        """The earlier of the two times, τ_2."""
+        return min(self.times.values())
+
+    @property
+    def all_alive(self):
+        """Whether no run failed."""
+        return self.alive == self.runs
+
+
+def life_of(results):
+    """What the runs of one point say."""
+    times = {
+        name: float(np.median([r["lived"] if r[name] is None else r[name] for r in results]))
+        for name in CRITERIA
     }
+    alive = sum(all(result[name] is None for name in CRITERIA) for result in results)
+    return Life(times, alive, len(results), min(result["lived"] for result in results))
 
 
 def main():
     figure = Figure("fig05", "Fig. 5", "Runtime to failure of Newtonian dynamics", __doc__)
-    duration = figure.choose(30.0, 2.0)
-    fractions = figure.choose([0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 1.0], [0.1, 1.0])
-    seeds = figure.choose([1, 2, 3], [1])
-    points = grid(
-        scheme=list(SCHEMES),
-        softness=SOFTNESSES,
-        fraction=fractions,
-        subdivision=[10],
-        duration=[duration],
-        seed=seeds,
-    )
-    results = figure.sweep(runtime, points, description="runs")
+    size = figure.choose(FULL, QUICK)
+    points = points_of(size)
+    results = figure.sweep(failing_run, points, description="runs")
     lives, units = {}, {}
     for point, result in zip(points, results, strict=True):
         units[point["softness"]] = result["unit"]
-        key = point["scheme"], point["softness"], point["fraction"]
-        lives.setdefault(key, []).append((result["lifetime"], result["failed"]))
-    lives = {
-        key: Life(np.median([time for time, _ in found]), not any(failed for _, failed in found))
-        for key, found in lives.items()
-    }
+        key = point["mesh"], point["scheme"], point["softness"], point["fraction"]
+        lives.setdefault(key, []).append(result)
+    both = [r for r in results if all(r[name] is not None for name in CRITERIA)]
+    lives = {key: life_of(found) for key, found in lives.items()}
     figure.parameters(
-        f"Icospheres of N = 1002, κ = 20 kBT, kA and kV of the paper, Verlet from velocities of "
-        f"300 K, at most {duration:g} τ_2, {len(seeds)} runs per point; "
+        f"{size.seeds} random meshes of N = {COUNT} for each point and one icosphere, κ = 20 kBT, "
+        "kA and kV of the paper, Verlet from velocities of 300 K, at most "
+        f"{size.duration:g} τ_2 (below {ALLOWED:g} √Ξ τ at most {size.steps} steps, or "
+        f"{size.failing} of models that fail); "
         + ", ".join(f"√Ξ τ = {units[xi]:.1f} ps at Ξ = {xi:g}" for xi in SOFTNESSES)
         + "."
     )
-    if not figure.quick:
-        figure.check("√Ξ τ at Ξ = 0.037", units[0.037], 10.8, 0.1, unit=" ps")
-    check(figure, lives, fractions, duration)
-    draw(figure, lives, fractions)
+    figure.check("√Ξ τ at Ξ = 0.037", units[0.037], 10.8, 0.1, unit=" ps")
+    for mesh in ("random", "ordered"):
+        check_alive(figure, mesh, lives, size)
+        check_failing(figure, mesh, lives, size)
+    check_criteria(figure, both)
+    tabulate(figure, lives, size)
+    draw(figure, lives, size)
     figure.finish()
 
 
-class Life(NamedTuple):
-    """Median time to failure of the runs of one point in τ_2, and whether all lived to the end."""
-
-    median: float
-    all_alive: bool
-
-
-def check(figure, lives, fractions, duration):
-    allowed = [fraction for fraction in fractions if fraction <= 0.1]
+def check_alive(figure, mesh, lives, size):
+    allowed = [fraction for fraction in size.fractions if fraction <= ALLOWED]
     for softness, schemes in ((0.59, SCHEMES), (0.037, BARYCENTRIC)):
         for scheme in schemes:
-            alive = sum(lives[scheme, softness, fraction].all_alive for fraction in allowed)
+            found = [lives[mesh, scheme, softness, fraction] for fraction in allowed]
+            alive, runs = sum(life.alive for life in found), sum(life.runs for life in found)
             figure.claim(
-                f"Ξ = {softness:g}, {SCHEMES[scheme]}: alive at Δt ≤ 0.1 √Ξ τ",
-                f"{alive} of {len(allowed)} time steps",
+                f"{mesh}, Ξ = {softness:g}, {SCHEMES[scheme]}: alive at Δt ≤ {ALLOWED:g} √Ξ τ",
+                f"{alive} of {runs} runs, {len(allowed)} time steps",
                 "all",
-                alive == len(allowed),
+                alive == runs,
             )
-    least = figure.choose(100, 10)
-    for scheme in (each for each in SCHEMES if each not in BARYCENTRIC):
-        longest = max(lives[scheme, 0.037, fraction].median for fraction in allowed)
-        survived = any(lives[scheme, 0.037, fraction].all_alive for fraction in allowed)
+    for softness in SOFTNESSES:
+        largest = max(size.fractions)
+        alive = sum(lives[mesh, scheme, softness, largest].alive for scheme in SCHEMES)
         figure.claim(
-            f"Ξ = 0.037, {SCHEMES[scheme]}: fails at every time step",
-            f"median T_f at most {longest:.2g} τ_2, {duration / longest:.0f} times less than the "
-            "barycentric models reached",
-            f"{least} times less or more",
-            not survived and longest < duration / least,
+            f"{mesh}, Ξ = {softness:g}: runs alive at Δt = {largest:g} √Ξ τ",
+            f"{alive}",
+            "none",
+            alive == 0,
         )
-    figure.table(
-        "Largest Δt / √Ξ τ at which all runs lived:",
-        ["Ξ", *SCHEMES.values()],
-        [
-            [f"{xi:g}"]
-            + [
-                f"{max((f for f in fractions if lives[scheme, xi, f].all_alive), default='none')}"
-                for scheme in SCHEMES
-            ]
-            for xi in SOFTNESSES
-        ],
+
+
+def check_failing(figure, mesh, lives, size):
+    """Orders of magnitude between the models on soft meshes, at each time step by itself."""
+    allowed = [fraction for fraction in size.fractions if fraction <= ALLOWED]
+    reached = max(
+        lives[mesh, scheme, 0.037, f].lived
+        for scheme in BARYCENTRIC
+        for f in allowed
+        if lives[mesh, scheme, 0.037, f].all_alive
+    )
+    least = figure.choose(100, 10)
+    cut = (
+        f"runs of {size.failing} steps end before some have failed: the table has the times that "
+        "were simulated"
+    )
+    for scheme in VORONOI:
+        times = {fraction: lives[mesh, scheme, 0.037, fraction].median for fraction in allowed}
+        failed = {f: lives[mesh, scheme, 0.037, f].alive == 0 for f in allowed}
+        good = [f for f in allowed if failed[f] and times[f] * least <= reached]
+        longest = max(times.values())
+        figure.claim(
+            f"{mesh}, Ξ = 0.037, {SCHEMES[scheme]}: fails at every Δt ≤ {ALLOWED:g} √Ξ τ",
+            f"at {len(good)} of {len(allowed)} time steps; median T_f at most {longest:.2g} τ_2, "
+            f"{reached / longest:.0f} times less than barycentric models were seen to live",
+            f"at all, {least} times less or more",
+            len(good) == len(allowed),
+            "" if all(failed.values()) else cut,
+        )
+
+
+def check_criteria(figure, both):
+    """Whether the two criteria tell the same story."""
+    ratios = [max(r["energy"], r["kinetic"]) / min(r["energy"], r["kinetic"]) for r in both]
+    figure.claim(
+        f"times by the two criteria, larger over smaller, of {len(ratios)} runs that failed",
+        f"median {np.median(ratios):.2f}, nine tenths up to {np.percentile(ratios, 90):.2f}",
+        "nine tenths within a factor of two",
+        np.percentile(ratios, 90) < 2,
     )
 
 
-def draw(figure, lives, fractions):
-    graph, axes = plt.subplots(1, 2, figsize=(9, 3.6), sharey=True, layout="constrained")
+def tabulate(figure, lives, size):
+    for mesh in ("random", "ordered"):
+        rows = []
+        for softness in SOFTNESSES:
+            for fraction in size.fractions:
+                cells = []
+                for scheme in SCHEMES:
+                    life = lives[mesh, scheme, softness, fraction]
+                    if life.all_alive:
+                        cells.append(f"> {life.lived:.3g}")
+                    else:
+                        times = " / ".join(f"{time:.3g}" for time in life.times.values())
+                        cells.append(times + (f" ({life.alive} alive)" if life.alive else ""))
+                rows.append([f"{softness:g}", f"{fraction:g}", *cells])
+        figure.table(
+            f"Median time to failure, τ_2, {mesh} meshes: {' / '.join(CRITERIA.values())}:",
+            ["Ξ", "Δt / √Ξ τ", *SCHEMES.values()],
+            rows,
+        )
+
+
+def draw(figure, lives, size):
+    graph, axes = plt.subplots(1, 2, figsize=(9, 3.8), sharey=True, layout="constrained")
     for axis, softness in zip(axes, SOFTNESSES, strict=True):
-        for shift, (scheme, label) in enumerate(SCHEMES.items()):
-            found = [lives[scheme, softness, fraction] for fraction in fractions]
-            # Curves that coincide are moved apart a little.
-            x = np.array(fractions) * 1.03**shift
-            [line] = axis.loglog(x, [life.median for life in found], "-", lw=1, label=label)
-            for here, life in zip(x, found, strict=True):
-                axis.plot(here, life.median, "^" if life.all_alive else "x", color=line.get_color())
-        axis.axvline(0.1, color="gray", lw=0.8, ls=":")
+        for place, (scheme, label) in enumerate(SCHEMES.items()):
+            for mesh, style in (("random", "-"), ("ordered", ":")):
+                found = [lives[mesh, scheme, softness, fraction] for fraction in size.fractions]
+                # Curves that coincide are moved apart a little.
+                x = np.array(size.fractions) * 1.05**place
+                named = label if mesh == "random" else None
+                color = f"C{place}"
+                axis.loglog(x, [life.median for life in found], style, color=color, label=named)
+                for here, life in zip(x, found, strict=True):
+                    axis.plot(here, life.median, "^" if life.all_alive else "x", color=color, ms=4)
+        axis.axvline(ALLOWED, color="gray", lw=0.8, ls=":")
         axis.set(xlabel="Δt / √Ξ τ", title=f"Ξ = {softness:g}")
     axes[0].set_ylabel("runtime to failure / τ_2")
     axes[0].legend(fontsize=7)
-    figure.save(graph, "", "Median time to failure; triangles: all runs were alive at the end.")
+    caption = "Median time to failure; lines: random meshes, dotted: icosphere; triangles: alive."
+    figure.save(graph, "", caption)
 
 
 if __name__ == "__main__":

@@ -1,237 +1,260 @@
 """Fig. 7 and Fig. 8 of the supplement: vesicles of reduced volume 1 to 0.1 from affine oblates.
 
-Each run starts from a sphere flattened to its reduced volume, soft (Ξ = 0.037), and gets harder in
-a slow ramp of the least triangle height d to one of four softnesses. Then it runs on; the second
-half gives the averages. Harder triangles cannot take the shapes of small reduced volume: there the
-energy of the heights ⟨U_h⟩ rises.
+Each run starts from a random sphere flattened to its reduced volume, soft (Ξ = 0.037), and gets
+harder in a slow ramp of the least triangle height d to one of four softnesses. Then it runs on; the
+last third gives the averages. `analysis.crossings`, which knows nothing of the forces, looks for
+triangles that pass through each other. Classes as in the paper: green is settled and intact, yellow
+intact but still drifting or strained, red failed or crossing itself; see `oblates.class_of`.
+
+--seeds N runs N random meshes for each point (default 3), one after the other.
 """
+
+import argparse
+from collections import Counter
 
 import matplotlib.pyplot as plt
 import numpy as np
 import openmmhelfrich as helfrich
 from _paper import Figure
 from _snapshots import along_axes, draw_meshes
-from openmmhelfrich.analysis import mean_with_error
+from oblates import (
+    CLASSES,
+    FRICTION,
+    RAMP,
+    RIGIDITY,
+    SOFTEST,
+    STRAINED,
+    class_of,
+    dimple,
+    late,
+    late_energy,
+    oblate_run,
+    over_seeds,
+    start_of,
+    upright,
+)
 from openmmhelfrich.sweep import grid
 
-SOFTEST = 0.037
-SAMPLES = 200
+# What the paper shows as running well: soft meshes down to the discocyte.
+SOFT, INTACT_FROM = 0.15, 0.6
 
 
-def oblate_run(reduced_volume, softness, duration, time_step, subdivision, seed):
-    """Run one vesicle from an oblate, with a ramp of the heights and some time after it.
-
-    Parameters
-    ----------
-    reduced_volume : float
-        ν of the oblate.
-    softness : float
-        Ξ at the end of the ramp, which starts at SOFTEST.
-    duration, time_step : float
-        ps; a fifth of the duration is the ramp.
-    subdivision : int
-        n of N = 10 n² + 2.
-    seed : int
-        Of velocities and noise.
-
-    Returns
-    -------
-    dict
-        "energies" per term at SAMPLES times after the ramp, shape (SAMPLES, 4), kJ/mol; the last
-        "shape", shape (N, 3), nm, and its "triangles"; "failed", why the run ended early, or "".
-    """
-    import openmm
-    from openmm import unit
-
-    mesh = helfrich.Mesh.icosphere(subdivision, 1000.0)
-    mesh = mesh.oblate(min(reduced_volume, mesh.reduced_volume))
-    vesicle = helfrich.Vesicle(
-        mesh,
-        rigidity=50,
-        softness=SOFTEST,
-        scheme=helfrich.BendingForce.GompperKrollBarycentric,
-    )
-    integrator = openmm.LangevinMiddleIntegrator(300, 0.01, time_step)
-    integrator.setRandomNumberSeed(seed)
-    simulation = vesicle.simulation(integrator)
-    if vesicle.energies(simulation.context)["heights"] > vesicle.epsilon * mesh.num_vertices:
-        # The flattest starts have triangles of nearly no height at their rim.
-        simulation.minimizeEnergy(maxIterations=200)
-    simulation.context.setVelocitiesToTemperature(300, seed)
-    ramp = round(0.2 * duration / time_step)
-    rows = []
-    failed = ""
-    shape = mesh.vertices
-    try:
-        if softness != SOFTEST:
-            heights = vesicle.placement.heights
-            helfrich.harden(simulation, heights, mesh.min_height(softness), ramp)
-        else:
-            simulation.step(ramp)
-        for _ in range(SAMPLES):
-            simulation.step(round(0.8 * duration / time_step / SAMPLES))
-            rows.append(list(vesicle.energies(simulation.context).values()))
-            state = simulation.context.getState(positions=True)
-            shape = state.getPositions(asNumpy=True).value_in_unit(unit.nanometer)
-    except openmm.OpenMMException as error:
-        failed = str(error)
-    return {
-        "energies": np.array(rows).reshape(-1, 4),
-        "shape": shape,
-        "triangles": mesh.triangles,
-        "failed": failed,
-    }
-
-
-def upright(vesicle):
-    """The last shape of a vesicle, its axis along z."""
-    return along_axes(helfrich.Mesh(vesicle["shape"], vesicle["triangles"]))
-
-
-def dimple(mesh):
-    """Thickness in the middle over the largest one, of a disc whose axis is z; 1 without dimple."""
-    rho = np.hypot(mesh.vertices[:, 0], mesh.vertices[:, 1])
-    rings = np.minimum((8 * rho / np.percentile(rho, 98)).astype(int), 8)
-    z = abs(mesh.vertices[:, 2])
-    profile = np.array([z[rings == ring].mean() for ring in range(8)])
-    return profile[0] / profile.max()
+def number_of_seeds():
+    """The number of random meshes for each point, and the other arguments of the command line."""
+    parser = argparse.ArgumentParser(add_help=False)
+    parser.add_argument("--seeds", type=int, default=None)
+    options, rest = parser.parse_known_args()
+    if options.seeds is not None and options.seeds < 1:
+        parser.error(f"--seeds: need 1 or more, got {options.seeds}")
+    return options.seeds, rest
 
 
 def main():
-    figure = Figure("fig07", "Fig. 7, SM 8", "Vesicles of reduced volume 1 to 0.1", __doc__)
+    seeds, rest = number_of_seeds()
+    figure = Figure("fig07", "Fig. 7, SM 8", "Vesicles of reduced volume 1 to 0.1", __doc__, rest)
+    seeds = seeds or figure.choose(3, 1)
     volumes = figure.choose(np.arange(10, 0, -1) / 10, [1.0, 0.6, 0.3])
     softnesses = figure.choose([0.037, 0.15, 0.33, 0.59], [0.037, 0.59])
-    duration, time_step = figure.choose((50_000.0, 0.2), (10_000.0, 1.0))
-    subdivision = figure.choose(10, 5)
+    periods, count = figure.choose((160, 1002), (2, 1002))
     points = grid(
+        # A seed is finished before the next one begins.
+        seed=range(1, seeds + 1),
         reduced_volume=volumes,
         softness=softnesses,
-        duration=[duration],
-        time_step=[time_step],
-        subdivision=[subdivision],
-        seed=[1],
+        periods=[periods],
+        num_vertices=[count],
     )
     results = figure.sweep(oblate_run, points, description="oblates")
-    vesicles = {
-        (point["reduced_volume"], point["softness"]): result
-        for point, result in zip(points, results, strict=True)
-    }
-    count = 10 * subdivision**2 + 2
-    figure.parameters(
-        f"N = {count}, κ = 50 kJ/mol, GKB, kA and kV of the paper, LangevinMiddle, γ = 0.01/ps, "
-        f"300 K, {duration / 1000:g} ns, of which a fifth is the ramp of d, Δt = {time_step:g} ps."
+    vesicles = {}
+    for point, result in zip(points, results, strict=True):
+        vesicles.setdefault((point["reduced_volume"], point["softness"]), []).append(result)
+    steps = ", ".join(
+        f"{vesicles[volumes[0], softness][0]['time_step']:.2g} ps at Ξ = {softness:g}"
+        for softness in softnesses
     )
-    check(figure, vesicles, count)
-    note(figure, vesicles, volumes, softnesses)
+    figure.parameters(
+        f"{seeds} random meshes of N = {count}, κ = {RIGIDITY:g} kJ/mol, GKB, kA and kV of the "
+        f"paper, LangevinMiddle, γ = {FRICTION:g}/ps, 300 K, {periods:g} τ_2, of which {RAMP:g} "
+        f"are the ramp of d, Δt = {steps}."
+    )
+    classes = classes_of(vesicles, max(volumes))
+    check(figure, vesicles, classes, count)
+    tabulate(figure, vesicles, classes, volumes, softnesses)
     draw_energies(figure, vesicles, volumes, softnesses)
-    draw_shapes(figure, vesicles, volumes, (min(softnesses), max(softnesses)), subdivision)
+    draw_classes(figure, classes, volumes, softnesses)
+    draw_shapes(figure, vesicles, volumes, (min(softnesses), max(softnesses)), count)
     figure.finish()
 
 
-def second_half(vesicle, column):
-    """Energies of one term in the second half of the samples, kJ/mol."""
-    return vesicle["energies"][SAMPLES // 2 :, column]
+def classes_of(vesicles, roundest):
+    """The class of each vesicle, {(ν, Ξ): [class of each seed]}."""
+    spheres = {
+        softness: late_energy(found, 3)[0]
+        for (volume, softness), found in vesicles.items()
+        if volume == roundest
+    }
+    return {
+        key: [class_of(each, spheres[key[1]]) for each in found] for key, found in vesicles.items()
+    }
 
 
-def check(figure, vesicles, count):
-    stable = [key for key, vesicle in vesicles.items() if not vesicle["failed"]]
-    soft = [key for key in vesicles if key[1] <= 0.15]
+def check(figure, vesicles, classes, count):
+    hard = max(softness for _, softness in vesicles)
+    failed = [key for key, found in vesicles.items() for each in found if each["failed"]]
+    soft_runs = sum(len(found) for (_, softness), found in vesicles.items() if softness <= SOFT)
+    soft_failed = sum(softness <= SOFT for _, softness in failed)
     figure.claim(
-        "soft meshes (Ξ ≤ 0.15) run to the end",
-        f"{sum(key in stable for key in soft)} of {len(soft)}",
+        f"soft meshes (Ξ ≤ {SOFT:g}) run to the end",
+        f"{soft_runs - soft_failed} of {soft_runs}",
         "all",
-        all(key in stable for key in soft),
+        soft_failed == 0,
     )
-    disc = vesicles[0.6, SOFTEST]
-    thickness = dimple(upright(disc))
+    good = [
+        each
+        for (volume, softness), found in classes.items()
+        if softness <= SOFT and volume >= INTACT_FROM
+        for each in found
+    ]
+    if figure.quick:
+        # Short runs have not settled.
+        intact = sum(each != "red" for each in good)
+        wanted = "all green or yellow"
+    else:
+        intact, wanted = good.count("green"), "all green"
+    figure.claim(
+        f"soft meshes (Ξ ≤ {SOFT:g}) from ν = {INTACT_FROM:g} to 1",
+        f"{intact} of {len(good)}",
+        wanted,
+        intact == len(good),
+    )
+    discs = [dimple(upright(each)) for each in vesicles[0.6, SOFTEST] if not each["failed"]]
     # A coarse mesh that has run for a short time is a shallow one.
     limit = figure.choose(0.75, 0.95)
     figure.claim(
-        "ν = 0.6, Ξ = 0.037 is a discocyte",
-        f"thickness in the middle / at the rim = {thickness:.2f}",
+        f"ν = 0.6, Ξ = {SOFTEST:g} is a discocyte in each run",
+        f"thickness in the middle / at the rim = {', '.join(f'{each:.2f}' for each in discs)}",
         f"< {limit:g}",
-        thickness < limit,
+        bool(discs) and max(discs) < limit,
     )
-    hard = max(softness for _, softness in vesicles)
-    lowest = min(volume for volume, softness in stable if softness == hard)
-    (round_mean, round_error, *_), (flat_mean, flat_error, *_) = (
-        mean_with_error(second_half(vesicles[volume, hard], 3) / count) for volume in (1.0, lowest)
-    )
+    rises = {}
+    for volume in sorted({volume for volume, _ in vesicles}):
+        rises[volume] = late_energy(vesicles[volume, hard], 3)
+    (sphere, error, _), roundest = rises[max(rises)], max(rises)
+    flat = max((v for v in rises if rises[v][2] and v != roundest), key=lambda v: rises[v][0])
+    value, uncertain, _ = rises[flat]
+    share = value / sphere - 1
     figure.claim(
-        f"⟨U_h⟩ of Ξ = {hard:g} rises from ν = 1 to {lowest:g}",
-        f"{round_mean:.3f} ± {round_error:.3f} to {flat_mean:.3f} ± {flat_error:.3f} kJ/mol per "
-        f"vertex, × {flat_mean / round_mean:.2f}",
-        "a rise of more than 5 standard errors",
-        flat_mean - round_mean > 5 * np.hypot(round_error, flat_error),
+        f"⟨U_h⟩ of Ξ = {hard:g} rises where vesicles are flat: most at ν = {flat:g}",
+        f"{sphere / count:.3f} to {value / count:.3f} kJ/mol per vertex, {100 * share:.0f} %",
+        "a rise of more than 5 % and three standard errors",
+        share > 0.05 and not value - sphere <= 3 * np.hypot(error, uncertain),
+    )
+    order = list(CLASSES)
+    mean = {
+        softness: np.mean(
+            [order.index(c) for (_, s), f in classes.items() if s == softness for c in f]
+        )
+        for softness in sorted({softness for _, softness in vesicles})
+    }
+    figure.claim(
+        "mean class (0 green, 1 yellow, 2 red) of the hardest and of the softest mesh",
+        f"{mean[hard]:.2f} and {mean[SOFTEST]:.2f}",
+        "that of the hardest is no better",
+        mean[hard] >= mean[SOFTEST],
     )
 
 
-def note(figure, vesicles, volumes, softnesses):
+def tabulate(figure, vesicles, classes, volumes, softnesses):
+    header = ["ν", *(f"Ξ = {softness:g}" for softness in softnesses)]
+
+    def rows(cell):
+        return [[f"{volume:g}", *(cell((volume, xi)) for xi in softnesses)] for volume in volumes]
+
+    def numbers(value, digits):
+        def cell(key):
+            mean, error, number = over_seeds(vesicles[key], value)
+            spread = "" if np.isnan(error) else f" ± {error:.{digits}f}"
+            return f"{mean:.{digits}f}{spread}" if number else "failed"
+
+        return cell
+
+    def counted(key):
+        return ", ".join(f"{n} {name}" for name, n in Counter(classes[key]).items())
+
+    meaning = "; ".join(f"{name}: {what}" for name, what in CLASSES.items())
+    figure.table(f"Classes ({meaning}):", header, rows(counted))
     for column, symbol, digits in ((2, "⟨E_b⟩", 0), (3, "⟨U_h⟩", 1)):
-        figure.table(
-            f"{symbol} over the second half, kJ/mol:",
-            ["ν", *(f"Ξ = {softness:g}" for softness in softnesses)],
-            [
-                [f"{volume:g}"]
-                + [
-                    "failed"
-                    if vesicles[volume, softness]["failed"]
-                    else f"{second_half(vesicles[volume, softness], column).mean():.{digits}f}"
-                    for softness in softnesses
-                ]
-                for volume in volumes
-            ],
-        )
+        value = numbers(lambda each, column=column: late(each, column).mean(), digits)
+        figure.table(f"{symbol} over the last third, kJ/mol:", header, rows(value))
     figure.table(
-        "The paper describes a discocyte near ν = 0.6. Thickness in the middle over that at the "
-        "rim of the last shapes; below ν = 0.5 the middle has gone through itself and bulges out:",
-        ["ν", *(f"Ξ = {softness:g}" for softness in softnesses)],
-        [
-            [f"{volume:g}"]
-            + [
-                "failed"
-                if vesicles[volume, softness]["failed"]
-                else f"{dimple(upright(vesicles[volume, softness])):.2f}"
-                for softness in softnesses
-            ]
-            for volume in volumes
-        ],
+        "Part of the tests at which the surface passed through itself:",
+        header,
+        rows(numbers(lambda each: (each["crossings"] > 0).mean(), 2)),
+    )
+    figure.table(
+        "Thickness in the middle over that at the rim of the last shapes; where the surface has "
+        "passed through itself the middle bulges out:",
+        header,
+        rows(numbers(lambda each: dimple(upright(each)), 2)),
     )
     figure.note(
         "Nothing keeps distant parts of a membrane apart, so that at small ν opposite sides touch "
-        "and pass through each other."
+        f"and pass through each other. Strained are meshes whose ⟨U_h⟩ is over {100 * STRAINED:g} "
+        "% above that of the sphere."
     )
-    for (volume, softness), vesicle in vesicles.items():
-        if vesicle["failed"]:
-            figure.note(f"ν = {volume:g}, Ξ = {softness:g} failed: {vesicle['failed'][:120]}")
+    for (volume, softness), found in vesicles.items():
+        again = sum(each["attempts"] > 1 for each in found)
+        for each in found:
+            if each["failed"]:
+                figure.note(f"ν = {volume:g}, Ξ = {softness:g} failed: {each['failed'][:120]}")
+        if again:
+            figure.note(
+                f"ν = {volume:g}, Ξ = {softness:g}: {again} of {len(found)} runs with a quarter of "
+                "the time step, after one that failed."
+            )
+
+
+def draw_classes(figure, classes, volumes, softnesses):
+    """A dot for each run, side by side at each point."""
+    colours = {"green": "tab:green", "yellow": "gold", "red": "tab:red"}
+    graph, axis = plt.subplots(figsize=(6, 2.6), layout="constrained")
+    for (volume, softness), found in classes.items():
+        for place, name in enumerate(found):
+            shift = 0.02 * (place - (len(found) - 1) / 2)
+            axis.plot(volume + shift, softnesses.index(softness), "o", color=colours[name])
+    axis.set(xlabel="reduced volume ν", ylabel="Ξ", yticks=range(len(softnesses)))
+    axis.set_yticklabels([f"{softness:g}" for softness in softnesses])
+    axis.set(ylim=(-0.5, len(softnesses) - 0.5), xlim=(max(volumes) + 0.06, min(volumes) - 0.06))
+    meaning = "; ".join(f"{name}: {what}" for name, what in CLASSES.items())
+    figure.save(graph, "_classes", f"Classes of the runs. {meaning}.")
 
 
 def draw_energies(figure, vesicles, volumes, softnesses):
     graph, axes = plt.subplots(1, 2, figsize=(9, 3.6), layout="constrained")
     for softness in softnesses:
-        found = [volume for volume in volumes if not vesicles[volume, softness]["failed"]]
         for axis, column in zip(axes, (2, 3), strict=True):
-            means = [second_half(vesicles[volume, softness], column).mean() for volume in found]
-            axis.plot(found, means, "o-", label=f"Ξ = {softness:g}")
+            means, errors, _ = np.transpose(
+                [late_energy(vesicles[volume, softness], column) for volume in volumes]
+            )
+            axis.errorbar(volumes, means, errors, fmt="o-", ms=4, label=f"Ξ = {softness:g}")
     axes[0].set(xlabel="reduced volume ν", ylabel="⟨E_b⟩ (kJ/mol)")
     axes[1].set(xlabel="reduced volume ν", ylabel="⟨U_h⟩ (kJ/mol)", yscale="log")
     axes[0].legend()
     figure.save(graph, "_energies", "Bending and height energies against reduced volume.")
 
 
-def draw_shapes(figure, vesicles, volumes, softnesses, subdivision):
+def draw_shapes(figure, vesicles, volumes, softnesses, count):
     panels, views = [], []
     for softness in softnesses:
         for view in ("tilted", "cut"):
             for volume in volumes:
-                vesicle = vesicles[volume, softness]
+                vesicle = vesicles[volume, softness][0]
                 title = f"ν = {volume:g}, Ξ = {softness:g}"
                 try:
                     mesh = helfrich.Mesh(vesicle["shape"], vesicle["triangles"])
                 except helfrich.MeshError:
                     # It blew up; its start stands in for it.
-                    mesh = helfrich.Mesh.icosphere(subdivision, 1000.0)
-                    mesh = mesh.oblate(min(volume, mesh.reduced_volume))
+                    mesh = start_of(volume, count, 1)
                 title += " (failed)" if vesicle["failed"] else ""
                 panels.append((title, along_axes(mesh), None))
                 views.append(view)
