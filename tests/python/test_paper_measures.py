@@ -246,3 +246,21 @@ def test_alike_triangles_tie_bonds_to_areas():
     assert found["area_sum"] == pytest.approx(1, abs=1e-12)
     assert found["length_sum"] == pytest.approx(1, abs=1e-12)
     assert (np.diff(found["area"]) > 0.1).all()
+
+
+def test_a_cup_has_a_thickness_and_a_crumpled_surface_dents():
+    from fig08_red_cell import dented, dimple, thickness
+
+    # A disc bent up at its rim: both of its sides are above the middle's there.
+    flat = disc(0)
+    x, y, z = flat.vertices.T
+    cup = Mesh(np.stack([x, y, z + (x**2 + y**2) / 1500], axis=1), flat.triangles)
+    _, middle, rim = thickness(cup)
+    assert middle == pytest.approx(600, rel=0.03)
+    assert rim == pytest.approx(600, rel=0.06)
+    tilted = disc(0.6).rotated(expm(np.cross(np.eye(3), (0.4, -0.2, 0.9))))
+    assert dimple(tilted) == pytest.approx(0.42 / 0.76, abs=0.04)
+    assert dented(flat) < 0.01
+    jitter = np.random.default_rng(5).normal(size=(flat.num_vertices, 1))
+    crumpled = Mesh(flat.vertices * (1 + 0.02 * jitter), flat.triangles)
+    assert 0.3 < dented(crumpled) < 0.55
