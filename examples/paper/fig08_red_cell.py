@@ -207,7 +207,7 @@ def main():
     folder, rest = files_folder()
     figure = Figure("fig08", "Fig. 8", "A red cell, fluid and elastic membrane", __doc__, rest)
     duration = figure.choose(300_000, 200)
-    for file in {case.file for case in CASES.values()}:
+    for file in dict.fromkeys(case.file for case in CASES.values()):
         if not (folder / file).is_file():
             print(
                 f"fig08: there is no {folder / file}. VCM's files of the red cell come with the "
