@@ -9,10 +9,13 @@ have the nodes and the springs used here.
 Shapes are measured: the thickness in the middle over that of the rim, which is 0.3 in the mean red
 cell of Evans and Fung (doi:10.1016/0026-2862(72)90069-6).
 
-What C0 of 6 to 8 over the radius asks for are tubes of the radius 1/C0 = 167 nm, hardly more than
-the 139 nm between vertices. With |S| the membrane crumples from vertex to vertex instead. With n·S
-single vertices pull out tubes whose triangles span them from end to end. A run that breaks down
-there is diagnosed, and its last stretch is run again with a quarter of the time step.
+What C0 of 16 over the radius asks for are tubes of the radius 1/C0 = 167 nm, hardly more than the
+139 nm between vertices. With |S| the membrane crumples from vertex to vertex instead. With n·S
+single vertices pull out tubes, on edges that span them from end to end. At the tip and in folds of
+such a tube the normals of the triangles around a vertex cancel, and the direction of their sum, the
+n of (B9), jumps from step to step, with n·S: that is where the run breaks down. It is no matter of
+the time step, which is a third of its bound. Of a run that broke down the last stretch is repeated
+step by step, to see how far normals cancel.
 """
 
 import argparse
@@ -28,6 +31,7 @@ import openmmhelfrich as helfrich
 from _paper import MISSING, Figure
 from _snapshots import along_axes, draw_meshes
 from openmmhelfrich.analysis import mean_with_error, vertex_quantities
+from red_cell_shapes import coherence, dented, dimple, thickness
 
 
 class Case(NamedTuple):
@@ -81,8 +85,8 @@ def red_cell(file, contents, duration, seed, compatible=False):
         (num_samples, num_terms), kJ/mol, "temperatures", K, "edges", the longest, nm, and
         "heights", the least, nm; "bounds" of the time step, ps; "shapes" of the fluid membrane, the
         first at the start, the last at the end, others from between, nm, and its "triangles";
-        "step", ps; "failed", the diagnosis if the run ended early, or ""; "again", what became of
-        its last stretch with a quarter of the time step.
+        "step", ps; "failed", the diagnosis if the run ended early, or ""; and what `last_steps`
+        returns, which is empty if it did not.
     """
     import openmm
     from openmm import unit
@@ -98,7 +102,8 @@ def red_cell(file, contents, duration, seed, compatible=False):
     watch = helfrich.BlowUpReporter(None, steps)
     simulation.reporters.append(watch)
     rows = {name: [] for name in ("times", "energies", "temperatures", "edges", "heights")}
-    shapes, bounds, failed, again = [fluid.mesh.vertices], [], "", ""
+    shapes, bounds, failed = [fluid.mesh.vertices], [], ""
+    last = {"coherence": np.empty(0), "jump": 0.0}
     shape = fluid.mesh.vertices
     for sample in range(1, SAMPLES + 1):
         try:
@@ -106,7 +111,7 @@ def red_cell(file, contents, duration, seed, compatible=False):
                 simulation.step(steps)
         except openmm.OpenMMException as error:
             failed = str(error)
-            again = slowly(simulation, 2 * steps, config.step_size / 4)
+            last = last_steps(simulation, fluid, steps)
             break
         state = simulation.context.getState(energy=True, positions=True)
         kinetic = state.getKineticEnergy().value_in_unit(unit.kilojoule_per_mole)
@@ -131,65 +136,46 @@ def red_cell(file, contents, duration, seed, compatible=False):
         "triangles": triangles,
         "step": config.step_size,
         "failed": failed,
-        "again": again,
+        **last,
     }
 
 
-def slowly(simulation, steps, step):
-    """Go on from the last look of a watch, where it has put the Context, with shorter steps.
+def last_steps(simulation, fluid, steps):
+    """Repeat the steps since the last look of a watch, where it has put the Context.
 
     Returns
     -------
-    str
-        "" if it lasts for so many of the old steps, or why not.
+    dict
+        "coherence", the least of all vertices after each step, shape (num_steps,), up to the one
+        before an energy or a position is not finite or the temperature doubles; "jump", how far
+        n·S of the vertex of least coherence jumps in the step after it, nm.
     """
     import openmm
+    from openmm import unit
 
-    ratio = simulation.integrator.getStepSize()._value / step
     simulation.reporters.clear()
-    simulation.integrator.setStepSize(step)
-    try:
-        simulation.step(round(ratio * steps))
-        simulation.context.getState(energy=True, positions=True)
-    except (openmm.OpenMMException, ValueError) as error:
-        return str(error).splitlines()[0]
-    return ""
-
-
-def sheets(mesh, chosen):
-    """Mean z of the upper and of the lower side among chosen vertices, nm, by their normals.
-
-    NaN without a vertex on a side. So a cup, of which both sides may be above the middle, is
-    measured too.
-    """
-    a, b, c = (mesh.vertices[mesh.triangles[:, corner]] for corner in range(3))
-    upward = np.cross(b - a, c - a)[:, 2]
-    normal = np.zeros(mesh.num_vertices)
-    for corner in range(3):
-        np.add.at(normal, mesh.triangles[:, corner], upward)
-    z = mesh.vertices[:, 2]
-    return tuple(
-        z[chosen & side].mean() if (chosen & side).any() else np.nan
-        for side in (normal > 0, normal < 0)
-    )
-
-
-def thickness(mesh):
-    """Diameter, and thickness in the middle and at its largest, of a disc along z, nm."""
-    rho = np.hypot(mesh.vertices[:, 0], mesh.vertices[:, 1])
-    upper, lower = sheets(mesh, rho < 0.15 * rho.max())
-    rings = np.digitize(rho, np.linspace(0, rho.max(), 12))
-    extents = []
-    for ring in np.unique(rings):
-        above, below = sheets(mesh, rings == ring)
-        extents.append(above - below)
-    return 2 * np.percentile(rho, 98), upper - lower, np.nanmax(extents)
-
-
-def dimple(mesh):
-    """The thickness in the middle over the largest one, of a mesh however it lies."""
-    _, middle, rim = thickness(along_axes(mesh))
-    return middle / rim
+    triangles = fluid.mesh.triangles
+    found, shapes, hottest = [], [], None
+    for _ in range(steps):
+        try:
+            simulation.step(1)
+            state = simulation.context.getState(energy=True, positions=True)
+        except (openmm.OpenMMException, ValueError):
+            break
+        kinetic = state.getKineticEnergy().value_in_unit(unit.kilojoule_per_mole)
+        hottest = hottest or 2 * kinetic
+        positions = state.getPositions(asNumpy=True).value_in_unit(unit.nanometer)
+        shapes = [*shapes[-1:], positions[fluid.particles.start : fluid.particles.stop]]
+        if not kinetic < hottest:
+            break
+        found.append(coherence(shapes[-1], triangles).min())
+    jump = 0.0
+    if len(shapes) == 2:
+        vertex = int(np.argmin(coherence(shapes[0], triangles)))
+        quantities = [vertex_quantities(shape, triangles) for shape in shapes]
+        before, after = (np.dot(one.normal[vertex], one.cotangent[vertex]) for one in quantities)
+        jump = float(abs(after - before))
+    return {"coherence": np.array(found), "jump": jump}
 
 
 def files_folder():
@@ -259,12 +245,15 @@ def check(figure, case, cell, duration):
         np.isfinite(energies).all() and len(energies) == SAMPLES,
         cause(cell),
     )
-    if failed:
+    if failed and len(cell["coherence"]):
         figure.claim(
-            f"{case}: the stretch that broke down, with a quarter of the time step",
-            cell["again"] or "lasts",
-            "lasts",
-            not cell["again"],
+            f"{case}: normals around a vertex cancel as it breaks down, |Σ θ n| / Σ θ",
+            f"{cell['coherence'][-1]:.2g} at the least of all vertices, then n·S jumps by "
+            f"{cell['jump']:.0f} nm",
+            "less than 0.02, and 0.9 at the start; a jump of more than 500 nm",
+            cell["coherence"][-1] < 0.02
+            and cell["jump"] > 500
+            and coherence(cell["shapes"][0].astype(float), cell["triangles"]).min() > 0.9,
         )
         figure.note(f"{case}: {' '.join(line.strip() for line in failed.splitlines())}")
     if len(cell["bounds"]):
@@ -292,8 +281,9 @@ def cause(cell):
         return ""
     return (
         "the spontaneous curvature pulls tubes of about the radius 1/C0 = 167 nm out of the "
-        f"membrane, with vertices 139 nm apart: single vertices at their tips, on edges of up to "
-        f"{cell['edges'].max():.0f} nm (figure of the edges), whose triangles are slivers"
+        "membrane, with vertices 139 nm apart: single vertices pull them, on edges of up to "
+        f"{cell['edges'].max():.0f} nm; around one the normals cancel, and n of (B9) and the "
+        "energy with n·S jump (next row). |S| has no normal"
     )
 
 
@@ -317,13 +307,6 @@ def check_shape(figure, case, cell, evans_fung):
         ratio.error,
         why=why,
     )
-
-
-def dented(mesh):
-    """The share of the area of vertices of negative mean curvature."""
-    quantities = vertex_quantities(mesh.vertices, mesh.triangles)
-    areas = quantities.barycentric_area
-    return float(areas[quantities.mean_curvature() < 0].sum() / areas.sum())
 
 
 def note(figure, case, cell):

@@ -84,7 +84,7 @@ def test_dimples_are_measured():
 
 
 def test_thicknesses_of_discs_are_measured():
-    from fig08_red_cell import thickness
+    from red_cell_shapes import thickness
 
     diameter, middle, rim = thickness(disc(0))
     assert diameter == pytest.approx(2000, rel=0.02)
@@ -249,7 +249,7 @@ def test_alike_triangles_tie_bonds_to_areas():
 
 
 def test_a_cup_has_a_thickness_and_a_crumpled_surface_dents():
-    from fig08_red_cell import dented, dimple, thickness
+    from red_cell_shapes import dented, dimple, thickness
 
     # A disc bent up at its rim: both of its sides are above the middle's there.
     flat = disc(0)
@@ -264,3 +264,23 @@ def test_a_cup_has_a_thickness_and_a_crumpled_surface_dents():
     jitter = np.random.default_rng(5).normal(size=(flat.num_vertices, 1))
     crumpled = Mesh(flat.vertices * (1 + 0.02 * jitter), flat.triangles)
     assert 0.3 < dented(crumpled) < 0.55
+
+
+def test_normals_agree_on_a_sphere_and_cancel_around_a_needle_and_a_fold():
+    from red_cell_shapes import coherence
+
+    mesh = Mesh.icosphere(4, 1.0)
+    rough = mesh.vertices + 0.01 * np.random.default_rng(2).normal(size=mesh.vertices.shape)
+    assert coherence(rough, mesh.triangles).min() > 0.9
+    # A cone of n alike triangles of half angle α: all normals have sin α along the axis.
+    for length, degree in ((1.0, 5), (30.0, 6)):
+        angles = 2 * np.pi * np.arange(degree) / degree
+        ring = np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
+        tip = np.vstack([ring, (0, 0, length)])
+        triangles = [(i, (i + 1) % degree, degree) for i in range(degree)]
+        inner = np.cos(np.pi / degree)
+        found = coherence(tip, np.array(triangles))[degree]
+        assert found == pytest.approx(inner / np.hypot(length, inner))
+    # Two triangles upon each other.
+    folded = np.array([(0.0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 1, 1e-6)])
+    assert coherence(folded, np.array([(0, 1, 2), (1, 0, 3)]))[:2].max() < 1e-5
