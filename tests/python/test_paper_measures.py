@@ -84,7 +84,7 @@ def test_dimples_are_measured():
 
 
 def test_thicknesses_of_discs_are_measured():
-    from fig08_red_cell import thickness
+    from red_cell_shapes import thickness
 
     diameter, middle, rim = thickness(disc(0))
     assert diameter == pytest.approx(2000, rel=0.02)
@@ -246,3 +246,41 @@ def test_alike_triangles_tie_bonds_to_areas():
     assert found["area_sum"] == pytest.approx(1, abs=1e-12)
     assert found["length_sum"] == pytest.approx(1, abs=1e-12)
     assert (np.diff(found["area"]) > 0.1).all()
+
+
+def test_a_cup_has_a_thickness_and_a_crumpled_surface_dents():
+    from red_cell_shapes import dented, dimple, thickness
+
+    # A disc bent up at its rim: both of its sides are above the middle's there.
+    flat = disc(0)
+    x, y, z = flat.vertices.T
+    cup = Mesh(np.stack([x, y, z + (x**2 + y**2) / 1500], axis=1), flat.triangles)
+    _, middle, rim = thickness(cup)
+    assert middle == pytest.approx(600, rel=0.03)
+    assert rim == pytest.approx(600, rel=0.06)
+    tilted = disc(0.6).rotated(expm(np.cross(np.eye(3), (0.4, -0.2, 0.9))))
+    assert dimple(tilted) == pytest.approx(0.42 / 0.76, abs=0.04)
+    assert dented(flat) < 0.01
+    jitter = np.random.default_rng(5).normal(size=(flat.num_vertices, 1))
+    crumpled = Mesh(flat.vertices * (1 + 0.02 * jitter), flat.triangles)
+    assert 0.3 < dented(crumpled) < 0.55
+
+
+def test_normals_agree_on_a_sphere_and_cancel_around_a_needle_and_a_fold():
+    from red_cell_shapes import coherence
+
+    mesh = Mesh.icosphere(4, 1.0)
+    rough = mesh.vertices + 0.01 * np.random.default_rng(2).normal(size=mesh.vertices.shape)
+    assert coherence(rough, mesh.triangles).min() > 0.9
+    # A cone of n alike triangles of half angle α: all normals have sin α along the axis.
+    for length, degree in ((1.0, 5), (30.0, 6)):
+        angles = 2 * np.pi * np.arange(degree) / degree
+        ring = np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
+        tip = np.vstack([ring, (0, 0, length)])
+        triangles = [(i, (i + 1) % degree, degree) for i in range(degree)]
+        inner = np.cos(np.pi / degree)
+        found = coherence(tip, np.array(triangles))[degree]
+        assert found == pytest.approx(inner / np.hypot(length, inner))
+    # Two triangles upon each other.
+    folded = np.array([(0.0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 1, 1e-6)])
+    assert coherence(folded, np.array([(0, 1, 2), (1, 0, 3)]))[:2].max() < 1e-5
