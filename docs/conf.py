@@ -1,5 +1,6 @@
 """Sphinx's configuration of the site, which `make docs` builds of the Markdown here."""
 
+import os
 import sys
 from pathlib import Path
 
@@ -29,10 +30,13 @@ myst_heading_anchors = 4
 # cache; an error in a cell ends the build.
 nb_execution_mode = "cache"
 nb_execution_cache_path = str(notebooks.cache_folder())
-nb_execution_timeout = 300  # s, for a cell
+nb_execution_timeout = 600  # s, for a cell
 nb_execution_raise_on_error = True
 nb_execution_show_tb = True
 nb_merge_streams = True
+# Several run side by side, so one thread is enough for each.
+for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "OPENMM_CPU_THREADS"):
+    os.environ[variable] = "1"
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "description"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import shutil
 from pathlib import Path
 
 import openmmhelfrich
@@ -14,7 +15,8 @@ def cache_folder() -> Path:
     """The folder of the cache, one for each state of the package.
 
     MyST-NB runs a notebook again where its code has changed. What it imports has its part in the
-    results too, so another package begins with an empty cache.
+    results too, so another package begins with an empty cache, and the old
+    one is removed.
     """
     package = Path(openmmhelfrich.__file__).parent
     files = [
@@ -26,4 +28,8 @@ def cache_folder() -> Path:
     for file in sorted(files):
         digest.update(file.name.encode())
         digest.update(file.read_bytes())
-    return ROOT / "out" / "docs" / "notebooks" / digest.hexdigest()[:16]
+    folder = ROOT / "out" / "docs" / "notebooks" / digest.hexdigest()[:16]
+    for other in folder.parent.glob("*"):
+        if other != folder:
+            shutil.rmtree(other)
+    return folder
