@@ -88,6 +88,12 @@ fn main() {
             println!("cargo:rustc-link-arg=-Wl,-rpath,{}", lib.display());
         }
     }
+    if target("OS") == "macos" {
+        println!("cargo:rustc-cdylib-link-arg=-Wl,-install_name,@rpath/libOpenMMHelfrich.dylib");
+        for folder in ["@loader_path/../../OpenMM.libs/lib", "@loader_path/.."] {
+            println!("cargo:rustc-cdylib-link-arg=-Wl,-rpath,{folder}");
+        }
+    }
     println!("cargo:lib_dir={}", lib.display());
     bind_c_api(&include, site_packages.as_deref());
 }
