@@ -85,6 +85,12 @@ fn main() {
             println!("cargo:rustc-link-arg=-Wl,-rpath,{}", lib.display());
         }
     }
+    if target("OS") == "macos" {
+        println!("cargo:rustc-cdylib-link-arg=-Wl,-install_name,@rpath/libOpenMMHelfrich.dylib");
+        for folder in ["@loader_path/../../OpenMM.libs/lib", "@loader_path/.."] {
+            println!("cargo:rustc-cdylib-link-arg=-Wl,-rpath,{folder}");
+        }
+    }
     println!("cargo:lib_dir={}", lib.display());
     find_libclang(site_packages.as_deref());
     let openmm = bindgen::Builder::default()

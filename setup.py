@@ -12,7 +12,12 @@ from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
 
 ROOT = Path(__file__).resolve().parent
-LIBRARY = "libOpenMMHelfrich.so"
+# What cargo calls the library.
+BUILT = {"win32": "openmm_helfrich.dll", "darwin": "libopenmm_helfrich.dylib"}.get(
+    sys.platform, "libopenmm_helfrich.so"
+)
+# Where the extension looks for the two libraries, from its own folder; Windows has no such paths.
+ORIGIN = {"win32": None, "darwin": "@loader_path"}.get(sys.platform, "$ORIGIN")
 # The extension keeps to the stable ABI of this Python, so that all later ones load it too.
 OLDEST_PYTHON = (3, 10)
 
@@ -31,10 +36,10 @@ def find_openmm() -> Path:
     raise SystemExit("OpenMM was not found: pip install openmm==8.6.1, or set $OPENMM_DIR.")
 
 
-def interface():
-    """The module of the package that compares releases of OpenMM, without the package."""
-    path = ROOT / "python" / "openmmhelfrich" / "_openmm_interface.py"
-    spec = spec_from_file_location("_openmm_interface", path)
+def module_of_package(name: str):
+    """A module of the package, without the package."""
+    path = ROOT / "python" / "openmmhelfrich" / f"{name}.py"
+    spec = spec_from_file_location(name, path)
     module = module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
@@ -80,15 +85,15 @@ class BuildPlugin(build_ext):
         command = ["cargo", "build", "--release", "--locked", "--lib"]
         if subprocess.call(command, cwd=ROOT, env=environment) != 0:
             raise SystemExit("The Rust library did not build; its messages are above.")
-        library = package / "lib" / LIBRARY
+        library = package / "lib" / module_of_package("_system").LIBRARY
         library.parent.mkdir(parents=True, exist_ok=True)
         # Replacing the file instead of writing into it leaves programs that have it open in peace.
         library.unlink(missing_ok=True)
-        shutil.copy2(target / "release" / "libopenmm_helfrich.so", library)
+        shutil.copy2(target / "release" / BUILT, library)
         for folder in ("include", "cmake"):
             shutil.rmtree(package / folder, ignore_errors=True)
             shutil.copytree(ROOT / "wrappers" / folder, package / folder)
-        interface().write_record(package, openmm / "include")
+        module_of_package("_openmm_interface").write_record(package, openmm / "include")
 
     def build_wrapper(self, package: Path, openmm: Path):
         """The SWIG wrapper around the force classes, and its compiler flags."""
@@ -118,7 +123,9 @@ forces = Extension(
     define_macros=[("Py_LIMITED_API", "0x{:02x}{:02x}0000".format(*OLDEST_PYTHON))],
     py_limited_api=True,
     extra_compile_args=["-std=c++17", "-O2", "-g0", "-w"],
-    extra_link_args=["-Wl,-rpath,$ORIGIN/lib:$ORIGIN/../OpenMM.libs/lib"],
+    extra_link_args=[
+        f"-Wl,-rpath,{ORIGIN}/{folder}" for folder in ("lib", "../OpenMM.libs/lib") if ORIGIN
+    ],
 )
 
 setup(

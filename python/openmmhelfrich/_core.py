@@ -13,11 +13,12 @@ from pathlib import Path
 
 import numpy as np
 
+from ._system import LIBRARY
 from .errors import MeshError
 
 __all__ = ["LIBRARY_PATH", "last_error", "library", "orient"]
 
-LIBRARY_PATH = Path(__file__).with_name("lib") / "libOpenMMHelfrich.so"
+LIBRARY_PATH = Path(__file__).with_name("lib") / LIBRARY
 
 _DOUBLES = np.ctypeslib.ndpointer(np.float64, ndim=2, flags="C_CONTIGUOUS")
 _INDICES = np.ctypeslib.ndpointer(np.int64, ndim=2, flags=("C_CONTIGUOUS", "WRITEABLE"))

@@ -34,7 +34,9 @@ def include_path() -> str:
 
 
 def library_path() -> str:
-    """The file ``libOpenMMHelfrich.so``; its folder can serve as ``OPENMM_PLUGIN_DIR``.
+    """The file ``libOpenMMHelfrich.so``, or what it is called on other systems than Linux.
+
+    Its folder can serve as ``OPENMM_PLUGIN_DIR``.
 
     Raises
     ------

@@ -10,11 +10,12 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
-import resource
 import shutil
 import stat
 from collections.abc import Callable, Iterator
 from pathlib import Path
+
+from . import _system
 
 __all__ = ["describe", "in_memory", "naming", "replace", "write_whole"]
 
@@ -96,7 +97,7 @@ def replace(path: Path, data: bytes, previous: Path | None = None) -> None:
             if previous is not None and path.exists():
                 _keep(path, previous)
             os.replace(fresh, path)
-            _sync_folder(path.parent)
+            _system.sync_folder(path.parent)
         except OSError:
             # Where the disk is full, a part of a file would take the last of it.
             with contextlib.suppress(OSError):
@@ -148,21 +149,13 @@ def in_memory(write: Callable[[str], object]) -> bytes:
     OSError
         If it is more than the limit on the size of a file, which holds in memory too.
     """
-    handle = os.memfd_create("openmm-helfrich")
-    try:
-        failed = None
-        try:
-            write(f"/proc/self/fd/{handle}")
-        except OSError as reason:
-            failed = reason
-        size, limit = os.fstat(handle).st_size, resource.getrlimit(resource.RLIMIT_FSIZE)[0]
-        if limit != resource.RLIM_INFINITY and size >= limit:
-            raise OSError(errno.EFBIG, os.strerror(errno.EFBIG))
-        if failed is not None:
-            raise failed
-        return os.pread(handle, size, 0)
-    finally:
-        os.close(handle)
+    data, failed = _system.written(write)
+    limit = _system.file_size_limit()
+    if limit is not None and len(data) >= limit:
+        raise OSError(errno.EFBIG, os.strerror(errno.EFBIG))
+    if failed is not None:
+        raise failed
+    return data
 
 
 def _write(path: Path, data: bytes) -> None:
@@ -191,14 +184,3 @@ def _keep(path: Path, previous: Path) -> None:
         with contextlib.suppress(OSError):
             fresh.unlink()
         raise
-
-
-def _sync_folder(folder: Path) -> None:
-    """Put the names of a folder on the disk."""
-    handle = os.open(folder, os.O_RDONLY)
-    try:
-        # Some file systems of networks have no such thing.
-        with contextlib.suppress(OSError):
-            os.fsync(handle)
-    finally:
-        os.close(handle)

@@ -133,13 +133,13 @@ class TestHere:
         (log / "again").unlink()
         assert computed(log) == [0, 1, 2, 3, 4, 5]
 
-    def test_computes_again_what_is_broken(self, tmp_path, capsys):
+    def test_computes_again_what_is_broken(self, tmp_path, caplog):
         [first] = quiet(square, [{"x": 5}], cache=tmp_path, workers=0)
         [file] = tmp_path.rglob("*.npz")
         file.write_bytes(file.read_bytes()[:100])
         [second] = quiet(square, [{"x": 5}], cache=tmp_path, workers=0)
         assert second["number"] == first["number"] == 25
-        assert str(file) in capsys.readouterr().err
+        assert str(file) in caplog.text
         assert Cache(tmp_path).load("test_sweep.square", file.stem, {"x": 5})["number"] == 25
         assert not list(tmp_path.rglob("*.part"))
 
@@ -151,7 +151,7 @@ class TestHere:
             ("a place before the file", 42, b"\xff\xff\xff\x7f", ""),
         ],
     )
-    def test_damage_that_asks_for(self, tmp_path, capsys, what, offset, value, reason):
+    def test_damage_that_asks_for(self, tmp_path, caplog, what, offset, value, reason):
         """In the index, where every value has a meaning."""
         quiet(square, [{"x": 5}], cache=tmp_path, workers=0)
         [file] = tmp_path.rglob("*.npz")
@@ -161,10 +161,10 @@ class TestHere:
         file.write_bytes(content)
         [result] = quiet(square, [{"x": 5}], cache=tmp_path, workers=0)
         assert result["array"].tolist() == [[5.0] * 3] * 2
-        said = capsys.readouterr().err
+        said = caplog.text
         assert str(file) in said and reason in said
 
-    def test_an_array_that_is_missing(self, tmp_path, capsys):
+    def test_an_array_that_is_missing(self, tmp_path, caplog):
         quiet(square, [{"x": 5}], cache=tmp_path, workers=0)
         [file] = tmp_path.rglob("*.npz")
         with zipfile.ZipFile(file) as archive:
@@ -173,7 +173,7 @@ class TestHere:
             archive.writestr("json.npy", record)
         [result] = quiet(square, [{"x": 5}], cache=tmp_path, workers=0)
         assert result["array"].tolist() == [[5.0] * 3] * 2
-        assert f"{file} is broken ('no array')" in capsys.readouterr().err
+        assert f"{file} is broken ('no array')" in caplog.text
 
     def test_what_a_kill_has_left_is_removed(self, tmp_path):
         quiet(square, [{"x": 5}], cache=tmp_path, workers=0)
@@ -290,7 +290,7 @@ if __name__ == "__main__":
             assert said.stdout.split()[0] == expected
         assert sorted(path.name for path in cache.iterdir()) == ["one.value", "two.value"]
 
-    def test_computes_again_what_is_broken_within(self, tmp_path, capsys):
+    def test_computes_again_what_is_broken_within(self, tmp_path, caplog):
         quiet(square, [{"x": 5}], cache=tmp_path, workers=0)
         [file] = tmp_path.rglob("*.npz")
         with zipfile.ZipFile(file) as archive:
@@ -301,7 +301,7 @@ if __name__ == "__main__":
         file.write_bytes(content)
         [result] = quiet(square, [{"x": 5}], cache=tmp_path, workers=0)
         assert result["array"].tolist() == [[5.0] * 3] * 2
-        assert str(file) in capsys.readouterr().err
+        assert str(file) in caplog.text
 
     @pytest.mark.parametrize(
         ("function", "culprit"),

@@ -15,6 +15,7 @@ from openmm import unit
 from .._mesh import files
 from .._snapshots import Snapshot
 from .._writing import describe, naming, write_whole
+from ..errors import FAQ, Explained
 from ..forces import TriangleHeightForce
 from ..states import save_state
 from .moments import Gauge, Moment
@@ -33,8 +34,10 @@ _SAFE = 0.1
 _NM = unit.nanometer
 
 
-class BlowUpError(openmm.OpenMMException):
+class BlowUpError(Explained, openmm.OpenMMException):
     """A simulation has broken down; the message says how, and what to do."""
+
+    page = f"{FAQ}#messages-and-what-is-behind-them"
 
 
 @dataclass

@@ -14,7 +14,9 @@ import sys
 
 import click
 
+from .. import logs
 from .._writing import describe
+from .log_options import add_log_options
 
 __all__ = ["main"]
 
@@ -44,10 +46,19 @@ class _Commands(click.Group):
     def get_command(self, context: click.Context, name: str) -> click.Command | None:
         if name not in self.list_commands(context):
             return None
-        return getattr(importlib.import_module(f"{__name__}.{name}"), name)
+        command = getattr(importlib.import_module(f"{__name__}.{name}"), name)
+        return add_log_options(command)
+
+    def main(self, *arguments, **options):
+        """Run the program, with what it has to say on the standard error."""
+        with logs.command_line():
+            return super().main(*arguments, **options)
 
     def invoke(self, context: click.Context):
-        """Run a command; errors of the system, such as a full disk, become one line."""
+        """Run a command; errors of the system, such as a full disk, become one line.
+
+        Errors that the documentation explains name the page.
+        """
         try:
             result = super().invoke(context)
             sys.stdout.flush()
@@ -62,6 +73,11 @@ class _Commands(click.Group):
                 _give_up_output()
             where = "standard output: " if unnamed else ""
             raise click.ClickException(where + describe(reason)) from None
+        except click.ClickException as error:
+            page = getattr(error.__context__, "page", None)
+            if page is not None:
+                error.message += f"\nSee {page}"
+            raise
 
 
 def _give_up_output() -> None:
@@ -76,3 +92,6 @@ def _give_up_output() -> None:
 @click.version_option(package_name="openmm-helfrich")
 def main() -> None:
     """Simulate fluid membranes with OpenMM."""
+
+
+add_log_options(main, hidden=False)

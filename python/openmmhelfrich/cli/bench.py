@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import click
 
+from .. import logs
 from .options import json_option, print_json
 
 __all__ = ["bench"]
@@ -76,7 +77,7 @@ def bench(platforms, integrator, sizes, seconds, repeats, as_json):
         for line in _head_lines(found):
             click.echo(line)
     for name, reason in failed.items():
-        click.echo(f"platform {name} does not start: {reason}", err=True)
+        logs.logger("bench").warning("platform %s does not start: %s", name, reason)
     if not targets:
         raise click.ClickException("no platform to measure")
     width = max(len(target.label) for target in targets)

@@ -36,6 +36,7 @@ _REQUIRED = ("numpy", "scipy", "meshio", "trimesh", "matplotlib", "tqdm", "click
 
 _VARIABLES = {
     "HELFRICH_BACKEND": "what computes membranes where no program chooses: cpu, gpu, native, auto",
+    "HELFRICH_LOG": "how much is said: debug, info, warning, error, critical",
     "OPENMM_CPU_THREADS": "how many threads the platforms Helfrich and CPU have",
     "OPENMM_DEFAULT_PLATFORM": "the platform where none is named",
     "OPENMM_PLUGIN_DIR": "where OpenMM looks for its plugins",
@@ -122,7 +123,7 @@ def _guarded(name: str, check: Callable[[], Check]) -> Check:
             name,
             "wrong",
             f"{type(reason).__name__}: {' '.join(str(reason).split())}",
-            "docs/troubleshooting.md lists messages and what to do",
+            "docs/troubleshooting.md#before-the-first-step lists messages and what to do",
         )
 
 

@@ -11,6 +11,8 @@ from pathlib import Path
 
 import click
 
+from .. import logs
+
 __all__ = [
     "check_platform",
     "config_argument",
@@ -84,12 +86,12 @@ def tidy_errors() -> Iterator[None]:
     from ..simulation.runner import RunError
     from ..vcm.grammar import ConfigError, ConfigWarning
 
-    shown = set()
+    log, shown = logs.logger("run"), set()
 
     def show(message, category, filename, lineno, file=None, line=None) -> None:
         # A run that is resumed reads its configuration twice.
         if str(message) not in shown:
-            click.echo(f"Warning: {message}", err=True)
+            log.warning("%s", message)
         shown.add(str(message))
 
     with warnings.catch_warnings():

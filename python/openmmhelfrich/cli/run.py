@@ -8,6 +8,7 @@ from pathlib import Path
 
 import click
 
+from .. import logs
 from .options import config_argument, platform_option, reader_options, tidy_errors
 
 __all__ = ["run"]
@@ -118,7 +119,9 @@ def _simulate(job, last_step: int, stop: _Stop, live: bool, live_page: Path | No
         f"platform {job.platform}, {verb}, outputs in {job.folder}"
     )
     # Without a terminal a line per report replaces the bar.
-    bar = tqdm(total=last_step, initial=job.step, unit="step", disable=None, dynamic_ncols=True)
+    quiet = logs.quiet()
+    disable = True if quiet else None
+    bar = tqdm(total=last_step, initial=job.step, unit="step", disable=disable, dynamic_ncols=True)
     page = None if live_page is None else Page(job, live_page)
     with bar, Table(job, live and not bar.disable) as table:
 
@@ -131,7 +134,7 @@ def _simulate(job, last_step: int, stop: _Stop, live: bool, live_page: Path | No
         def report(frame) -> None:
             if not live:
                 bar.set_postfix_str(_summary(frame), refresh=False)
-            if bar.disable:
+            if bar.disable and not quiet:
                 speed = f"  {table.speed(frame.step):.4g} steps/s" if live else ""
                 click.echo(f"step {frame.step}/{last_step}{speed}  {_summary(frame)}")
 

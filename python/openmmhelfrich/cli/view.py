@@ -6,6 +6,8 @@ from pathlib import Path
 
 import click
 
+from .. import logs
+
 __all__ = ["view"]
 
 _FILE = click.Path(path_type=Path, exists=True, dir_okay=False)
@@ -49,7 +51,7 @@ def view(source, out, browser, every, mesh_path):
         out = folder / f"{source.resolve().stem}.html"
 
     def progress(numbers):
-        return tqdm(numbers, unit="frame", disable=None, leave=False)
+        return tqdm(numbers, unit="frame", disable=True if logs.quiet() else None, leave=False)
 
     try:
         check_replaceable(out)

@@ -17,6 +17,7 @@ from openmm import app, unit
 from .. import _present, platforms
 from ..analysis import theory
 from ..blowup import Limits
+from ..logs import logger
 from ..mesh import Mesh
 
 __all__ = ["Membrane", "Model"]
@@ -191,7 +192,9 @@ class Model(ABC):
         """A Simulation without positions and velocities, which a checkpoint may give instead."""
         system, integrator = self.system(), self.integrator()
         if platform is None:
-            platform = platforms.choose(system, integrator).name
+            chosen = platforms.choose(system, integrator)
+            logger("run").info("platform %s, for %s", chosen.name, chosen.reason)
+            platform = chosen.name
         if isinstance(platform, str):
             platform = openmm.Platform.getPlatformByName(platform)
         properties = {}

@@ -9,11 +9,11 @@ blocks of its own.
 from __future__ import annotations
 
 import contextlib
-import fcntl
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from .. import _system
 from .._blocks import Block, BlockError, DamagedError, pack, unpack
 from .._snapshots import Snapshot
 from .._writing import describe, naming, replace
@@ -84,7 +84,7 @@ class RunFolder:
             self.path.mkdir(parents=True, exist_ok=True)
             self._lock_file = (self.path / _LOCK).open("wb")
         try:
-            fcntl.flock(self._lock_file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            _system.lock(self._lock_file)
         except BlockingIOError:
             self.leave()
             raise RunError(

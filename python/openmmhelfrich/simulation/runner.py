@@ -18,6 +18,8 @@ import openmm
 from .._snapshots import Snapshot
 from ..blowup import BlowUpError, Watch
 from ..config import read_any
+from ..errors import FAQ
+from ..logs import logger
 from .model import Model
 from .outputs import Frame, Outputs, report_steps, take_frame
 from .run_folder import CHECKPOINT, RunError, RunFolder, Saved
@@ -26,6 +28,8 @@ __all__ = ["CHECKPOINT", "Run", "RunError"]
 
 # Wall time between looks at a request to stop, s.
 _CHUNK_SECONDS = 0.25
+
+_LOG = logger("run")
 
 
 class Run:
@@ -128,7 +132,8 @@ class Run:
         except openmm.OpenMMException as reason:
             where = "" if saved is None else f" on the platform {platform} of the checkpoint"
             raise RunError(
-                f"OpenMM cannot start{where}: {reason}; docs/troubleshooting.md lists such messages"
+                f"OpenMM cannot start{where}: {reason}; {FAQ}#before-the-first-step lists such "
+                "messages"
             ) from None
         try:
             self.outputs = Outputs(cfg, self.folder, self._options["xtc"], self._options["frames"])
@@ -149,6 +154,14 @@ class Run:
                 self.outputs.write(self.frame)
             self.save()
         limits = self.cfg.limits
+        _LOG.info(
+            "%s: %s at step %d on the platform %s, seed %d",
+            self.folder,
+            "goes on" if self.resumed else "begins",
+            self.step,
+            self.platform,
+            self.cfg.seed,
+        )
         self._watch = Watch(
             self.context, self.simulation.integrator, limits, self.folder / "blow-up"
         )
@@ -212,6 +225,7 @@ class Run:
                 self.frame = self._take_frame()
                 with self._folder.writing():
                     self.outputs.write(self.frame)
+                _LOG.debug("%s: a frame at step %d", self.folder, self.step)
                 next_report = next(due, None)
                 report(self.frame)
             if time.monotonic() - saved_at >= self._checkpoint_seconds:
@@ -262,7 +276,7 @@ class Run:
             raise RunError(
                 f"the simulation broke down: {reason}\nTo try again, give another folder with "
                 "--out; a mesh of this one, such as blow-up/last-good.ply, may be where it begins\n"
-                "docs/troubleshooting.md lists what messages mostly mean, and what to do"
+                f"{reason.page} lists what messages mostly mean, and what to do"
             ) from None
 
     def save(self) -> None:
@@ -280,7 +294,10 @@ class Run:
             self._fingerprint,
             outputs,
         )
+        begin = time.perf_counter()
         self._folder.save(saved, Snapshot.take(self.context))
+        elapsed = time.perf_counter() - begin
+        _LOG.debug("%s: checkpoint at step %d in %.3g s", self.folder, self.step, elapsed)
 
     @staticmethod
     def _agree(saved: Saved, platform: str | None, seed: int) -> tuple[str, int]:

@@ -29,6 +29,7 @@ from pathlib import Path
 from tqdm import tqdm
 
 from .._numbers import whole_number
+from ..logs import logger, quiet
 from .backends import SweepError, name_of, on_dask, on_this_process
 from .cache import Cache
 from .plain import plain_point
@@ -147,22 +148,26 @@ def sweep(
             f"{store.folder if store else 'a cache'}, the first is {next(iter(missing.values()))}; "
             "run the sweep first"
         )
+    log = logger("sweep")
+    log.info("%s: %d of %d points are stored", name, len(results), len(results) + len(missing))
     failures: dict[str, BaseException] = {}
     bar = tqdm(
         total=len(results) + len(missing),
         initial=len(results),
         desc=description or name,
-        disable=not progress,
+        disable=not progress or quiet(),
     )
     with bar:
         if missing:
             backend = on_this_process if workers == 0 else on_dask
             for key, outcome in backend(function, missing, scheduler, workers):
                 if isinstance(outcome, BaseException):
+                    log.info("%s: %s failed: %s", name, missing[key], outcome)
                     failures[key] = outcome
                 else:
                     result, seconds = outcome
                     results[key] = {**result, "seconds": seconds}
+                    log.debug("%s: %s took %.3g s", name, missing[key], seconds)
                     if store:
                         store.save(stored_name, key, missing[key], results[key])
                 bar.update()

@@ -14,8 +14,7 @@ import threading
 import time
 from pathlib import Path
 
-from tqdm import tqdm
-
+from ..logs import logger
 from .plain import plain_result
 
 __all__ = ["SweepError", "name_of", "on_dask", "on_this_process"]
@@ -198,7 +197,7 @@ def _check_health(client, where):
     except OSError:
         raise _lost(where) from None
     if not workers:
-        tqdm.write(f"sweep: {where} has no worker left; waiting for one", sys.stderr)
+        logger("sweep").warning("sweep: %s has no worker left; waiting for one", where)
 
 
 def _by_value(function):

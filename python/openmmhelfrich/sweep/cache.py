@@ -7,16 +7,15 @@ import errno
 import hashlib
 import json
 import os
-import sys
 import tempfile
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-from tqdm import tqdm
 
 from .._writing import naming
+from ..logs import logger
 
 __all__ = ["RECORD", "Cache"]
 
@@ -94,7 +93,7 @@ class Cache:
         Returns
         -------
         dict or None
-            None if there is no such result, or a broken file, which is said on standard error.
+            None if there is no such result, or a broken file, which is a warning of the logger.
         """
         path = self.path(name, key)
         try:
@@ -119,8 +118,8 @@ class Cache:
             # are not; what the system refuses has a number, but for a place before the first byte.
             if getattr(error, "errno", None) not in (None, errno.EINVAL):
                 raise
-            tqdm.write(
-                f"sweep: computing {dict(point)} again: {path} is broken ({error})", sys.stderr
+            logger("sweep").warning(
+                "sweep: computing %s again: %s is broken (%s)", dict(point), path, error
             )
             return None
         if record["point"] != json.loads(json.dumps(point)):
