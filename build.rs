@@ -67,6 +67,7 @@ fn main() {
     fs::write(&comparison, headers::comparison()).expect("OUT_DIR is writable");
     // An enumerator that Rust does not know is missing in a switch there.
     shim.file(comparison).flag_if_supported("-Werror=switch");
+    shim.flag_if_supported("-Werror=unused-result");
     // Nothing in Rust refers to most of the shim, so the linker must be told to keep all of it.
     shim.link_lib_modifier("+whole-archive").compile("helfrich_shim");
 

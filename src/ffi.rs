@@ -1,6 +1,6 @@
 //! The C interface: what the C++ shim, the Python package and OpenMM's plugin loader call.
 //!
-//! Every function that can fail returns 0 for success and 1 for failure; [`Helfrich_lastError`] then has
+//! Every function that can fail returns a [`Status`]; after a failure [`Helfrich_lastError`] has
 //! the message of the calling thread. No panic leaves a function. `CoreFunctions.h` in
 //! `wrappers/include/openmm-helfrich/internal/` and `wrappers/src/HelfrichDynamics.h` declare them for C++; the build
 //! stops where the two differ.
@@ -39,8 +39,9 @@ pub use variable_mass::*;
 pub use viscosity::*;
 
 use crate::error::Result;
+pub use crate::potentials::codes::Status;
 use std::cell::RefCell;
-use std::ffi::{CStr, c_char, c_int};
+use std::ffi::{CStr, c_char};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::slice;
 
@@ -54,9 +55,9 @@ pub(crate) fn set_last_error(message: String) {
 }
 
 /// Run a fallible body and turn its result, or its panic, into a status and a message.
-pub(crate) fn guarded(subject: &str, body: impl FnOnce() -> Result<()>) -> c_int {
+pub(crate) fn guarded(subject: &str, body: impl FnOnce() -> Result<()>) -> Status {
     let message = match catch_unwind(AssertUnwindSafe(body)) {
-        Ok(Ok(())) => return 0,
+        Ok(Ok(())) => return Status::Success,
         Ok(Err(error)) => format!("{}: {error}", error.class().unwrap_or(subject)),
         Err(panic) => {
             let text = panic
@@ -68,7 +69,7 @@ pub(crate) fn guarded(subject: &str, body: impl FnOnce() -> Result<()>) -> c_int
         }
     };
     set_last_error(message);
-    1
+    Status::Failure
 }
 
 /// The text behind a pointer; a name that is not text is a name that nobody knows.
@@ -143,7 +144,7 @@ mod tests {
     }
 
     /// A term with a number that is not in the registry: a mistake of the shim, not of a user.
-    fn provoke_panic() -> c_int {
+    fn provoke_panic() -> Status {
         let triangles = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]];
         let mut membrane = std::ptr::null_mut();
         let term = TermInput {
@@ -167,7 +168,7 @@ mod tests {
                 4,
                 &mut membrane,
             );
-            assert_eq!(made, 0);
+            assert_eq!(made, Status::Success);
             let status = Helfrich_Membrane_evaluate(
                 c"Test".as_ptr(),
                 membrane,
@@ -186,13 +187,13 @@ mod tests {
 
     #[test]
     fn a_panic_becomes_a_message() {
-        assert_eq!(provoke_panic(), 1);
+        assert_eq!(provoke_panic(), Status::Failure);
         assert!(last_error().contains("internal error") && last_error().contains("out of bounds"));
     }
 
     #[test]
     fn long_messages_are_cut_not_overrun() {
-        assert_eq!(provoke_panic(), 1);
+        assert_eq!(provoke_panic(), Status::Failure);
         let mut buffer = [7u8; 6];
         let length = unsafe { Helfrich_lastError(buffer.as_mut_ptr().cast(), 5) };
         assert!(length > 5);
@@ -202,7 +203,7 @@ mod tests {
     #[test]
     fn errors_start_with_the_subject() {
         let status = unsafe { Helfrich_Potential_check(c"BendingForce".as_ptr(), 0, -1.0) };
-        assert_eq!(status, 1);
+        assert_eq!(status, Status::Failure);
         assert_eq!(
             last_error(),
             "BendingForce: rigidity must be a finite number, zero or above, got -1"
@@ -218,7 +219,8 @@ mod tests {
             )
         };
         assert!(
-            status == 1 && last_error().starts_with("SurfaceAreaForce: the mesh has no triangles")
+            status == Status::Failure
+                && last_error().starts_with("SurfaceAreaForce: the mesh has no triangles")
         );
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::ffi::c_api;
-use crate::ffi::last_error;
+use crate::ffi::{Status, last_error};
 use crate::openmm::OpenMM_Force;
 use crate::potentials;
 use std::ffi::{CString, c_int};
@@ -25,7 +25,7 @@ pub use surface_viscosity::SurfaceViscosityThermostat;
 /// let octahedron =
 ///     [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
 /// let mut bending = MembraneForce::new("BendingForce", &octahedron, &[50.0, 0.0])?;
-/// bending.set("rigidity", 40.0)?.set_variant("GompperKrollBarycentric")?;
+/// bending.set("rigidity", 40.0)?.set_form("GompperKrollBarycentric")?;
 /// assert_eq!(bending.get("rigidity")?, 40.0);
 /// assert!(bending.set("rigidity", f64::NAN).is_err());
 ///
@@ -44,8 +44,11 @@ pub struct MembraneForce {
 }
 
 /// The message of a C function that has failed.
-fn check(status: c_int) -> Result<()> {
-    if status == 0 { Ok(()) } else { Err(Error::Contract(last_error())) }
+fn check(status: Status) -> Result<()> {
+    match status {
+        Status::Success => Ok(()),
+        Status::Failure => Err(Error::Contract(last_error())),
+    }
 }
 
 fn c_text(text: &str) -> Result<CString> {
@@ -171,15 +174,15 @@ impl MembraneForce {
         Ok(self)
     }
 
-    /// Choose a variant by its name, such as a bending scheme.
+    /// Choose a form by its name, such as a bending scheme.
     ///
     /// # Errors
     /// An unknown name.
-    pub fn set_variant(&mut self, name: &str) -> Result<&mut Self> {
-        let (_, names) = potentials::find(self.class)?.forms().unwrap_or((c"variant", &[]));
+    pub fn set_form(&mut self, name: &str) -> Result<&mut Self> {
+        let (_, names) = potentials::find(self.class)?.forms().unwrap_or((c"form", &[]));
         let form = names.iter().position(|known| known.to_bytes() == name.as_bytes());
         let form = form.ok_or_else(|| Error::UnknownName {
-            what: "variant",
+            what: "form",
             name: name.to_owned(),
             known: names.iter().map(|name| name.to_string_lossy()).collect::<Vec<_>>().join(", "),
         })?;

@@ -1,7 +1,7 @@
 //! Part of build.rs: C++ that compares the headers with `src/potentials/codes.rs`, so that the build stops where
 //! they differ.
 
-use crate::codes::{Attraction, Coefficients, Form, MAX_PARAMETERS, Scheme, SpringForm};
+use crate::codes::{Attraction, Coefficients, Form, MAX_PARAMETERS, Scheme, SpringForm, Status};
 use crate::interface::{Binding, NUMBERS};
 use std::ffi::CStr;
 
@@ -14,6 +14,7 @@ pub fn comparison() -> String {
         "static_assert(HELFRICH_MAX_PARAMETERS == {MAX_PARAMETERS}, \
          \"MAX_PARAMETERS is not what src/potentials/codes.rs says\");\n"
     );
+    text += &enumeration("Helfrich_Status", "Helfrich_", Status::NAMES);
     for (class, kind, names) in [
         ("BendingForce", "Scheme", Scheme::NAMES),
         ("DihedralForce", "Form", Form::NAMES),

@@ -12,6 +12,7 @@ use std::path::{Path, PathBuf};
 /// Types that are Rust's own: `src/ffi/records.rs` knows them by these names. Of the first C++ sees pointers only.
 const OPAQUE: &str =
     "Helfrich(Membrane|Numbers|Native|Team|Crowd|Dynamics|VariableMasses|Viscosity)";
+const STATUS: &str = "Helfrich_Status";
 const SHARED: &str = "Helfrich(Stream|Contribution|FlipRules|FlipState|SwapRules|SwapState)";
 const CORE: &str = "#include <HelfrichDynamics.h>\n";
 const C_API: &str = "#include <OpenMMHelfrichCWrapper.h>\n";
@@ -23,6 +24,7 @@ pub fn shim_header(wrappers: &Path) -> String {
         .expect("the wrappers are part of the project");
     header
         .replace("Helfrich_", "helfrich_shim_")
+        .replace("helfrich_shim_Status", STATUS)
         .replace("OPENMM_HELFRICH_CWRAPPER_H_", "HELFRICH_SHIM_C_API_H_")
 }
 
@@ -53,7 +55,7 @@ pub fn write(
     let mut c_api = parsed(&c_api);
     c_api.retain(|function| core.iter().all(|known| known.name != function.name));
     let types = || read(CORE, CodegenConfig::TYPES);
-    let foreign = format!("{OPAQUE}|{SHARED}");
+    let foreign = format!("{OPAQUE}|{SHARED}|{STATUS}");
     let records = types().allowlist_type("Helfrich.*").blocklist_type(foreign);
     fs::write(out.join("records.rs"), structures(records))?;
     fs::write(out.join("layouts.rs"), structures(types().allowlist_type(SHARED)))?;

@@ -10,6 +10,7 @@ from pathlib import Path
 INCLUDE = Path(__file__).parents[2] / "wrappers" / "include"
 HEADERS = INCLUDE / "openmm-helfrich"
 C_HEADER = INCLUDE / "OpenMMHelfrichCWrapper.h"
+C_STATUS = HEADERS / "internal" / "Status.h"
 
 _COMMENT = re.compile(r"[ \t]*/\*\*\s*\n?(.*?)\*/\s*\n", re.DOTALL)
 
@@ -103,11 +104,12 @@ def _members(body: str) -> list[Member]:
 
 @cache
 def c_functions() -> list[Member]:
-    """All functions and enumerations of the C header, in its order."""
-    text = C_HEADER.read_text(encoding="utf-8").partition('extern "C" {')[2]
+    """All functions and enumerations for C, in the order of its header."""
+    text = C_STATUS.read_text(encoding="utf-8")
+    text += C_HEADER.read_text(encoding="utf-8").partition('extern "C" {')[2]
     comment = r"(?:/\*\*(?P<text>(?:(?!\*/).)*)\*/\s*)?"
     function = r"extern (?P<function>[^;]*\));"
-    enumeration = r"typedef enum \{(?P<values>[^}]*)\} (?P<name>\w+);"
+    enumeration = r"typedef enum (?:\w+ )?\{(?P<values>[^}]*)\} (?P<name>\w+);"
     found = []
     for match in re.finditer(f"{comment}(?:{function}|{enumeration})", text, re.DOTALL):
         words = plain(match["text"] or "")

@@ -15,8 +15,7 @@ from ._arguments import (
     give_method,
     own_what_is_cast,
 )
-from ._movers import whole_number
-from ._values import Scalar, capitalised, scalar
+from ._values import Scalar, capitalised, scalar, whole_number
 
 __all__ = ["DENSITY", "accept_arguments"]
 

@@ -8,8 +8,7 @@ import inspect
 from openmm import unit
 
 from ._arguments import accept_in_constructor, accept_in_setter, give_method, own_what_is_cast
-from ._movers import constant, whole_number
-from ._values import Scalar, capitalised, scalar, triangles
+from ._values import Scalar, capitalised, constant, scalar, triangles, whole_number
 
 __all__ = ["accept_arguments", "in_python"]
 

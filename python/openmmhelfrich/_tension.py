@@ -14,8 +14,7 @@ from ._arguments import (
     give_method,
     own_what_is_cast,
 )
-from ._movers import constant, whole_number
-from ._values import Scalar, capitalised, scalar
+from ._values import Scalar, capitalised, constant, scalar, whole_number
 
 __all__ = ["accept_arguments"]
 

@@ -1,4 +1,4 @@
-"""What arguments of the force classes mean: scalars with units, names of variants, triangles.
+"""What arguments of the force classes mean: scalars with units, names of forms, triangles.
 
 What the scalars are called and which units they have is asked of the core, so a new potential needs
 no word here.
@@ -20,6 +20,7 @@ from . import _core
 __all__ = [
     "Scalar",
     "capitalised",
+    "constant",
     "element_values",
     "form_name",
     "form_number",
@@ -27,6 +28,7 @@ __all__ = [
     "scalar",
     "scalars_of",
     "triangles",
+    "whole_number",
     "whole_numbers",
 ]
 
@@ -41,7 +43,7 @@ class Scalar(NamedTuple):
     default: object
     #: The setter for values of single elements, None if there is only the scalar.
     element_setter: str | None
-    #: Whether it stands behind the variant in the constructor.
+    #: Whether it stands behind the form in the constructor.
     last: bool = False
 
 
@@ -92,7 +94,7 @@ def capitalised(name: str) -> str:
 
 
 def form_name(force: str) -> str | None:
-    """What the variants of a force class are called ("scheme"), None if it has none."""
+    """What the forms of a force class are called ("scheme"), None if it has none."""
     what, name = ctypes.c_char_p(), ctypes.c_char_p()
     status = _core.library().Helfrich_Potential_form(
         force.encode(), 0, ctypes.byref(what), ctypes.byref(name)
@@ -146,14 +148,14 @@ def element_values(force: str, parameter: Scalar, values) -> list[float]:
 
 
 def form_number(force: str, what: str, value) -> int:
-    """The number of a variant: a constant of the class, or its name.
+    """The number of a form: a constant of the class, or its name.
 
     Parameters
     ----------
     force : str
         The name of the class.
     what : str
-        What its variants are called, for messages.
+        What its forms are called, for messages.
     value : int or str
         A constant such as ``BendingForce.GompperKroll``, or ``"GompperKroll"``.
 
@@ -301,3 +303,28 @@ def triangles(force: str, given, offset: int = 0) -> np.ndarray:
                 )
     shifted = array.astype(np.int64) + int(offset)
     return np.ascontiguousarray(shifted, dtype=np.intc)
+
+
+def whole_number(mover: str, name: str, value) -> int:
+    """A whole number that fits a C int."""
+    if isinstance(value, (bool, np.bool_)):
+        raise TypeError(f"{mover}: {name} must be a whole number, got {value!r}")
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{mover}: {name} must be a whole number, got {value!r}") from None
+    limits = np.iinfo(np.intc)
+    if not limits.min <= number <= limits.max:
+        raise ValueError(f"{mover}: {name} = {number} is beyond what OpenMM can count")
+    return number
+
+
+def constant(mover: type, name: str, known: tuple[str, ...], value) -> int:
+    """The number of a constant of a class, given by its number or name."""
+    if not isinstance(value, str):
+        return whole_number(mover.__name__, name, value)
+    if value not in known:
+        raise ValueError(
+            f"{mover.__name__}: there is no {name} {value!r}; known are: {', '.join(known)}"
+        )
+    return getattr(mover, value)

@@ -9,7 +9,7 @@ from openmm import unit
 
 from . import _core
 from ._mesh.inputs import box_array
-from ._units import length_array
+from ._numbers import length_array
 
 __all__ = ["accept_vertex_numbers", "domain_array", "vertex_numbers_of"]
 

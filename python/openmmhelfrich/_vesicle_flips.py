@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import openmm
 from openmm import unit
 
-from ._quantities import checked_number
+from ._numbers import checked_number
 from .analysis import theory
 from .forces import MonteCarloBondFlip
 

@@ -5,9 +5,10 @@ from collections.abc import Mapping
 import numpy as np
 from openmm import unit
 
-from ._quantities import checked_number
+from ._numbers import checked_number
 from .analysis import theory
 from .area_difference import area_difference_parameters
+from .errors import MeshError
 
 _ENERGY = unit.kilojoule_per_mole
 # At the paper's 300 K.
@@ -15,6 +16,17 @@ _KT = theory.BOLTZMANN * 300
 _OSMOTIC = ("solutes", "concentration", "thermalEnergy")
 _MODEL = ("alpha", "delta_a0")
 _PLAIN = ("modulus", "target")
+
+
+def encloses(mesh, needed):
+    """Whether a mesh encloses a volume; a MeshError says why not, if it is needed."""
+    try:
+        return mesh.volume is not None
+    except MeshError as reason:
+        if not needed:
+            return False
+        said = str(reason).removeprefix("Mesh.volume")
+        raise MeshError(f"Vesicle: mesh{said}; volume_modulus=0 leaves the volume out") from None
 
 
 def _checked_names(argument, given, *choices):

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 
-from ._quantities import checked_number
+from ._numbers import checked_number
 from ._vesicle_flips import TEMPERATURE
 from ._viscosity import FRICTION
 from .forces import SurfaceViscosityThermostat

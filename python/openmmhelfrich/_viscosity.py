@@ -8,8 +8,7 @@ import inspect
 from openmm import unit
 
 from ._arguments import accept_in_constructor, accept_in_setter, own_what_is_cast
-from ._movers import whole_number
-from ._values import Scalar, capitalised, scalar, triangles
+from ._values import Scalar, capitalised, scalar, triangles, whole_number
 
 __all__ = ["FRICTION", "accept_arguments"]
 

@@ -6,7 +6,7 @@ import math
 
 from openmm import unit
 
-from ._quantities import checked_number
+from ._numbers import checked_number
 
 __all__ = ["area_difference_parameters"]
 

@@ -18,8 +18,8 @@ from ._mesh import files, geometry, inputs, on_openmm, periodic
 from ._mesh.generators import Generators
 from ._mesh.measures import Measures
 from ._mesh.transformations import Transformations
+from ._numbers import length as _length
 from ._types import Doubles, File, Integers, Scalar, Values
-from ._units import length as _length
 from .errors import MeshError
 
 if TYPE_CHECKING:

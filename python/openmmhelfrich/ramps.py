@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from ._numbers import whole_number
-from ._units import length
+from ._numbers import length, whole_number
 from .forces import TriangleHeightForce
 
 __all__ = ["harden"]

@@ -10,7 +10,7 @@ from openmm import unit
 
 from ._in_systems import InSystems
 from ._mesh.discs import EVANS_FUNG_DIAMETER, evans_fung, spheroid
-from ._quantities import checked_number
+from ._numbers import checked_number
 from .analysis import triangle_areas
 from .area_difference import area_difference_parameters
 from .forces import (

@@ -14,12 +14,12 @@ import numpy as np
 from openmm import unit
 
 from ._in_systems import InSystems
-from ._quantities import checked_field, checked_number, encloses
+from ._numbers import checked_field, checked_number
 from ._types import Scalar, Values
 from ._vesicle_flips import checked_flips, mover_of
 from ._vesicle_skeleton import checked_skeleton, skeleton_of
 from ._vesicle_times import TimeScales
-from ._vesicle_totals import checked_area_difference, checked_osmotic
+from ._vesicle_totals import checked_area_difference, checked_osmotic, encloses
 from ._vesicle_viscosity import checked_viscosity, thermostat_of
 from .analysis import theory, triangle_areas
 from .forces import (

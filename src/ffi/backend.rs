@@ -3,9 +3,9 @@
 #![allow(non_snake_case, reason = "names follow OpenMM's C API")]
 
 use crate::backend::{self, Choice, Kind};
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::evaluator::check_backend;
-use crate::ffi::{copy_out, guarded, text};
+use crate::ffi::{Status, copy_out, guarded, text};
 use crate::membrane::Membrane;
 use std::ffi::{c_char, c_int};
 
@@ -14,7 +14,7 @@ use std::ffi::{c_char, c_int};
 /// # Safety
 /// `choice` must end with a NUL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn Helfrich_setBackend(choice: *const c_char) -> c_int {
+pub unsafe extern "C" fn Helfrich_setBackend(choice: *const c_char) -> Status {
     let choice = unsafe { text(choice) };
     guarded("set_backend", || {
         let choice = choice.parse()?;
@@ -24,6 +24,27 @@ pub unsafe extern "C" fn Helfrich_setBackend(choice: *const c_char) -> c_int {
     })
 }
 
+/// Copy a text into a buffer; returns its length, or −1 if there is none.
+///
+/// # Safety
+/// `buffer` must have room for `size` bytes.
+unsafe fn written(
+    subject: &str,
+    buffer: *mut c_char,
+    size: i64,
+    text: impl FnOnce() -> Result<String>,
+) -> i64 {
+    let mut length = -1;
+    let status = guarded(subject, || {
+        length = unsafe { copy_out(&text()?, buffer, size) };
+        Ok(())
+    });
+    match status {
+        Status::Success => length,
+        Status::Failure => -1,
+    }
+}
+
 /// Copy the choice for the process into a buffer; returns its length, or −1 if the environment variable
 /// HELFRICH_BACKEND is wrong.
 ///
@@ -31,12 +52,7 @@ pub unsafe extern "C" fn Helfrich_setBackend(choice: *const c_char) -> c_int {
 /// `buffer` must have room for `size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn Helfrich_getBackend(buffer: *mut c_char, size: i64) -> i64 {
-    let mut length = -1;
-    guarded("get_backend", || {
-        length = unsafe { copy_out(&backend::global()?.to_string(), buffer, size) };
-        Ok(())
-    });
-    length
+    unsafe { written("get_backend", buffer, size, || Ok(backend::global()?.to_string())) }
 }
 
 /// Refuse what is no choice. `subject` is the class that messages shall name.
@@ -47,7 +63,7 @@ pub unsafe extern "C" fn Helfrich_getBackend(buffer: *mut c_char, size: i64) -> 
 pub unsafe extern "C" fn Helfrich_checkBackend(
     subject: *const c_char,
     choice: *const c_char,
-) -> c_int {
+) -> Status {
     let choice = unsafe { text(choice) };
     guarded(unsafe { text(subject) }, || choice.parse::<Choice>().map(|_| ()))
 }
@@ -61,7 +77,7 @@ pub unsafe extern "C" fn Helfrich_Membrane_choose(
     subject: *const c_char,
     membrane: *mut Membrane,
     choice: *const c_char,
-) -> c_int {
+) -> Status {
     let choice = unsafe { text(choice) };
     guarded(unsafe { text(subject) }, || {
         let wish = if choice.is_empty() { None } else { Some(choice.parse()?) };
@@ -105,12 +121,7 @@ pub unsafe extern "C" fn Helfrich_evaluations(counts: *mut u64) {
 /// `buffer` must have room for `size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn Helfrich_adapters(buffer: *mut c_char, size: i64) -> i64 {
-    let mut length = -1;
-    guarded("adapters", || {
-        length = unsafe { copy_out(&adapter_lines(), buffer, size) };
-        Ok(())
-    });
-    length
+    unsafe { written("adapters", buffer, size, || Ok(adapter_lines())) }
 }
 
 /// The measurements that decide what `auto` chooses, one a line: see `report` in
@@ -120,12 +131,7 @@ pub unsafe extern "C" fn Helfrich_adapters(buffer: *mut c_char, size: i64) -> i6
 /// `buffer` must have room for `size` bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn Helfrich_backendTimings(buffer: *mut c_char, size: i64) -> i64 {
-    let mut length = -1;
-    guarded("adapters", || {
-        length = unsafe { copy_out(&timing_lines(), buffer, size) };
-        Ok(())
-    });
-    length
+    unsafe { written("adapters", buffer, size, || Ok(timing_lines())) }
 }
 
 /// For tests of what happens when a GPU fails. Kinds: "adapter", none is found; "memory", there is not enough of
@@ -135,13 +141,13 @@ pub unsafe extern "C" fn Helfrich_backendTimings(buffer: *mut c_char, size: i64)
 /// # Safety
 /// `kind` must end with a NUL.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn Helfrich_injectGpuFault(kind: *const c_char, after: i64) -> c_int {
+pub unsafe extern "C" fn Helfrich_injectGpuFault(kind: *const c_char, after: i64) -> Status {
     let kind = unsafe { text(kind) };
     guarded("inject_fault", || inject(kind, after as u64))
 }
 
 #[cfg(feature = "gpu")]
-fn inject(kind: &str, after: u64) -> Result<(), Error> {
+fn inject(kind: &str, after: u64) -> Result<()> {
     use crate::evaluator::gpu::calibration;
     use crate::evaluator::gpu::faults::{Fault, inject};
     let fault = match kind {
@@ -178,7 +184,7 @@ fn timing_lines() -> String {
 }
 
 #[cfg(not(feature = "gpu"))]
-fn inject(_: &str, _: u64) -> Result<(), Error> {
+fn inject(_: &str, _: u64) -> Result<()> {
     Err(Error::Contract("this build has no GPU that could fail".to_owned()))
 }
 

@@ -4,8 +4,8 @@
 //! (`wrappers/declarations.rs`). They are Rust's, because a Rust library exports only Rust's own symbols; what they do is
 //! in `wrappers/src/CApi.cpp`.
 //!
-//! A force is an `OpenMM_Force` that `OpenMM_System_addForce` takes. Functions that can fail return
-//! 0 for success and 1 for failure, or a null pointer; [`crate::ffi::Helfrich_lastError`] has the message.
+//! A force is an `OpenMM_Force` that `OpenMM_System_addForce` takes. Functions that can fail return a
+//! [`Status`](crate::ffi::Status), or a null pointer; [`crate::ffi::Helfrich_lastError`] has the message.
 //!
 //! # Safety
 //! Every function takes pointers of C: a force made by one of the `create` functions and not yet
@@ -19,6 +19,7 @@
 
 use super::shim;
 use crate::openmm::{OpenMM_Context, OpenMM_Force};
+use crate::potentials::codes::Status as Helfrich_Status;
 use std::ffi::{c_char, c_double, c_int};
 
 /// A force of any class; null if an argument is refused.
@@ -75,8 +76,10 @@ macro_rules! get {
         pub unsafe extern "C" fn $name(force: *mut OpenMM_Force) -> c_double {
             let mut value = f64::NAN;
             let name = concat!(stringify!($parameter), "\0").as_ptr().cast();
-            unsafe { Helfrich_MembraneForce_getParameterValue(force, name, &mut value) };
-            value
+            match unsafe { Helfrich_MembraneForce_getParameterValue(force, name, &mut value) } {
+                Helfrich_Status::Success => value,
+                Helfrich_Status::Failure => f64::NAN,
+            }
         }
     };
 }
@@ -87,7 +90,7 @@ macro_rules! set {
         #[doc = concat!("Set the scalar `", stringify!($parameter), "` of a `", stringify!($class), "`.")]
         $(#[$doc])*
         #[unsafe(no_mangle)]
-        pub unsafe extern "C" fn $name(force: *mut OpenMM_Force, value: c_double) -> c_int {
+        pub unsafe extern "C" fn $name(force: *mut OpenMM_Force, value: c_double) -> Helfrich_Status {
             let name = concat!(stringify!($parameter), "\0").as_ptr().cast();
             unsafe { Helfrich_MembraneForce_setParameterValue(force, name, value) }
         }

@@ -1,12 +1,11 @@
 //! The C interface to [`crate::membrane::Crowd`].
 
 use super::membrane::{like_positions, of_terms, with_terms};
-use super::{TurnInput, guarded, slice, text};
+use super::{Status, TurnInput, guarded, slice, text};
 use crate::error::Result;
 use crate::membrane::Crowd;
 use crate::potentials::Request;
 use crate::team::Team;
-use std::ffi::c_int;
 
 /// Make what several membranes need to be evaluated side by side.
 #[unsafe(no_mangle)]
@@ -76,7 +75,7 @@ pub unsafe extern "C" fn Helfrich_Crowd_evaluate(
     num_particles: i64,
     positions: *const f64,
     forces: *mut f64,
-) -> c_int {
+) -> Status {
     let inputs = unsafe { slice(turns, num_turns as usize) };
     let positions = unsafe { slice(positions, 3 * num_particles as usize) };
     let (crowd, team) = unsafe { (&mut *crowd, team.as_mut()) };

@@ -1,6 +1,6 @@
 //! The C interface of the platform: teams of threads, time steps and random numbers.
 
-use super::{ParticleArrays, guarded, slice};
+use super::{ParticleArrays, Status, guarded, slice};
 use crate::dynamics::integrate::{self, Dynamics, PARALLEL_FROM, Particles, WAKE_FROM};
 use crate::dynamics::random::{self, Stream};
 use crate::error::Error;
@@ -22,7 +22,7 @@ pub extern "C" fn Helfrich_Team_available() -> c_int {
 /// # Safety
 /// `team` must be writable.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn Helfrich_Team_create(threads: c_int, team: *mut *mut Team) -> c_int {
+pub unsafe extern "C" fn Helfrich_Team_create(threads: c_int, team: *mut *mut Team) -> Status {
     guarded(SUBJECT, || {
         let made = Team::new(threads.max(1) as usize).map_err(|reason| {
             Error::Contract(format!(
@@ -34,7 +34,7 @@ pub unsafe extern "C" fn Helfrich_Team_create(threads: c_int, team: *mut *mut Te
     })
 }
 
-/// Send a team home; null is allowed.
+/// End the threads of a team; null is allowed.
 ///
 /// # Safety
 /// `team` must come from [`Helfrich_Team_create`] and not be used again.
@@ -71,7 +71,7 @@ pub unsafe extern "C" fn Helfrich_Dynamics_create(
     num_particles: i64,
     masses: *const f64,
     dynamics: *mut *mut Dynamics,
-) -> c_int {
+) -> Status {
     guarded(SUBJECT, || {
         let made = Dynamics::new(unsafe { slice(masses, num_particles as usize) });
         unsafe { dynamics.write(Box::into_raw(Box::new(made))) };
@@ -116,7 +116,7 @@ pub unsafe extern "C" fn Helfrich_Dynamics_verlet(
     team: *mut Team,
     particles: *const ParticleArrays,
     step: f64,
-) -> c_int {
+) -> Status {
     guarded(SUBJECT, || {
         let (dynamics, team) = unsafe { (&*dynamics, team.as_mut()) };
         dynamics.verlet(team, unsafe { (*particles).particles() }, step);
@@ -137,7 +137,7 @@ pub unsafe extern "C" fn Helfrich_Dynamics_langevinMiddle(
     step: f64,
     friction: f64,
     kt: f64,
-) -> c_int {
+) -> Status {
     guarded(SUBJECT, || {
         let (dynamics, team, stream) = unsafe { (&*dynamics, team.as_mut(), &mut *stream) };
         let particles = unsafe { (*particles).particles() };
@@ -159,7 +159,7 @@ pub unsafe extern "C" fn Helfrich_Dynamics_brownian(
     step: f64,
     friction: f64,
     kt: f64,
-) -> c_int {
+) -> Status {
     guarded(SUBJECT, || {
         let (dynamics, team, stream) = unsafe { (&*dynamics, team.as_mut(), &mut *stream) };
         let particles = unsafe { (*particles).particles() };
@@ -178,7 +178,7 @@ pub unsafe extern "C" fn Helfrich_Dynamics_clear(
     team: *mut Team,
     num_particles: i64,
     forces: *mut f64,
-) -> c_int {
+) -> Status {
     guarded(SUBJECT, || {
         let forces = unsafe { slices::from_raw_parts_mut(forces, 3 * num_particles as usize) };
         integrate::clear(unsafe { team.as_mut() }, forces);
@@ -195,7 +195,7 @@ pub unsafe extern "C" fn Helfrich_Random_normals(
     stream: *mut Stream,
     length: i64,
     normals: *mut f64,
-) -> c_int {
+) -> Status {
     guarded(SUBJECT, || {
         if length > 0 {
             let out = unsafe { slices::from_raw_parts_mut(normals, length as usize) };

@@ -12,6 +12,7 @@ use crate::test_meshes::{icosahedron, octahedron};
 use bench::{Bench, Kept, told};
 use proptest::collection::vec;
 use proptest::prelude::*;
+use std::ffi::c_int;
 use std::ptr;
 use wild::{call, index, number};
 
@@ -38,7 +39,7 @@ proptest! {
                 c"Fuzz".as_ptr(), corners.as_ptr().cast(), corners.len() as i64, count, &mut membrane,
             )
         };
-        prop_assert_eq!(made, 0);
+        prop_assert_eq!(made, Status::Success);
         let mut bench = Bench { membrane, positions: positions.collect(), vectors: None };
         for call in &calls {
             bench.make(call)?;
@@ -103,10 +104,10 @@ proptest! {
         let status = unsafe {
             Helfrich_Membrane_create(c"Fuzz".as_ptr(), ptr::null(), count, 3, &mut membrane)
         };
-        prop_assert_eq!(status, 1);
+        prop_assert_eq!(status, Status::Failure);
         let numbers = unsafe { Helfrich_Numbers_create(ptr::null(), [1.0; 3].as_ptr(), 3, ptr::null()) };
         let kept = Kept { field: Vec::new(), numbers };
-        unsafe { Helfrich_Numbers_rearrange(kept.numbers, [2.0; 2].as_ptr(), 2, 7) };
+        told(unsafe { Helfrich_Numbers_rearrange(kept.numbers, [2.0; 2].as_ptr(), 2, 7) })?;
     }
 
     /// Positions, velocities, forces and masses of any size, in any order of calls.

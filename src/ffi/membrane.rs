@@ -1,6 +1,6 @@
 //! The C interface to [`crate::membrane`]: meshes of particles, and evaluations of terms on them.
 
-use super::{TermInput, guarded, slice, text};
+use super::{Status, TermInput, guarded, slice, text};
 use crate::error::Result;
 use crate::membrane::{self, Membrane};
 use crate::mesh::Cell;
@@ -23,7 +23,7 @@ pub unsafe extern "C" fn Helfrich_Membrane_create(
     num_triangles: i64,
     num_particles: i64,
     membrane: *mut *mut Membrane,
-) -> c_int {
+) -> Status {
     guarded(unsafe { text(subject) }, || {
         let triangles = unsafe { slice(triangles.cast::<[c_int; 3]>(), num_triangles as usize) };
         let triangles: Vec<_> = triangles.iter().map(|corners| corners.map(i64::from)).collect();
@@ -183,7 +183,7 @@ pub unsafe extern "C" fn Helfrich_Membrane_checkTerm(
     subject: *const c_char,
     membrane: *mut Membrane,
     term: *const TermInput,
-) -> c_int {
+) -> Status {
     guarded(unsafe { text(subject) }, || {
         let (membrane, term) = unsafe { (&mut *membrane, (*term).term()) };
         membrane.check(&term)?;
@@ -200,7 +200,7 @@ pub unsafe extern "C" fn Helfrich_Membrane_checkParticles(
     subject: *const c_char,
     membrane: *const Membrane,
     term: *const TermInput,
-) -> c_int {
+) -> Status {
     let subject = unsafe { text(subject) };
     guarded(subject, || unsafe { &*membrane }.check_particles(&unsafe { (*term).term() }))
 }
@@ -231,7 +231,7 @@ pub unsafe extern "C" fn Helfrich_Membrane_evaluate(
     box_vectors: *const f64,
     contributions: *mut Contribution,
     forces: *mut f64,
-) -> c_int {
+) -> Status {
     let (given, at) = ((terms, num_terms), (positions, num_particles));
     guarded(unsafe { text(subject) }, || unsafe {
         with_terms(given, at, box_vectors, |terms, at| {
@@ -258,7 +258,7 @@ pub unsafe extern "C" fn Helfrich_Membrane_addVirial(
     positions: *const f64,
     box_vectors: *const f64,
     virial: *mut f64,
-) -> c_int {
+) -> Status {
     let (given, at) = ((terms, num_terms), (positions, num_particles));
     guarded(unsafe { text(subject) }, || {
         let found = unsafe {

@@ -1,9 +1,8 @@
 //! The C interface to [`crate::mesh`].
 
 use super::membrane::cell;
-use super::{guarded, slice};
+use super::{Status, guarded, slice};
 use crate::mesh::orientation;
-use std::ffi::c_int;
 use std::slice as slices;
 
 /// Validate a mesh and turn its triangles, in place, so that each component encloses positive volume.
@@ -18,7 +17,7 @@ pub unsafe extern "C" fn Helfrich_Mesh_orient(
     num_triangles: i64,
     triangles: *mut i64,
     box_vectors: *const f64,
-) -> c_int {
+) -> Status {
     guarded("Mesh", || {
         let vertices = unsafe { slice(vertices.cast::<[f64; 3]>(), num_vertices as usize) };
         let given =

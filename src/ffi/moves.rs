@@ -1,7 +1,7 @@
 //! The C interface to moves of a membrane, and to its connectivity.
 
 use super::membrane::{like_positions, read_terms, with_terms};
-use super::{FollowerInput, TermInput, guarded, slice, text};
+use super::{FollowerInput, Status, TermInput, guarded, slice, text};
 use crate::membrane::{Connectivity, Follower, Membrane};
 use crate::moves::{FlipRules, FlipState, Round, SwapRound, SwapRules, SwapState};
 use smallvec::SmallVec;
@@ -17,7 +17,7 @@ pub unsafe extern "C" fn Helfrich_Membrane_checkFlips(
     subject: *const c_char,
     membrane: *const Membrane,
     rules: *const FlipRules,
-) -> c_int {
+) -> Status {
     guarded(unsafe { text(subject) }, || unsafe { &*rules }.check(unsafe { &*membrane }.mesh()))
 }
 
@@ -46,7 +46,7 @@ pub unsafe extern "C" fn Helfrich_Membrane_flip(
     force_change: *mut f64,
     followers: *const FollowerInput,
     num_followers: i64,
-) -> c_int {
+) -> Status {
     let (given, at) = ((terms, num_terms), (positions, num_particles));
     guarded(unsafe { text(subject) }, || {
         let (membrane, rules, state) = unsafe { (&mut *membrane, &*rules, &mut *state) };
@@ -98,7 +98,7 @@ pub unsafe extern "C" fn Helfrich_Membrane_swap(
     version: u64,
     made: *mut i64,
     force_change: *mut f64,
-) -> c_int {
+) -> Status {
     let (given, at) = ((terms, num_terms), (positions, num_particles));
     guarded(unsafe { text(subject) }, || {
         let (membrane, rules, state) = unsafe { (&mut *membrane, &*rules, &mut *state) };
@@ -163,7 +163,7 @@ pub unsafe extern "C" fn Helfrich_Membrane_setTriangles(
     membrane: *mut Membrane,
     corners: *const c_int,
     num_triangles: i64,
-) -> c_int {
+) -> Status {
     guarded(unsafe { text(subject) }, || {
         let corners = unsafe { slice(corners.cast::<[c_int; 3]>(), num_triangles as usize) };
         let triangles: Vec<_> = corners.iter().map(|corners| corners.map(i64::from)).collect();
@@ -197,7 +197,7 @@ pub unsafe extern "C" fn Helfrich_Membrane_restore(
     corners: *const c_int,
     order: *const u32,
     flips: i64,
-) -> c_int {
+) -> Status {
     guarded(unsafe { text(subject) }, || {
         let membrane = unsafe { &mut *membrane };
         let (count, vertices) = (membrane.mesh().triangles().len(), membrane.mesh().num_vertices());

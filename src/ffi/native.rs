@@ -1,7 +1,7 @@
 //! The C interface to [`crate::evaluator::gpu::native`]: evaluations by OpenMM's own GPU platforms.
 
 use super::membrane::{cell, read_terms, with_terms};
-use super::{NativeBuffer, NativePass, NativePlan, TermInput, guarded, slice, text};
+use super::{NativeBuffer, NativePass, NativePlan, Status, TermInput, guarded, slice, text};
 use crate::evaluator::gpu::Precision;
 use crate::evaluator::gpu::native::{self, Native, Wanted};
 use crate::membrane::Membrane;
@@ -72,7 +72,7 @@ pub unsafe extern "C" fn Helfrich_Native_look(
     num_particles: i64,
     positions: *const f64,
     box_vectors: *const f64,
-) -> c_int {
+) -> Status {
     let (given, at) = ((terms, num_terms), (positions, num_particles));
     guarded(unsafe { text(subject) }, || unsafe {
         with_terms(given, at, box_vectors, |terms, at| {
@@ -101,7 +101,7 @@ pub unsafe extern "C" fn Helfrich_Native_plan(
     forces: c_int,
     derivatives: *const c_int,
     plan: *mut NativePlan,
-) -> c_int {
+) -> Status {
     guarded(unsafe { text(subject) }, || {
         let terms = unsafe { read_terms(terms, num_terms) };
         let derivatives = unsafe { slice(derivatives.cast(), num_terms as usize) };

@@ -1,7 +1,8 @@
 //! The C interface of the plugin: what OpenMM calls when it loads the library, and what the force classes need.
 
+use super::Status;
 use super::shim::*;
-use std::ffi::{CStr, c_char, c_int, c_void};
+use std::ffi::{CStr, c_char, c_void};
 
 /// The version of OpenMM that this library was built against.
 #[unsafe(no_mangle)]
@@ -37,7 +38,7 @@ pub extern "C" fn registerKernelFactories() {
     // SAFETY: the shim's functions take nothing and throw nothing. If OpenMM is of another version the first says
     // so on the standard error and registers nothing: a plugin in a folder must not stop the others.
     unsafe {
-        if helfrich_shim_registerSerialization() == 0 {
+        if helfrich_shim_registerSerialization() == Status::Success {
             helfrich_shim_adoptKernels();
         }
     }
@@ -59,7 +60,7 @@ pub extern "C" fn Helfrich_register() {
 pub unsafe extern "C" fn Helfrich_Platform_check(
     system: *const c_void,
     integrator: *const c_void,
-) -> c_int {
+) -> Status {
     unsafe { helfrich_shim_checkPlatform(system, integrator) }
 }
 

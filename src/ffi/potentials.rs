@@ -1,7 +1,7 @@
 //! The C interface to [`crate::potentials`]: names, units, defaults and domains, which C++ and Python ask for.
 
 use super::membrane::cell;
-use super::{ParameterInfo, guarded, slice, text};
+use super::{ParameterInfo, Status, guarded, slice, text};
 use crate::error::Error;
 use crate::potentials::{
     self, Element, MadeOf, REGISTRY, Term, VertexNumbers, particle_surface, surface_repulsion,
@@ -17,7 +17,7 @@ pub unsafe extern "C" fn Helfrich_Potential_parameter(
     potential: *const c_char,
     index: c_int,
     info: *mut ParameterInfo,
-) -> c_int {
+) -> Status {
     let subject = unsafe { text(potential) };
     guarded(subject, || {
         let parameters = potentials::find(subject)?.parameters();
@@ -40,7 +40,7 @@ pub unsafe extern "C" fn Helfrich_Potential_parameter(
     })
 }
 
-/// The name of variant `index` of a potential, and what its variants are called ("scheme"); fails if
+/// The name of form `index` of a potential, and what its forms are called ("scheme"); fails if
 /// there is none.
 ///
 /// # Safety
@@ -51,7 +51,7 @@ pub unsafe extern "C" fn Helfrich_Potential_form(
     index: c_int,
     what: *mut *const c_char,
     name: *mut *const c_char,
-) -> c_int {
+) -> Status {
     let subject = unsafe { text(potential) };
     guarded(subject, || {
         let found = potentials::find(subject)?;
@@ -80,7 +80,7 @@ pub unsafe extern "C" fn Helfrich_Potential_switch(
     potential: *const c_char,
     index: c_int,
     name: *mut *const c_char,
-) -> c_int {
+) -> Status {
     let subject = unsafe { text(potential) };
     guarded(subject, || match potentials::find(subject)?.switches().get(index as usize) {
         Some(switch) => {
@@ -100,7 +100,7 @@ pub unsafe extern "C" fn Helfrich_Potential_check(
     potential: *const c_char,
     index: c_int,
     value: f64,
-) -> c_int {
+) -> Status {
     let subject = unsafe { text(potential) };
     guarded(subject, || match potentials::find(subject)?.parameters().get(index as usize) {
         Some(parameter) => parameter.check(value),
@@ -146,7 +146,7 @@ pub unsafe extern "C" fn Helfrich_Potential_checkNumbers(
     numbers: *const f64,
     count: i64,
     box_vectors: *const f64,
-) -> c_int {
+) -> Status {
     let subject = unsafe { text(potential) };
     guarded(subject, || {
         let potential = potentials::find(subject)?;
@@ -194,7 +194,7 @@ pub unsafe extern "C" fn Helfrich_Numbers_rearrange(
     values: *const f64,
     count: i64,
     version: u64,
-) -> c_int {
+) -> Status {
     guarded("openmm-helfrich", || {
         let (numbers, values) = unsafe { (&mut *numbers, slice(values, count as usize)) };
         if values.len() != numbers.values.len() {
@@ -237,7 +237,7 @@ pub extern "C" fn Helfrich_Potential_isContact(potential: c_int) -> c_int {
 pub unsafe extern "C" fn Helfrich_Potential_find(
     potential: *const c_char,
     index: *mut c_int,
-) -> c_int {
+) -> Status {
     let subject = unsafe { text(potential) };
     guarded(subject, || {
         let known = potentials::find(subject)?.name();

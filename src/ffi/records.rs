@@ -11,6 +11,7 @@ pub(super) use crate::evaluator::gpu::native::Native as HelfrichNative;
 pub(super) use crate::membrane::{Crowd as HelfrichCrowd, Membrane as HelfrichMembrane};
 pub(super) use crate::moves::{FlipRules as HelfrichFlipRules, FlipState as HelfrichFlipState};
 pub(super) use crate::moves::{SwapRules as HelfrichSwapRules, SwapState as HelfrichSwapState};
+pub(super) use crate::potentials::codes::Status as Helfrich_Status;
 pub(super) use crate::potentials::{
     Contribution as HelfrichContribution, VertexNumbers as HelfrichNumbers,
 };

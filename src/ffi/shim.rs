@@ -4,5 +4,6 @@
 #![allow(non_snake_case, reason = "names follow OpenMM's C API")]
 
 use crate::openmm::{OpenMM_Context, OpenMM_Force};
+use crate::potentials::codes::Status as Helfrich_Status;
 
 include!(concat!(env!("OUT_DIR"), "/shim.rs"));

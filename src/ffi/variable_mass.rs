@@ -1,12 +1,12 @@
 //! The C interface to [`crate::dynamics::variable_mass`].
 
 use super::membrane::cell;
-use super::{ParticleArrays, SheetInput, guarded, slice, text};
+use super::{ParticleArrays, SheetInput, Status, guarded, slice, text};
 use crate::dynamics::plaquettes::Sheet;
 use crate::dynamics::random::Stream;
 use crate::dynamics::variable_mass::VariableMasses;
 use crate::team::Team;
-use std::ffi::{c_char, c_int};
+use std::ffi::c_char;
 use std::slice as slices;
 
 /// Prepare time steps of particles with the masses of a System, and a density of surfaces or 0.
@@ -20,7 +20,7 @@ pub unsafe extern "C" fn Helfrich_VariableMasses_create(
     masses: *const f64,
     density: f64,
     made: *mut *mut VariableMasses,
-) -> c_int {
+) -> Status {
     guarded(unsafe { text(subject) }, || {
         let masses = unsafe { slice(masses, num_particles as usize) };
         let masses = Box::new(VariableMasses::new(masses, density));
@@ -51,7 +51,7 @@ pub unsafe extern "C" fn Helfrich_VariableMasses_setSurfaces(
     masses: *mut VariableMasses,
     sheets: *const SheetInput,
     count: i64,
-) -> c_int {
+) -> Status {
     guarded(unsafe { text(subject) }, || {
         let sheets = unsafe { slice(sheets, count as usize) };
         let sheets = sheets.iter().map(|sheet| Sheet {
@@ -73,7 +73,7 @@ pub unsafe extern "C" fn Helfrich_VariableMasses_get(
     particles: *const ParticleArrays,
     box_vectors: *const f64,
     out: *mut f64,
-) -> c_int {
+) -> Status {
     guarded(unsafe { text(subject) }, || {
         let particles = unsafe { (*particles).particles() };
         let cell = unsafe { cell(box_vectors) }?;
@@ -96,7 +96,7 @@ pub unsafe extern "C" fn Helfrich_VariableMasses_begin(
     particles: *const ParticleArrays,
     box_vectors: *const f64,
     step: f64,
-) -> c_int {
+) -> Status {
     guarded(unsafe { text(subject) }, || {
         let (masses, team) = unsafe { (&mut *masses, team.as_mut()) };
         let cell = unsafe { cell(box_vectors) }?;
@@ -116,7 +116,7 @@ pub unsafe extern "C" fn Helfrich_VariableMasses_finish(
     particles: *const ParticleArrays,
     box_vectors: *const f64,
     step: f64,
-) -> c_int {
+) -> Status {
     guarded(unsafe { text(subject) }, || {
         let (masses, team) = unsafe { (&mut *masses, team.as_mut()) };
         let cell = unsafe { cell(box_vectors) }?;
@@ -139,7 +139,7 @@ pub unsafe extern "C" fn Helfrich_VariableMasses_bathe(
     time: f64,
     friction: f64,
     kt: f64,
-) -> c_int {
+) -> Status {
     guarded(unsafe { text(subject) }, || {
         let (masses, team, stream) = unsafe { (&mut *masses, team.as_mut(), &mut *stream) };
         let cell = unsafe { cell(box_vectors) }?;

@@ -1,11 +1,11 @@
 //! The C interface to friction and noise along edges.
 
 use super::membrane::cell;
-use super::{EdgeBath, guarded, slice, text};
+use super::{EdgeBath, Status, guarded, slice, text};
 use crate::dynamics::random::Stream;
 use crate::dynamics::viscosity::{Bath, Motion, Viscosity};
 use crate::membrane::Membrane;
-use std::ffi::{c_char, c_int};
+use std::ffi::c_char;
 use std::slice as slices;
 
 /// Prepare sweeps over the edges of a membrane, among particles of these masses.
@@ -20,7 +20,7 @@ pub unsafe extern "C" fn Helfrich_Viscosity_create(
     num_particles: i64,
     masses: *const f64,
     viscosity: *mut *mut Viscosity,
-) -> c_int {
+) -> Status {
     guarded(unsafe { text(subject) }, || {
         let masses = unsafe { slice(masses, num_particles as usize) };
         let made = Viscosity::new(unsafe { &*membrane }.mesh(), masses);
@@ -58,7 +58,7 @@ pub unsafe extern "C" fn Helfrich_Viscosity_sweep(
     box_vectors: *const f64,
     bath: *const EdgeBath,
     stream: *mut Stream,
-) -> c_int {
+) -> Status {
     guarded(unsafe { text(subject) }, || {
         let membrane = unsafe { &*membrane };
         let cell = unsafe { cell(box_vectors) }?;

@@ -3,9 +3,9 @@
 use super::{c_text, check};
 use crate::error::{Error, Result};
 use crate::ffi::c_api;
-use crate::ffi::last_error;
+use crate::ffi::{Status, last_error};
 use crate::openmm::{OpenMM_Context, OpenMM_Force};
-use std::ffi::{c_char, c_double, c_int};
+use std::ffi::{c_char, c_double};
 use std::ptr::NonNull;
 
 /// A force that no System owns yet.
@@ -17,7 +17,7 @@ type GetStatistic = unsafe extern "C" fn(
     *mut OpenMM_Context,
     *const c_char,
     *mut c_double,
-) -> c_int;
+) -> Status;
 
 impl Owned {
     /// What a C function has made, or the message of why it has not.

@@ -1,4 +1,4 @@
-//! The numbers by which other languages know potentials: bits, variants and switches, and what they read.
+//! The numbers by which other languages know potentials: bits, forms and switches, and what they read.
 //!
 //! Shaders and C++ never state them on their own. build.rs includes this file: it writes the numbers as WGSL into
 //! the shaders, and has the C++ compiler compare the enumerations of the headers with the lists here.
@@ -57,8 +57,8 @@ pub struct Contribution {
     pub by_parameter: [f64; MAX_PARAMETERS],
 }
 
-/// An enumeration with its variants in a list, and their names as the user writes them.
-macro_rules! variants {
+/// An enumeration with a list of all, and their names as the user writes them.
+macro_rules! named {
     ($(#[$doc:meta])* $name:ident { $($variant:ident),* $(,)? }) => {
         $(#[$doc])*
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -83,27 +83,34 @@ const fn c_name(name: &str) -> &CStr {
     }
 }
 
-variants! {
+named! {
+    /// What functions of the C interface return that can fail; the last error has the message of a failure.
+    #[must_use]
+    #[repr(C)]
+    Status { Success, Failure }
+}
+
+named! {
     /// The schemes of `BendingForce`; `bending.rs` has their formulas.
     Scheme { Julicher, GompperKroll, GompperKrollBarycentric, JulicherVoronoi, Espriu }
 }
 
-variants! {
+named! {
     /// The forms of `DihedralForce`; `dihedral.rs` has their formulas.
     Form { Quartic, Cosine, Exp, SmoothExp, SmoothExp46 }
 }
 
-variants! {
+named! {
     /// The forms of `SpringForce`; `spring.rs` has their formulas.
     SpringForm { Harmonic, WLCPower }
 }
 
-variants! {
+named! {
     /// The attractions of `ParticleSurfaceForce`; `particle_surface.rs` has their formulas.
     Attraction { WCA, LennardJones, NineThree }
 }
 
-variants! {
+named! {
     /// The coefficients of `LimForce`; `lim.rs` has them.
     Coefficients { Lim2002, Amoudruz2023 }
 }

@@ -105,7 +105,7 @@ pub trait Potential: Sync {
     /// The scalars.
     fn parameters(&self) -> &'static [Parameter];
 
-    /// What the variants are called as a whole ("scheme"), and their names.
+    /// What the forms of the potential are called as a whole ("scheme"), and their names.
     fn forms(&self) -> Option<(&'static CStr, &'static [&'static CStr])> {
         None
     }

@@ -47,7 +47,7 @@ pub struct Parameter {
     pub default: Option<f64>,
     /// For what it can be given one by one.
     pub per: Option<Element>,
-    /// Whether it stands behind the variant in constructors.
+    /// Whether it stands behind the form in constructors.
     pub last: bool,
 }
 
@@ -67,7 +67,7 @@ impl Parameter {
         Self { per: Some(element), ..self }
     }
 
-    /// The same, but behind the variant in constructors, as what has come later must be.
+    /// The same, but behind the form in constructors, as what has come later must be.
     pub const fn last(self) -> Self {
         Self { last: true, ..self }
     }

@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 /// The values that a potential is evaluated with.
 pub type Values = [f64; MAX_PARAMETERS];
 
-/// A potential with its variant and values.
+/// A potential with its form and values.
 #[derive(Clone, Copy)]
 pub struct Term<'a> {
     /// From the [`REGISTRY`](super::REGISTRY).
@@ -35,12 +35,12 @@ impl<'a> Term<'a> {
     /// Look up a potential and check its values.
     ///
     /// # Errors
-    /// An unknown name or variant, too few or too many values, a value outside its domain.
+    /// An unknown name or form, too few or too many values, a value outside its domain.
     pub fn new(name: &str, form: usize, values: &[f64]) -> Result<Self> {
         let potential = find(name)?;
         let forms = potential.forms().map_or(1, |(_, names)| names.len());
         if form >= forms {
-            return Err(Error::Contract(format!("there is no variant {form}, only {forms}")));
+            return Err(Error::Contract(format!("there is no form {form}, only {forms}")));
         }
         let count = potential.parameters().len();
         if values.len() != count {

@@ -94,8 +94,8 @@ struct Shared {
     sleeping: Box<[Apart<AtomicBool>]>,
     /// How many members sleep within a run, or are about to.
     blocked: Apart<AtomicU32>,
-    bed: Mutex<()>,
-    bell: Condvar,
+    asleep: Mutex<()>,
+    wake: Condvar,
 }
 
 /// What members at a barrier watch.
@@ -144,8 +144,8 @@ impl Team {
             panic: Mutex::new(None),
             sleeping: (0..size).map(|_| Apart(AtomicBool::new(false))).collect(),
             blocked: Apart(AtomicU32::new(0)),
-            bed: Mutex::new(()),
-            bell: Condvar::new(),
+            asleep: Mutex::new(()),
+            wake: Condvar::new(),
         });
         // A team that fails half-way is dropped here, which sends those home that have come.
         let mut team = Self { shared, workers: Vec::with_capacity(size - 1) };
@@ -228,7 +228,7 @@ impl Shared {
             }
             self.take_part(index);
             self.finished.0.fetch_add(1, SeqCst);
-            self.ring();
+            self.wake_all();
         }
     }
 
@@ -247,7 +247,7 @@ impl Shared {
                 first.get_or_insert(panic);
             }
             self.gate.0.broken.store(true, SeqCst);
-            self.ring();
+            self.wake_all();
         }
     }
 }
@@ -274,7 +274,7 @@ impl Member<'_> {
         if shared.arrived.0.fetch_add(1, AcqRel) as usize == shared.size - 1 {
             shared.arrived.0.store(0, Relaxed);
             gate.passed.store(passed.wrapping_add(1), SeqCst);
-            shared.ring();
+            shared.wake_all();
             return;
         }
         let is_open = || gate.passed.load(SeqCst) != passed;

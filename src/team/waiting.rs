@@ -40,7 +40,7 @@ impl Shared {
         }
     }
 
-    /// Wait for what another member does before it calls [`Self::ring`]; both use SeqCst.
+    /// Wait for what another member does before it calls [`Self::wake_all`]; both use SeqCst.
     pub fn wait(&self, is_over: impl Fn() -> bool) {
         let patience = if self.spins { patience(PATIENCE) } else { 0 };
         for _ in 0..patience {
@@ -49,22 +49,22 @@ impl Shared {
             }
             spin_loop();
         }
-        let mut bed = self.bed.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut guard = self.asleep.lock().unwrap_or_else(PoisonError::into_inner);
         self.blocked.0.fetch_add(1, SeqCst);
         one_order();
         while !is_over() {
-            bed = self.bell.wait(bed).unwrap_or_else(PoisonError::into_inner);
+            guard = self.wake.wait(guard).unwrap_or_else(PoisonError::into_inner);
         }
         self.blocked.0.fetch_sub(1, SeqCst);
     }
 
     /// Wake those who wait. In the one order of SeqCst, either this sees that somebody is blocked, or he looks
     /// after the change that he waits for; and he holds the lock from before he looks until he sleeps.
-    pub fn ring(&self) {
+    pub fn wake_all(&self) {
         one_order();
         if self.blocked.0.load(SeqCst) > 0 {
-            drop(self.bed.lock().unwrap_or_else(PoisonError::into_inner));
-            self.bell.notify_all();
+            drop(self.asleep.lock().unwrap_or_else(PoisonError::into_inner));
+            self.wake.notify_all();
         }
     }
 }

@@ -61,19 +61,19 @@ impl Instant {
 #[derive(Default)]
 pub struct Permit {
     given: Mutex<bool>,
-    bell: Condvar,
+    wake: Condvar,
 }
 
 impl Permit {
     pub fn unpark(&self) {
         *self.given.lock().unwrap() = true;
-        self.bell.notify_one();
+        self.wake.notify_one();
     }
 
     fn take(&self) {
         let mut given = self.given.lock().unwrap();
         while !*given {
-            given = self.bell.wait(given).unwrap();
+            given = self.wake.wait(given).unwrap();
         }
         *given = false;
     }

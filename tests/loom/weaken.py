@@ -91,17 +91,22 @@ CHANGES = [
         "gate.passed.store(passed.wrapping_add(1), SeqCst);\n            "
         "shared.arrived.0.store(0, Relaxed);",
     ),
-    ("who opens a barrier rings", "mod.rs", "shared.ring();\n            return", "return"),
     (
-        "who finishes rings",
+        "who opens a barrier wakes all",
         "mod.rs",
-        "fetch_add(1, SeqCst);\n            self.ring();",
+        "shared.wake_all();\n            return",
+        "return",
+    ),
+    (
+        "who finishes wakes the caller",
+        "mod.rs",
+        "fetch_add(1, SeqCst);\n            self.wake_all();",
         "fetch_add(1, SeqCst);",
     ),
     (
-        "who panics rings",
+        "who panics wakes the others",
         "mod.rs",
-        "self.gate.0.broken.store(true, SeqCst);\n            self.ring();",
+        "self.gate.0.broken.store(true, SeqCst);\n            self.wake_all();",
         "self.gate.0.broken.store(true, SeqCst);",
     ),
     (
@@ -137,7 +142,7 @@ CHANGES = [
     (
         "who rings waits for those who are about to sleep",
         "waiting.rs",
-        "drop(self.bed.lock().unwrap_or_else(PoisonError::into_inner));",
+        "drop(self.asleep.lock().unwrap_or_else(PoisonError::into_inner));",
         "",
     ),
     ("all who wait are woken", "waiting.rs", "notify_all", "notify_one"),

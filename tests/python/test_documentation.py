@@ -253,6 +253,29 @@ def test_messages_are_those_of_the_package(name):
     assert not missing
 
 
+def test_architecture_names_what_there_is():
+    """Paths end like those of files or folders; other names are words of the sources."""
+    text = re.sub(
+        r"^```[\s\S]*?^```", "", (ROOT / "ARCHITECTURE.md").read_text("utf-8"), flags=re.M
+    )
+    tops = [".ci", "benches", "docs", "examples", "python", "shaders", "src", "tests", "wrappers"]
+    below = [path for top in tops for path in (ROOT / top).rglob("*")]
+    paths = {f"/{path.relative_to(ROOT).as_posix()}" for path in [*below, *ROOT.iterdir()]}
+    build = [ROOT / "build.rs", *(ROOT / "shaders").rglob("*.rs"), *(ROOT / "python").glob("*.i")]
+    words = sources() + "".join(path.read_text(encoding="utf-8") for path in build)
+    names = [name for name in re.findall(r"`([^`]+)`", text) if "our_term" not in name]
+    names = [name for name in names if "YourForce" not in name]
+    made = ["NativeCodes.h", ".venv/bin/python"]
+    assert len(names) > 100
+
+    def is_there(name: str) -> bool:
+        if re.search(r"/|\.(rs|h|cpp|py|pyi|i|md)$", name) and name not in made:
+            return any(path.endswith(f"/{name.strip('/')}") for path in paths)
+        return all(re.search(rf"\b{word}\b", words) for word in re.findall(r"\w+", name))
+
+    assert [word for name in names for word in name.split() if not is_there(word)] == []
+
+
 def test_citation_names_the_version():
     citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
     assert f"\nversion: {helfrich.__version__}\n" in citation

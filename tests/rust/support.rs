@@ -192,7 +192,7 @@ pub fn random(seed: u64) -> impl FnMut() -> f64 {
     }
 }
 
-/// Every potential in every variant, with values that make it act on the meshes of these tests; all with or all
+/// Every potential in every form, with values that make it act on the meshes of these tests; all with or all
 /// without the derivatives with respect to their scalars.
 pub fn all_terms(wants_derivatives: bool) -> Vec<Term<'static>> {
     let mut terms = Vec::new();

@@ -54,43 +54,60 @@ double pick(const string& mover, const std::map<string, double>& statistics, con
 
 /** Run something that may throw; C gets a status and a message. */
 template <class Body>
-int guarded(Body body) {
+Helfrich_Status guarded(Body body) {
     try {
         body();
-        return 0;
+        return Helfrich_Success;
     } catch (const std::exception& error) {
         helfrich_setLastError(error.what());
     } catch (...) {
         helfrich_setLastError("openmm-helfrich: an unknown exception");
     }
-    return 1;
+    return Helfrich_Failure;
+}
+
+/** A value, or if it cannot be had what says so. */
+template <class Value, class Body>
+Value valueOr(Value nothing, Body body) {
+    Value value = nothing;
+    return guarded([&] { value = body(); }) == Helfrich_Success ? value : nothing;
+}
+
+/** A new force, or null. */
+template <class Body>
+OpenMM_Force* made(Body body) {
+    return reinterpret_cast<OpenMM_Force*>(valueOr<OpenMM::Force*>(nullptr, body));
+}
+
+/** The corners of so many triangles. */
+vector<int> cornersOf(const string& owner, const int* triangles, int numTriangles) {
+    if (numTriangles < 0)
+        throw OpenMMException(owner + ": the number of triangles is negative");
+    return vector<int>(triangles, triangles + 3 * (size_t) numTriangles);
 }
 
 } // namespace
 
-// What the functions of OpenMMHelfrichCWrapper.h do. The build makes CApi.h of it, with these names: those of the
-// header are Rust's, which only pass on (wrappers/declarations.rs).
+// What the functions of OpenMMHelfrichCWrapper.h do, under other names: the exported ones are Rust's, which pass on to
+// these. The build makes CApi.h of that header, so that these have its types (wrappers/declarations.rs).
 extern "C" {
 
 OpenMM_Force* helfrich_shim_createForce(const char* type, const int* triangles, int numTriangles, const double* values,
                                         int numValues, int form) {
-    OpenMM::Force* created = nullptr;
-    guarded([&] {
+    return made([&] {
         std::unique_ptr<MembraneForce> force(makeForce(type));
         HelfrichParameterInfo next;
-        bool lacksOne = Helfrich_Potential_parameter(type, numValues, &next) == 0 && std::isnan(next.defaultValue);
+        bool lacksOne =
+            Helfrich_Potential_parameter(type, numValues, &next) == Helfrich_Success && std::isnan(next.defaultValue);
         if (lacksOne || numValues > force->getNumParameters())
             throw OpenMMException(string(type) + ": needs " + std::to_string(force->getNumParameters()) + " scalars");
         for (int i = 0; i < numValues; i++)
             force->setParameterValue(force->getParameterName(i), values[i]);
         if (form != 0)
             force->setForm(form);
-        if (numTriangles < 0)
-            throw OpenMMException(string(type) + ": the number of triangles is negative");
-        force->addTriangles(vector<int>(triangles, triangles + 3 * (size_t) numTriangles));
-        created = force.release();
+        force->addTriangles(cornersOf(type, triangles, numTriangles));
+        return force.release();
     });
-    return reinterpret_cast<OpenMM_Force*>(created);
 }
 
 void helfrich_shim_MembraneForce_destroy(OpenMM_Force* force) {
@@ -98,35 +115,33 @@ void helfrich_shim_MembraneForce_destroy(OpenMM_Force* force) {
 }
 
 int helfrich_shim_MembraneForce_addTriangle(OpenMM_Force* force, int particle1, int particle2, int particle3) {
-    int index = -1;
-    guarded([&] { index = asTriangulated(force).addTriangle(particle1, particle2, particle3); });
-    return index;
+    return valueOr<int>(-1, [&] { return asTriangulated(force).addTriangle(particle1, particle2, particle3); });
 }
 
 int helfrich_shim_MembraneForce_getNumTriangles(OpenMM_Force* force) {
-    int count = -1;
-    guarded([&] { count = asTriangulated(force).getNumTriangles(); });
-    return count;
+    return valueOr<int>(-1, [&] { return asTriangulated(force).getNumTriangles(); });
 }
 
-int helfrich_shim_MembraneForce_getTriangle(OpenMM_Force* force, int index, int* corners) {
+Helfrich_Status helfrich_shim_MembraneForce_getTriangle(OpenMM_Force* force, int index, int* corners) {
     return guarded([&] { asTriangulated(force).getTriangle(index, corners[0], corners[1], corners[2]); });
 }
 
-int helfrich_shim_MembraneForce_getParameterValue(OpenMM_Force* force, const char* parameter, double* value) {
+Helfrich_Status helfrich_shim_MembraneForce_getParameterValue(OpenMM_Force* force, const char* parameter,
+                                                              double* value) {
     return guarded([&] { *value = asForce(force).getParameterValue(parameter); });
 }
 
-int helfrich_shim_MembraneForce_setParameterValue(OpenMM_Force* force, const char* parameter, double value) {
+Helfrich_Status helfrich_shim_MembraneForce_setParameterValue(OpenMM_Force* force, const char* parameter,
+                                                              double value) {
     return guarded([&] { asForce(force).setParameterValue(parameter, value); });
 }
 
-int helfrich_shim_MembraneForce_setElementValues(OpenMM_Force* force, const char* parameter, const double* values,
-                                                 int count) {
+Helfrich_Status helfrich_shim_MembraneForce_setElementValues(OpenMM_Force* force, const char* parameter,
+                                                             const double* values, int count) {
     return guarded([&] { asForce(force).setElementValues(parameter, vector<double>(values, values + count)); });
 }
 
-int helfrich_shim_ParticleSurfaceForce_setParticles(OpenMM_Force* force, const int* particles, int count) {
+Helfrich_Status helfrich_shim_ParticleSurfaceForce_setParticles(OpenMM_Force* force, const int* particles, int count) {
     return guarded([&] {
         auto& owner = as<ParticleSurfaceForce>("ParticleSurfaceForce", force);
         if (count < 0)
@@ -135,8 +150,8 @@ int helfrich_shim_ParticleSurfaceForce_setParticles(OpenMM_Force* force, const i
     });
 }
 
-int helfrich_shim_MembraneForce_setReference(OpenMM_Force* force, const double* positions, int numVertices,
-                                             const double* boxVectors) {
+Helfrich_Status helfrich_shim_MembraneForce_setReference(OpenMM_Force* force, const double* positions, int numVertices,
+                                                         const double* boxVectors) {
     return guarded([&] {
         MembraneForce& owner = asForce(force);
         if (numVertices < 0)
@@ -146,7 +161,7 @@ int helfrich_shim_MembraneForce_setReference(OpenMM_Force* force, const double* 
     });
 }
 
-int helfrich_shim_LineTensionForce_setDomains(OpenMM_Force* force, const int* domains, int numVertices) {
+Helfrich_Status helfrich_shim_LineTensionForce_setDomains(OpenMM_Force* force, const int* domains, int numVertices) {
     return guarded([&] {
         auto& owner = as<LineTensionForce>("LineTensionForce", force);
         if (numVertices < 0)
@@ -155,74 +170,72 @@ int helfrich_shim_LineTensionForce_setDomains(OpenMM_Force* force, const int* do
     });
 }
 
-int helfrich_shim_MembraneForce_setForm(OpenMM_Force* force, int form) {
+Helfrich_Status helfrich_shim_MembraneForce_setForm(OpenMM_Force* force, int form) {
     return guarded([&] { asForce(force).setForm(form); });
 }
 
-int helfrich_shim_MembraneForce_setSwitch(OpenMM_Force* force, const char* name, int on) {
+Helfrich_Status helfrich_shim_MembraneForce_setSwitch(OpenMM_Force* force, const char* name, int on) {
     return guarded([&] { asForce(force).setSwitch(name, on != 0); });
 }
 
-int helfrich_shim_MembraneForce_setBackend(OpenMM_Force* force, const char* backend) {
+Helfrich_Status helfrich_shim_MembraneForce_setBackend(OpenMM_Force* force, const char* backend) {
     return guarded([&] { asForce(force).setBackend(backend); });
 }
 
-int helfrich_shim_MembraneForce_setUsesPeriodicBoundaryConditions(OpenMM_Force* force, int periodic) {
+Helfrich_Status helfrich_shim_MembraneForce_setUsesPeriodicBoundaryConditions(OpenMM_Force* force, int periodic) {
     return guarded([&] { asForce(force).setUsesPeriodicBoundaryConditions(periodic != 0); });
 }
 
 int helfrich_shim_MembraneForce_usesPeriodicBoundaryConditions(OpenMM_Force* force) {
-    int periodic = -1;
-    guarded([&] { periodic = asForce(force).usesPeriodicBoundaryConditions(); });
-    return periodic;
+    return valueOr<int>(-1, [&] { return asForce(force).usesPeriodicBoundaryConditions(); });
 }
 
-int helfrich_shim_MembraneForce_setContextParameter(OpenMM_Force* force, const char* parameter, const char* name) {
+Helfrich_Status helfrich_shim_MembraneForce_setContextParameter(OpenMM_Force* force, const char* parameter,
+                                                                const char* name) {
     return guarded([&] { asForce(force).setContextParameter(parameter, name); });
 }
 
-int helfrich_shim_MembraneForce_addEnergyParameterDerivative(OpenMM_Force* force, const char* name) {
+Helfrich_Status helfrich_shim_MembraneForce_addEnergyParameterDerivative(OpenMM_Force* force, const char* name) {
     return guarded([&] { asForce(force).addEnergyParameterDerivative(name); });
 }
 
-int helfrich_shim_MembraneForce_updateParametersInContext(OpenMM_Force* force, OpenMM_Context* context) {
+Helfrich_Status helfrich_shim_MembraneForce_updateParametersInContext(OpenMM_Force* force, OpenMM_Context* context) {
     return guarded([&] { asForce(force).updateParametersInContext(asContext(context)); });
 }
-int helfrich_shim_MembraneForce_getTrianglesInContext(OpenMM_Force* force, OpenMM_Context* context, int* corners) {
+Helfrich_Status helfrich_shim_MembraneForce_getTrianglesInContext(OpenMM_Force* force, OpenMM_Context* context,
+                                                                  int* corners) {
     return guarded([&] {
         vector<int> found = asTriangulated(force).getTrianglesInContext(asContext(context));
         std::copy(found.begin(), found.end(), corners);
     });
 }
 
-int helfrich_shim_MembraneForce_getVirial(OpenMM_Force* force, OpenMM_Context* context, int groups, double* virial) {
+Helfrich_Status helfrich_shim_MembraneForce_getVirial(OpenMM_Force* force, OpenMM_Context* context, int groups,
+                                                      double* virial) {
     return guarded([&] {
         vector<double> found = asTriangulated(force).getVirial(asContext(context), groups);
         std::copy(found.begin(), found.end(), virial);
     });
 }
 
-int helfrich_shim_MembraneForce_setTrianglesInContext(OpenMM_Force* force, OpenMM_Context* context, const int* corners,
-                                                      int numTriangles) {
+Helfrich_Status helfrich_shim_MembraneForce_setTrianglesInContext(OpenMM_Force* force, OpenMM_Context* context,
+                                                                  const int* corners, int numTriangles) {
     return guarded([&] {
         TriangulatedForce& surface = asTriangulated(force);
-        if (numTriangles < 0)
-            throw OpenMMException(surface.getTypeName() + ": the number of triangles is negative");
-        vector<int> given(corners, corners + 3 * (size_t) numTriangles);
-        surface.setTrianglesInContext(asContext(context), given);
+        surface.setTrianglesInContext(asContext(context), cornersOf(surface.getTypeName(), corners, numTriangles));
     });
 }
 
-int helfrich_shim_MembraneForce_getPermutationInContext(OpenMM_Force* force, OpenMM_Context* context,
-                                                        int* permutation) {
+Helfrich_Status helfrich_shim_MembraneForce_getPermutationInContext(OpenMM_Force* force, OpenMM_Context* context,
+                                                                    int* permutation) {
     return guarded([&] {
         vector<int> found = asTriangulated(force).getPermutationInContext(asContext(context));
         std::copy(found.begin(), found.end(), permutation);
     });
 }
 
-int helfrich_shim_MembraneForce_setPermutationInContext(OpenMM_Force* force, OpenMM_Context* context,
-                                                        const int* permutation, int numVertices) {
+Helfrich_Status helfrich_shim_MembraneForce_setPermutationInContext(OpenMM_Force* force, OpenMM_Context* context,
+                                                                    const int* permutation, int numVertices) {
     return guarded([&] {
         TriangulatedForce& surface = asTriangulated(force);
         if (numVertices < 0)
@@ -231,7 +244,8 @@ int helfrich_shim_MembraneForce_setPermutationInContext(OpenMM_Force* force, Ope
     });
 }
 
-int helfrich_shim_LineTensionForce_getDomainsInContext(OpenMM_Force* force, OpenMM_Context* context, int* domains) {
+Helfrich_Status helfrich_shim_LineTensionForce_getDomainsInContext(OpenMM_Force* force, OpenMM_Context* context,
+                                                                   int* domains) {
     return guarded([&] {
         auto& owner = as<LineTensionForce>("LineTensionForce", force);
         vector<int> found = owner.getDomainsInContext(asContext(context));
@@ -242,24 +256,21 @@ int helfrich_shim_LineTensionForce_getDomainsInContext(OpenMM_Force* force, Open
 OpenMM_Force* helfrich_shim_MonteCarloBondFlip_create(const int* triangles, int numTriangles, double temperature,
                                                       int frequency, double attemptsPerEdge, int minDegree,
                                                       int maxDegree, double maxEdgeLength) {
-    OpenMM::Force* created = nullptr;
-    guarded([&] {
-        if (numTriangles < 0)
-            throw OpenMMException("MonteCarloBondFlip: the number of triangles is negative");
-        vector<int> corners(triangles, triangles + 3 * (size_t) numTriangles);
-        created = new MonteCarloBondFlip(corners, temperature, frequency, attemptsPerEdge, minDegree, maxDegree,
-                                         maxEdgeLength);
+    return made([&] {
+        vector<int> corners = cornersOf("MonteCarloBondFlip", triangles, numTriangles);
+        return new MonteCarloBondFlip(corners, temperature, frequency, attemptsPerEdge, minDegree, maxDegree,
+                                      maxEdgeLength);
     });
-    return reinterpret_cast<OpenMM_Force*>(created);
 }
 
-int helfrich_shim_MonteCarloBondFlip_updateParametersInContext(OpenMM_Force* force, OpenMM_Context* context) {
+Helfrich_Status helfrich_shim_MonteCarloBondFlip_updateParametersInContext(OpenMM_Force* force,
+                                                                           OpenMM_Context* context) {
     return guarded(
         [&] { as<MonteCarloBondFlip>("MonteCarloBondFlip", force).updateParametersInContext(asContext(context)); });
 }
 
-int helfrich_shim_MonteCarloBondFlip_getStatistic(OpenMM_Force* force, OpenMM_Context* context, const char* name,
-                                                  double* value) {
+Helfrich_Status helfrich_shim_MonteCarloBondFlip_getStatistic(OpenMM_Force* force, OpenMM_Context* context,
+                                                              const char* name, double* value) {
     return guarded([&] {
         *value = pick("MonteCarloBondFlip",
                       as<MonteCarloBondFlip>("MonteCarloBondFlip", force).getStatistics(asContext(context)), name);
@@ -268,23 +279,20 @@ int helfrich_shim_MonteCarloBondFlip_getStatistic(OpenMM_Force* force, OpenMM_Co
 
 OpenMM_Force* helfrich_shim_MonteCarloDomainSwap_create(const int* triangles, int numTriangles, double temperature,
                                                         int frequency, double attemptsPerEdge) {
-    OpenMM::Force* created = nullptr;
-    guarded([&] {
-        if (numTriangles < 0)
-            throw OpenMMException("MonteCarloDomainSwap: the number of triangles is negative");
-        vector<int> corners(triangles, triangles + 3 * (size_t) numTriangles);
-        created = new MonteCarloDomainSwap(corners, temperature, frequency, attemptsPerEdge);
+    return made([&] {
+        vector<int> corners = cornersOf("MonteCarloDomainSwap", triangles, numTriangles);
+        return new MonteCarloDomainSwap(corners, temperature, frequency, attemptsPerEdge);
     });
-    return reinterpret_cast<OpenMM_Force*>(created);
 }
 
-int helfrich_shim_MonteCarloDomainSwap_updateParametersInContext(OpenMM_Force* force, OpenMM_Context* context) {
+Helfrich_Status helfrich_shim_MonteCarloDomainSwap_updateParametersInContext(OpenMM_Force* force,
+                                                                             OpenMM_Context* context) {
     return guarded(
         [&] { as<MonteCarloDomainSwap>("MonteCarloDomainSwap", force).updateParametersInContext(asContext(context)); });
 }
 
-int helfrich_shim_MonteCarloDomainSwap_getStatistic(OpenMM_Force* force, OpenMM_Context* context, const char* name,
-                                                    double* value) {
+Helfrich_Status helfrich_shim_MonteCarloDomainSwap_getStatistic(OpenMM_Force* force, OpenMM_Context* context,
+                                                                const char* name, double* value) {
     return guarded([&] {
         *value = pick("MonteCarloDomainSwap",
                       as<MonteCarloDomainSwap>("MonteCarloDomainSwap", force).getStatistics(asContext(context)), name);
@@ -293,22 +301,21 @@ int helfrich_shim_MonteCarloDomainSwap_getStatistic(OpenMM_Force* force, OpenMM_
 
 OpenMM_Force* helfrich_shim_MonteCarloMembraneTension_create(double temperature, double tension, int frequency,
                                                              int axes, double pullingForce) {
-    OpenMM::Force* created = nullptr;
-    guarded([&] {
-        created = new MonteCarloMembraneTension(temperature, tension, frequency, (MonteCarloMembraneTension::Axes) axes,
-                                                pullingForce);
+    return made([&] {
+        return new MonteCarloMembraneTension(temperature, tension, frequency, (MonteCarloMembraneTension::Axes) axes,
+                                             pullingForce);
     });
-    return reinterpret_cast<OpenMM_Force*>(created);
 }
 
-int helfrich_shim_MonteCarloMembraneTension_updateParametersInContext(OpenMM_Force* force, OpenMM_Context* context) {
+Helfrich_Status helfrich_shim_MonteCarloMembraneTension_updateParametersInContext(OpenMM_Force* force,
+                                                                                  OpenMM_Context* context) {
     return guarded([&] {
         as<MonteCarloMembraneTension>("MonteCarloMembraneTension", force).updateParametersInContext(asContext(context));
     });
 }
 
-int helfrich_shim_MonteCarloMembraneTension_getStatistic(OpenMM_Force* force, OpenMM_Context* context, const char* name,
-                                                         double* value) {
+Helfrich_Status helfrich_shim_MonteCarloMembraneTension_getStatistic(OpenMM_Force* force, OpenMM_Context* context,
+                                                                     const char* name, double* value) {
     return guarded([&] {
         *value = pick(
             "MonteCarloMembraneTension",
@@ -318,24 +325,21 @@ int helfrich_shim_MonteCarloMembraneTension_getStatistic(OpenMM_Force* force, Op
 
 OpenMM_Force* helfrich_shim_SurfaceViscosityThermostat_create(const int* triangles, int numTriangles, double friction,
                                                               double temperature, int frequency) {
-    OpenMM::Force* created = nullptr;
-    guarded([&] {
-        if (numTriangles < 0)
-            throw OpenMMException("SurfaceViscosityThermostat: the number of triangles is negative");
-        vector<int> corners(triangles, triangles + 3 * (size_t) numTriangles);
-        created = new SurfaceViscosityThermostat(corners, friction, temperature, frequency);
+    return made([&] {
+        vector<int> corners = cornersOf("SurfaceViscosityThermostat", triangles, numTriangles);
+        return new SurfaceViscosityThermostat(corners, friction, temperature, frequency);
     });
-    return reinterpret_cast<OpenMM_Force*>(created);
 }
 
-int helfrich_shim_SurfaceViscosityThermostat_updateParametersInContext(OpenMM_Force* force, OpenMM_Context* context) {
+Helfrich_Status helfrich_shim_SurfaceViscosityThermostat_updateParametersInContext(OpenMM_Force* force,
+                                                                                   OpenMM_Context* context) {
     return guarded([&] {
         as<SurfaceViscosityThermostat>("SurfaceViscosityThermostat", force)
             .updateParametersInContext(asContext(context));
     });
 }
 
-int helfrich_shim_SurfaceViscosityThermostat_setFrictionParameter(OpenMM_Force* force, const char* name) {
+Helfrich_Status helfrich_shim_SurfaceViscosityThermostat_setFrictionParameter(OpenMM_Force* force, const char* name) {
     return guarded(
         [&] { as<SurfaceViscosityThermostat>("SurfaceViscosityThermostat", force).setFrictionParameter(name); });
 }
@@ -343,11 +347,9 @@ int helfrich_shim_SurfaceViscosityThermostat_setFrictionParameter(OpenMM_Force* 
 // A getter, which gives a value that cannot be if the force is of another class, and a setter.
 #define MOVER_VALUE(Mover, Type, Name, Nothing, Cast)                                                                  \
     Type helfrich_shim_##Mover##_get##Name(OpenMM_Force* force) {                                                      \
-        Type value = Nothing;                                                                                          \
-        guarded([&] { value = as<Mover>(#Mover, force).get##Name(); });                                                \
-        return value;                                                                                                  \
+        return valueOr<Type>(Nothing, [&] { return as<Mover>(#Mover, force).get##Name(); });                           \
     }                                                                                                                  \
-    int helfrich_shim_##Mover##_set##Name(OpenMM_Force* force, Type value) {                                           \
+    Helfrich_Status helfrich_shim_##Mover##_set##Name(OpenMM_Force* force, Type value) {                               \
         return guarded([&] { as<Mover>(#Mover, force).set##Name((Cast) value); });                                     \
     }
 MOVER_VALUE(MonteCarloBondFlip, double, DefaultTemperature, std::nan(""), double)

@@ -56,54 +56,59 @@ struct HelfrichSheet {
 };
 
 int Helfrich_Team_available();
-int Helfrich_Team_create(int threads, HelfrichTeam** team);
+Helfrich_Status Helfrich_Team_create(int threads, HelfrichTeam** team);
 void Helfrich_Team_destroy(HelfrichTeam* team);
 HelfrichCrowd* Helfrich_Crowd_create();
 void Helfrich_Crowd_destroy(HelfrichCrowd* crowd);
 /** Without a team this thread does it alone; forces may be null. No two membranes may have a particle in common. */
-int Helfrich_Crowd_evaluate(HelfrichCrowd* crowd, HelfrichTeam* team, const HelfrichTurn* turns, int64_t numTurns,
-                            int64_t numParticles, const double* positions, double* forces);
+Helfrich_Status Helfrich_Crowd_evaluate(HelfrichCrowd* crowd, HelfrichTeam* team, const HelfrichTurn* turns,
+                                        int64_t numTurns, int64_t numParticles, const double* positions,
+                                        double* forces);
 /** Whether steps of so many particles use a team; it is awake if it evaluates membranes. */
 int Helfrich_Dynamics_usesTeam(int64_t numParticles, int isAwake);
-int Helfrich_Dynamics_create(int64_t numParticles, const double* masses, HelfrichDynamics** dynamics);
+Helfrich_Status Helfrich_Dynamics_create(int64_t numParticles, const double* masses, HelfrichDynamics** dynamics);
 void Helfrich_Dynamics_destroy(HelfrichDynamics* dynamics);
-int Helfrich_Dynamics_verlet(const HelfrichDynamics* dynamics, HelfrichTeam* team,
-                             const HelfrichParticleArrays* particles, double step);
-int Helfrich_Dynamics_langevinMiddle(const HelfrichDynamics* dynamics, HelfrichTeam* team,
-                                     const HelfrichParticleArrays* particles, HelfrichStream* stream, double step,
-                                     double friction, double kT);
-int Helfrich_Dynamics_brownian(const HelfrichDynamics* dynamics, HelfrichTeam* team,
-                               const HelfrichParticleArrays* particles, HelfrichStream* stream, double step,
-                               double friction, double kT);
+Helfrich_Status Helfrich_Dynamics_verlet(const HelfrichDynamics* dynamics, HelfrichTeam* team,
+                                         const HelfrichParticleArrays* particles, double step);
+Helfrich_Status Helfrich_Dynamics_langevinMiddle(const HelfrichDynamics* dynamics, HelfrichTeam* team,
+                                                 const HelfrichParticleArrays* particles, HelfrichStream* stream,
+                                                 double step, double friction, double kT);
+Helfrich_Status Helfrich_Dynamics_brownian(const HelfrichDynamics* dynamics, HelfrichTeam* team,
+                                           const HelfrichParticleArrays* particles, HelfrichStream* stream, double step,
+                                           double friction, double kT);
 /** The 128 random bits of a number, for a key: `bits` gets two values. */
 void Helfrich_Random_bits(const uint32_t* key, uint64_t number, uint64_t* bits);
 /** The normals of a stream's present draw, which ends with it; for tests. */
-int Helfrich_Random_normals(HelfrichStream* stream, int64_t length, double* normals);
-int Helfrich_Viscosity_create(const char* subject, const HelfrichMembrane* membrane, int64_t numParticles,
-                              const double* masses, HelfrichViscosity** viscosity);
+Helfrich_Status Helfrich_Random_normals(HelfrichStream* stream, int64_t length, double* normals);
+Helfrich_Status Helfrich_Viscosity_create(const char* subject, const HelfrichMembrane* membrane, int64_t numParticles,
+                                          const double* masses, HelfrichViscosity** viscosity);
 void Helfrich_Viscosity_destroy(HelfrichViscosity* viscosity);
-int Helfrich_Viscosity_sweep(const char* subject, HelfrichViscosity* viscosity, const HelfrichMembrane* membrane,
-                             int64_t numParticles, double* positions, double* velocities, const double* box,
-                             const HelfrichEdgeBath* bath, HelfrichStream* stream);
-int Helfrich_Dynamics_clear(HelfrichTeam* team, int64_t numParticles, double* forces);
+Helfrich_Status Helfrich_Viscosity_sweep(const char* subject, HelfrichViscosity* viscosity,
+                                         const HelfrichMembrane* membrane, int64_t numParticles, double* positions,
+                                         double* velocities, const double* box, const HelfrichEdgeBath* bath,
+                                         HelfrichStream* stream);
+Helfrich_Status Helfrich_Dynamics_clear(HelfrichTeam* team, int64_t numParticles, double* forces);
 /** `subject` is the class that messages shall name, `boxVectors` null where no surface is periodic. */
-int Helfrich_VariableMasses_create(const char* subject, int64_t numParticles, const double* masses, double density,
-                                   HelfrichVariableMasses** made);
+Helfrich_Status Helfrich_VariableMasses_create(const char* subject, int64_t numParticles, const double* masses,
+                                               double density, HelfrichVariableMasses** made);
 void Helfrich_VariableMasses_destroy(HelfrichVariableMasses* masses);
-int Helfrich_VariableMasses_setSurfaces(const char* subject, HelfrichVariableMasses* masses,
-                                        const HelfrichSheet* sheets, int64_t count);
+Helfrich_Status Helfrich_VariableMasses_setSurfaces(const char* subject, HelfrichVariableMasses* masses,
+                                                    const HelfrichSheet* sheets, int64_t count);
 /** Write a mass for each particle. */
-int Helfrich_VariableMasses_get(const char* subject, HelfrichVariableMasses* masses,
-                                const HelfrichParticleArrays* particles, const double* boxVectors, double* out);
+Helfrich_Status Helfrich_VariableMasses_get(const char* subject, HelfrichVariableMasses* masses,
+                                            const HelfrichParticleArrays* particles, const double* boxVectors,
+                                            double* out);
 /** From a step's start to its new positions, with the forces at the old ones. */
-int Helfrich_VariableMasses_begin(const char* subject, HelfrichVariableMasses* masses, HelfrichTeam* team,
-                                  const HelfrichParticleArrays* particles, const double* boxVectors, double step);
+Helfrich_Status Helfrich_VariableMasses_begin(const char* subject, HelfrichVariableMasses* masses, HelfrichTeam* team,
+                                              const HelfrichParticleArrays* particles, const double* boxVectors,
+                                              double step);
 /** To the step's end, with the forces at the new positions. */
-int Helfrich_VariableMasses_finish(const char* subject, HelfrichVariableMasses* masses, HelfrichTeam* team,
-                                   const HelfrichParticleArrays* particles, const double* boxVectors, double step);
-int Helfrich_VariableMasses_bathe(const char* subject, HelfrichVariableMasses* masses, HelfrichTeam* team,
-                                  const HelfrichParticleArrays* particles, const double* boxVectors,
-                                  HelfrichStream* stream, double time, double friction, double kT);
+Helfrich_Status Helfrich_VariableMasses_finish(const char* subject, HelfrichVariableMasses* masses, HelfrichTeam* team,
+                                               const HelfrichParticleArrays* particles, const double* boxVectors,
+                                               double step);
+Helfrich_Status Helfrich_VariableMasses_bathe(const char* subject, HelfrichVariableMasses* masses, HelfrichTeam* team,
+                                              const HelfrichParticleArrays* particles, const double* boxVectors,
+                                              HelfrichStream* stream, double time, double friction, double kT);
 }
 
 #endif /*HELFRICH_DYNAMICS_H_*/

@@ -22,10 +22,10 @@ namespace {
 /** Forces in a periodic box have a version of their own, since earlier releases would compute something else. */
 const int VERSION = 1, PERIODIC_VERSION = 2;
 
-/** Find the variants of a potential: what they are called, and the name of one. False if there is none. */
+/** Find the forms of a potential: what they are called, and the name of one. False if there is none. */
 bool findForm(const string& force, int index, string& what, string& name) {
     const char *whatText, *nameText;
-    if (Helfrich_Potential_form(force.c_str(), index, &whatText, &nameText) != 0)
+    if (Helfrich_Potential_form(force.c_str(), index, &whatText, &nameText) != Helfrich_Success)
         return false;
     what = whatText;
     name = nameText;
@@ -71,7 +71,7 @@ vector<double> readRows(const string& force, const SerializationNode& node, cons
 vector<string> findSwitches(const string& force) {
     vector<string> names;
     const char* name;
-    while (Helfrich_Potential_switch(force.c_str(), (int) names.size(), &name) == 0)
+    while (Helfrich_Potential_switch(force.c_str(), (int) names.size(), &name) == Helfrich_Success)
         names.push_back(name);
     return names;
 }

@@ -8,7 +8,7 @@
 namespace HelfrichPlugin {
 
 /**
- * Writes any membrane force to XML and reads it back, scalars and variant by their names. One object of
+ * Writes any membrane force to XML and reads it back, scalars and form by their names. One object of
  * this class is registered for each force class.
  */
 class MembraneForceProxy : public OpenMM::SerializationProxy {

@@ -58,12 +58,12 @@ void helfrich_shim_acceptOpenMM(const char* version) {
     acceptedVersion() = version;
 }
 
-int helfrich_shim_registerSerialization() {
+Helfrich_Status helfrich_shim_registerSerialization() {
     if (!isRightVersion()) {
         std::cerr << "openmm-helfrich was built against OpenMM " << HELFRICH_OPENMM_VERSION
                   << " and cannot be used with OpenMM " << OpenMM::Platform::getOpenMMVersion()
                   << ". Rebuild it against this version.\n";
-        return 1;
+        return Helfrich_Failure;
     }
 #define REGISTER(ForceClass) registerForce<ForceClass>(#ForceClass);
     HELFRICH_FORCES(REGISTER)
@@ -81,7 +81,7 @@ int helfrich_shim_registerSerialization() {
     OpenMM::Platform& reference = OpenMM::Platform::getPlatformByName("Reference");
     if (!reference.supportsKernels({kernel}))
         reference.registerKernelFactory(kernel, new VariableMassKernelFactory());
-    return 0;
+    return Helfrich_Success;
 }
 
 void helfrich_shim_registerPlatform() {
@@ -107,7 +107,7 @@ void helfrich_shim_adoptKernels() {
     }
 }
 
-int helfrich_shim_checkPlatform(const void* system, const void* integrator) {
+Helfrich_Status helfrich_shim_checkPlatform(const void* system, const void* integrator) {
     std::string reason;
     try {
         reason = whyNotHelfrich(*static_cast<const OpenMM::System*>(system),
@@ -116,7 +116,7 @@ int helfrich_shim_checkPlatform(const void* system, const void* integrator) {
         reason = error.what();
     }
     helfrich_setLastError(reason.c_str());
-    return reason.empty() ? 0 : 1;
+    return reason.empty() ? Helfrich_Success : Helfrich_Failure;
 }
 
 void* helfrich_shim_createImpl(const void* force) {

@@ -3,6 +3,8 @@
 
 /** What the Rust core calls beside the functions that CApi.h has. The build makes Rust's declarations of these. */
 
+#include "openmm-helfrich/internal/Status.h"
+
 #include <OpenMMCWrapper.h>
 
 extern "C" {
@@ -11,12 +13,12 @@ extern "C" {
 OpenMM_Force* helfrich_shim_createForce(const char* type, const int* triangles, int numTriangles, const double* values,
                                         int numValues, int form);
 void helfrich_shim_acceptOpenMM(const char* version);
-/** Returns 1 if OpenMM is of another version. */
-int helfrich_shim_registerSerialization();
+/** Fails if OpenMM is of another version. */
+Helfrich_Status helfrich_shim_registerSerialization();
 void helfrich_shim_registerPlatform();
 void helfrich_shim_adoptKernels();
 /** As Helfrich_Platform_check(). */
-int helfrich_shim_checkPlatform(const void* system, const void* integrator);
+Helfrich_Status helfrich_shim_checkPlatform(const void* system, const void* integrator);
 void* helfrich_shim_createImpl(const void* force);
 }
 

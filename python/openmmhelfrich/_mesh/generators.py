@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from .._numbers import length as _length
 from .._types import Scalar
-from .._units import length as _length
 from . import lattices, spheres
 
 if TYPE_CHECKING:

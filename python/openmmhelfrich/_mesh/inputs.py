@@ -6,7 +6,7 @@ import operator
 
 import numpy as np
 
-from .._units import length_array
+from .._numbers import length_array
 from ..errors import MeshError
 
 __all__ = [

@@ -7,8 +7,8 @@ import math
 
 import numpy as np
 
+from .._numbers import length as _length
 from .._types import Integers, Scalar
-from .._units import length as _length
 from ..errors import MeshError
 from . import geometry, inputs, periodic
 

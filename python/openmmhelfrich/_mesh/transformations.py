@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from .._numbers import length_array
 from .._types import Values
-from .._units import length_array
 from ..errors import MeshError
 from . import geometry
 from .fluctuate import fluctuating

@@ -32,7 +32,7 @@ pub fn shader_of(potential: &dyn Potential) -> usize {
 }
 
 /// The sums of one term.
-struct Sums {
+struct TermSums {
     /// Where they begin, for each kind of element that has any, and of how many groups they are.
     places: [Option<(usize, usize)>; KINDS.len()],
     derivatives: bool,
@@ -57,7 +57,7 @@ pub struct Frame {
     pub needs: Needs,
     /// How many numbers the results have.
     pub num_results: usize,
-    sums: Vec<Sums>,
+    sums: Vec<TermSums>,
     /// The values of single elements of all terms, end to end, as they were given and as shaders find them.
     given: Vec<f64>,
     pub fields: Vec<f64>,
@@ -201,7 +201,7 @@ impl Frame {
                 self.num_results += groups * values_of_sum;
             }
         }
-        self.sums.push(Sums { places, derivatives: term.wants_derivatives });
+        self.sums.push(TermSums { places, derivatives: term.wants_derivatives });
 
         let field_starts = term.fields.map(|field| {
             let start = if field.is_empty() { NO_FIELD } else { starts.fields as u32 };

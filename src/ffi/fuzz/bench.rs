@@ -7,6 +7,7 @@ use crate::mesh::{Topology, Triangulation};
 use crate::moves::{FlipRules, FlipState, SwapRules, SwapState};
 use crate::potentials::{Contribution, MAX_PARAMETERS, REGISTRY, VertexNumbers};
 use proptest::prelude::*;
+use std::ffi::c_int;
 use std::ptr;
 
 /// What a check comes to.
@@ -56,12 +57,12 @@ impl Drop for Bench {
 }
 
 /// A status, and of a failure its message, which names somebody and is no panic's.
-pub fn told(status: c_int) -> Checked<bool> {
-    if status == 0 {
+pub fn told(status: Status) -> Checked<bool> {
+    if status == Status::Success {
         return Ok(true);
     }
     let said = last_error();
-    prop_assert_eq!(status, 1);
+    prop_assert_eq!(status, Status::Failure);
     prop_assert!(said.contains(": ") && !said.contains("internal error"), "{}", said);
     Ok(false)
 }

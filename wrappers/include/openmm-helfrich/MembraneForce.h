@@ -99,7 +99,7 @@ public:
      */
     const std::string& getEnergyParameterDerivativeName(int index) const;
     /**
-     * Copy scalars, values of elements, variant and switches of this object to a Context. What is a
+     * Copy scalars, values of elements, form and switches of this object to a Context. What is a
      * Context parameter stays as it is there (use Context::setParameter()); changed triangles are
      * refused (use Context::reinitialize()).
      *
@@ -183,15 +183,15 @@ public:
      */
     void setReferenceBox(const std::vector<double>& vectors);
     /**
-     * Get which variant of the potential is computed, 0 if there are none.
+     * Get which form of the potential is computed, 0 if there are none.
      */
     int getForm() const {
         return form;
     }
     /**
-     * Choose the variant of the potential.
+     * Choose the form of the potential.
      *
-     * @param form  the number of the variant
+     * @param form  the number of the form
      */
     void setForm(int form);
     /**
@@ -219,7 +219,7 @@ protected:
      * @param type       the name of the class, under which the core knows the potential
      * @param triangles  the particle indices of the corners, three for each triangle
      * @param values     the scalars, in the core's order
-     * @param form       the number of the variant
+     * @param form       the number of the form
      */
     MembraneForce(const std::string& type, const std::vector<int>& triangles, const std::vector<double>& values,
                   int form = 0);
@@ -300,7 +300,7 @@ inline void MembraneForce::setElementValues(const std::string& name, const std::
     if (!parameters[index].perElement && !values.empty())
         fail(name + " is one value for the whole membrane; it cannot be given for single elements");
     for (size_t i = 0; i < values.size(); i++)
-        if (Helfrich_Potential_check(getTypeName().c_str(), index, values[i]) != 0)
+        if (Helfrich_Potential_check(getTypeName().c_str(), index, values[i]) != Helfrich_Success)
             throw OpenMM::OpenMMException(lastError() + " at index " + std::to_string(i));
     parameters[index].elementValues = values;
 }
@@ -369,7 +369,7 @@ inline void MembraneForce::setForm(int number) {
 
 inline unsigned int MembraneForce::findSwitch(const std::string& name) const {
     const char* found;
-    for (int i = 0; Helfrich_Potential_switch(getTypeName().c_str(), i, &found) == 0; i++)
+    for (int i = 0; Helfrich_Potential_switch(getTypeName().c_str(), i, &found) == Helfrich_Success; i++)
         if (name == found)
             return 1u << i;
     fail("there is no switch called \"" + name + "\"");

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from ._checks import not_negative, plain, positive
+from ..._numbers import not_negative, positive
+from ._modes import plain
 
 
 def area_energy(amplitude, modulus, radius):

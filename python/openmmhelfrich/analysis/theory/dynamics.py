@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from ._checks import check_modes, not_negative, plain, positive
+from ..._numbers import not_negative, positive
+from ._modes import check_modes, plain
 from .spectra import stiffness
 
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ..._numbers import whole_number
-from ._checks import check_modes, not_negative, plain, positive
+from ..._numbers import not_negative, positive, whole_number
+from ._modes import check_modes, plain
 
 
 def stiffness(l):
@@ -84,7 +84,10 @@ def elastic_spectrum(l, kappa_over_kT, young_over_kT, radius, pressure_over_kT=0
         pressure at which the mode buckles.
     """
     check_modes(l)
-    kappa_over_kT, radius = positive("kappa_over_kT", kappa_over_kT), positive("radius", radius)
+    kappa_over_kT, radius = (
+        positive("kappa_over_kT", kappa_over_kT),
+        positive("radius", radius),
+    )
     young_over_kT = not_negative("young_over_kT", young_over_kT)
     n = np.asarray(l, dtype=float) * (np.asarray(l, dtype=float) + 1)
     shear = young_over_kT * radius**2 * 3 * (n - 2) / (3 * n - 2)
@@ -149,7 +152,10 @@ def tense_spectrum(l, kappa_over_kT, tension_over_kT, radius):
         is not stable.
     """
     check_modes(l)
-    kappa_over_kT, radius = positive("kappa_over_kT", kappa_over_kT), positive("radius", radius)
+    kappa_over_kT, radius = (
+        positive("kappa_over_kT", kappa_over_kT),
+        positive("radius", radius),
+    )
     tension, least = np.broadcast_arrays(
         np.asarray(tension_over_kT, dtype=float), -6 * kappa_over_kT / radius**2
     )

@@ -20,8 +20,8 @@ inline std::string lastError() {
 }
 
 /** Throw the core's message if a function of the core has failed. */
-inline void check(int status) {
-    if (status != 0)
+inline void check(Helfrich_Status status) {
+    if (status != Helfrich_Success)
         throw OpenMM::OpenMMException(lastError());
 }
 
