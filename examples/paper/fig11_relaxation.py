@@ -121,11 +121,14 @@ def drift(runs):
     Returns
     -------
     float, float
-        The mean over the runs and its standard error, kJ/mol.
+        The mean over the runs and its standard error, kJ/mol: that of their scatter, or that of the
+        lines where it is larger, as runs that are few may agree by chance.
     """
     runs = np.asarray(runs)
     third = runs.shape[1] // 3
-    return mean_and_error([slope(run[-third:])[0] for run in runs])
+    changes, errors = np.transpose([slope(run[-third:]) for run in runs])
+    mean, error = mean_and_error(changes)
+    return float(mean), float(np.fmax(error, np.sqrt(errors @ errors) / len(runs)))
 
 
 def points_of(starts, runs, duration, time_step):
