@@ -236,11 +236,12 @@ def draw(figure, found, volumes):
         times = results[0]["times"]
         color = {"oblate": "C0", "prolate": "C1"}[shape]
         if mesh == "ordered":
-            axis.plot(times, mean, ":", lw=0.7, color=color, label=f"{shape}, ordered mesh")
+            axis.plot(times, mean, ":", lw=0.7, color=color, label=f"{shape}, ordered")
             continue
         axis.plot(times, mean, lw=0.9, color=color, label=shape)
         axis.fill_between(times, mean - error, mean + error, color=color, alpha=0.3)
         axis.set_title(f"ν = {volume:g}, {INTEGRATORS[integrator]}", fontsize=9)
+    for axis in axes.flat:
         axis.legend(fontsize=7)
     for axis in axes[1]:
         axis.set_xlabel("$t / τ_2$")
