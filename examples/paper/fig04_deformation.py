@@ -3,7 +3,7 @@
 Ordered and random spheres, as they are and fluctuating, are deformed by r → r (1 + u Y20) with u
 from 0 to 1. Small deformations cost E_A = (2/π) kA r0² u⁴ (34), E_V = (3/8π) kV r0³ u⁴ (36) and
 E_b = 8πκ + 12κ u² (38). On fluctuating meshes the barycentric bending models lie above by a share
-that grows with the number of vertices.
+that grows with the number of vertices, see fig04b_bias.py.
 """
 
 import itertools
@@ -27,8 +27,6 @@ from spheres import (
     still_sphere,
 )
 
-# A trend with Ξ beside the softness of the figure.
-OTHER_SOFTNESSES = (0.15, 0.33)
 AMPLITUDES = [0.0, 0.02, 0.05, *np.round(np.arange(0.1, 1.01, 0.1), 1).tolist()]
 
 
@@ -90,56 +88,22 @@ def main():
         )
         for kind in KINDS
     }
-    sizes = figure.choose([5, 7, 10, 14, 20, 30], [5, 10])
-    ladder = [
-        {"kind": "fluctuating random", "subdivision": size, "seed": seed, "amplitudes": [0.0]}
-        | {"softness": softness, "duration": DURATION}
-        for softness in (SOFTNESS, *OTHER_SOFTNESSES)
-        for size in sizes
-        # At other softnesses a trend is enough, and the largest mesh is among the points above.
-        for seed in range(samples if softness == SOFTNESS else 5)
-        if size != largest and (softness == SOFTNESS or size <= 10)
-    ]
-    rungs = figure.sweep(deformation, ladder, description="bias")
-    biases = biases_of(ladder + points, rungs + results)
     figure.parameters(
         f"N = {10 * largest**2 + 2}, r0 = 1000 nm, {samples} samples of each type but the ordered "
         f"one, κ = {RIGIDITY:g} kJ/mol, kA = {AREA_MODULUS:g} kJ/mol/nm², kV = {VOLUME_MODULUS:g} "
         f"kJ/mol/nm³. Fluctuating meshes: runs of {DURATION:g} τ_h at Ξ = {SOFTNESS:g} with U_A, "
         "U_V and U_h, then put back on the sphere."
     )
-    folded = sum(result.get("folded", 0) for result in results + rungs)
+    folded = sum(result["folded"] for result in results)
     if folded:
-        runs = sum("fluctuating" in point["kind"] for point in points + ladder)
+        runs = sum("fluctuating" in point["kind"] for point in points)
         figure.note(
             f"{folded} of {runs} runs of fluctuating meshes folded a triangle and was made again."
         )
     check_area_and_volume(figure, energies)
     check_bending(figure, energies)
-    check_bias(figure, biases[SOFTNESS])
-    note_bias(figure, biases)
-    draw(figure, energies, biases[SOFTNESS])
+    draw(figure, energies)
     figure.finish()
-
-
-def biases_of(points, results):
-    """Bending energies of fluctuating random spheres over 8πκ less 1, in per cent.
-
-    Returns
-    -------
-    dict
-        {Ξ: {N: (means, errors)}}, both of shape (4,) for the four bending models.
-    """
-    samples = {}
-    for point, result in zip(points, results, strict=True):
-        if point["kind"] == "fluctuating random":
-            sizes = samples.setdefault(point["softness"], {})
-            excess = result["energies"][0, 2:] / theory.bending_energy(0, RIGIDITY) - 1
-            sizes.setdefault(10 * point["subdivision"] ** 2 + 2, []).append(100 * excess)
-    return {
-        softness: {n: mean_and_error(sizes[n]) for n in sorted(sizes)}
-        for softness, sizes in samples.items()
-    }
 
 
 def global_theory(u):
@@ -189,46 +153,9 @@ def check_bending(figure, energies):
             figure.check(what, value, 1, tolerance(figure), error)
 
 
-def check_bias(figure, bias):
-    """What barycentric areas add to the energy of the same curvatures over Voronoi areas."""
-    labels = list(SCHEMES)
-    for barycentric, voronoi in BARYCENTRIC.items():
-        column, other = labels.index(barycentric), labels.index(voronoi)
-        added = {n: means[column] - means[other] for n, (means, _) in bias.items()}
-        models = f"{SCHEMES[barycentric]} less {SCHEMES[voronoi]}"
-        for n, expected in {252: 1.5, 9002: 4.0}.items():
-            if n in bias:
-                error = np.hypot(*bias[n][1][[column, other]])
-                what = f"bias of barycentric areas at N = {n}, {models}"
-                figure.check(what, added[n], expected, 0.5, error, " %")
-        figure.claim(
-            f"the bias rises with N, {models}",
-            ", ".join(f"{value:.2f} %" for value in added.values()),
-            "each more than the one before",
-            all(a < b for a, b in itertools.pairwise(added.values())),
-        )
-
-
-def note_bias(figure, biases):
-    figure.note(
-        f"The softness of the fluctuating meshes is our choice: the bias depends on it, and Ξ = "
-        f"{SOFTNESS:g} is where it is the paper's at both ends. The table has others, and what "
-        "comes with coarse meshes whatever the areas are."
-    )
-    figure.table(
-        "Bias of E_b on fluctuating random meshes, per cent:",
-        ["Ξ", "N", *SCHEMES.values()],
-        [
-            [f"{softness:g}", f"{n}", *(f"{m:.2f} ± {e:.2f}" for m, e in zip(*found, strict=True))]
-            for softness, sizes in sorted(biases.items())
-            for n, found in sizes.items()
-        ],
-    )
-
-
-def draw(figure, energies, bias):
+def draw(figure, energies):
     u = np.array(AMPLITUDES)
-    graph, axes = plt.subplots(1, 3, figsize=(11, 3.8), layout="constrained")
+    graph, axes = plt.subplots(1, 2, figsize=(8, 3.8), layout="constrained")
     for column, (name, expected) in enumerate(global_theory(u).items()):
         axes[0].loglog(u[1:], expected[1:], color="black", lw=1, label="theory" if column else None)
         for kind in KINDS:
@@ -245,17 +172,12 @@ def draw(figure, energies, bias):
             axes[1].plot(
                 u, mean, MARKERS[kind], label=label if kind == "ordered" else None, **style
             )
-        means, errors = np.array([(mean[place], error[place]) for mean, error in bias.values()]).T
-        axes[2].errorbar(list(bias), means, errors, fmt="o-", ms=4, color=color, label=label)
     bending = theory.bending_energy(u, RIGIDITY) / sphere
     axes[1].plot(u, bending, color="black", lw=1, label="theory")
     axes[1].set(xlabel="$u_{20}$", ylabel="$E_b / 8πκ$")
-    axes[2].set(xscale="log", xlabel="N", ylabel="$E_b / 8πκ − 1$ (%), fluctuating random")
     for axis in axes:
         axis.legend(fontsize=6)
-    caption = (
-        "Left and middle: circles ordered, squares random, triangles fluctuating (up: ordered)."
-    )
+    caption = "Circles ordered, squares random, triangles fluctuating (up: ordered)."
     figure.save(graph, "", caption)
 
 

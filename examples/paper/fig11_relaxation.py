@@ -47,9 +47,10 @@ def relaxation(
     Returns
     -------
     dict
-        "energies", shape (samples + 1,), kJ/mol, at "times", τ_2; "tau_2", ps; "temperature", K,
-        the mean over the last third.
+        "energies", shape (samples + 1,), kJ/mol, at "times", τ_2, fewer if the run failed;
+        "failed", why it did, or ""; "tau_2", ps; "temperature", K, the mean over the last third.
     """
+    import openmm
     import openmmhelfrich as helfrich
     from fluctuations import integrator_of, parts_of
     from openmm import unit
@@ -65,16 +66,22 @@ def relaxation(
     # τ_2 of the sphere of equal area.
     steps = round(duration * vesicle.tau_2 / samples / time_step)
     energies, kinetic = [vesicle.energies(context)["bending"]], []
+    failed = ""
     for _ in range(samples):
-        simulation.step(steps)
+        try:
+            simulation.step(steps)
+        except openmm.OpenMMException as error:
+            failed = str(error)
+            break
         energies.append(vesicle.energies(context)["bending"])
         energy = context.getState(energy=True).getKineticEnergy()
         kinetic.append(energy.value_in_unit(unit.kilojoule_per_mole))
-    late = np.mean(kinetic[-(samples // 3) :])
+    late = np.mean(kinetic[-(samples // 3) :]) if kinetic else 0.0
     per_kelvin = 1.5 * num_vertices * helfrich.analysis.theory.BOLTZMANN
     return {
+        "failed": failed,
         "energies": np.array(energies),
-        "times": np.arange(samples + 1) * steps * time_step / vesicle.tau_2,
+        "times": np.arange(len(energies)) * steps * time_step / vesicle.tau_2,
         "tau_2": vesicle.tau_2,
         "temperature": float(late / per_kelvin),
     }
@@ -121,11 +128,14 @@ def drift(runs):
     Returns
     -------
     float, float
-        The mean over the runs and its standard error, kJ/mol.
+        The mean over the runs and its standard error, kJ/mol: that of their scatter, or that of the
+        lines where it is larger, as runs that are few may agree by chance.
     """
     runs = np.asarray(runs)
     third = runs.shape[1] // 3
-    return mean_and_error([slope(run[-third:])[0] for run in runs])
+    changes, errors = np.transpose([slope(run[-third:]) for run in runs])
+    mean, error = mean_and_error(changes)
+    return float(mean), float(np.fmax(error, np.sqrt(errors @ errors) / len(runs)))
 
 
 def points_of(starts, runs, duration, time_step):
@@ -167,12 +177,36 @@ def main():
         f"Ξ = {SOFTNESS:g}, LangevinMiddle with γ = 0.01/ps and Verlet, from velocities of 300 K, "
         f"Δt = {time_step:g} ps, {duration:g} τ_2, τ_2 = {results[0]['tau_2']:.0f} ps."
     )
+    check_lived(figure, found)
+    # What is left are the runs that went to the end.
+    found = {key: [r for r in runs if not r.get("failed")] for key, runs in found.items()}
+    found = {key: runs for key, runs in found.items() if runs}
     for key in found:
         if key[0] == "random":
             check(figure, key, found)
     tabulate(figure, found)
     draw(figure, found, volumes)
     figure.finish()
+
+
+def check_lived(figure, found):
+    """How many runs from each start went to the end."""
+    for (mesh, integrator, shape, volume), runs in found.items():
+        failed = [run for run in runs if run.get("failed")]
+        if mesh != "random" and not failed:
+            continue
+        figure.claim(
+            f"{INTEGRATORS[integrator]}, {mesh}, {shape}, ν = {volume:g}: runs to the end",
+            f"{len(runs) - len(failed)} of {len(runs)}",
+            "all",
+            not failed,
+        )
+        if failed:
+            times = ", ".join(f"{run['times'][-1]:.2f}" for run in failed)
+            figure.note(
+                f"{INTEGRATORS[integrator]}, {mesh}, {shape}, ν = {volume:g}: failed after {times} "
+                f"τ_2. The first: {failed[0]['failed'][:110]}"
+            )
 
 
 def check(figure, key, found):
@@ -233,12 +267,14 @@ def draw(figure, found, volumes):
         times = results[0]["times"]
         color = {"oblate": "C0", "prolate": "C1"}[shape]
         if mesh == "ordered":
-            axis.plot(times, mean, ":", lw=0.7, color=color, label=f"{shape}, ordered mesh")
+            axis.plot(times, mean, ":", lw=0.7, color=color, label=f"{shape}, ordered")
             continue
         axis.plot(times, mean, lw=0.9, color=color, label=shape)
         axis.fill_between(times, mean - error, mean + error, color=color, alpha=0.3)
         axis.set_title(f"ν = {volume:g}, {INTEGRATORS[integrator]}", fontsize=9)
-        axis.legend(fontsize=7)
+    for axis in axes.flat:
+        if axis.lines:
+            axis.legend(fontsize=7)
     for axis in axes[1]:
         axis.set_xlabel("$t / τ_2$")
     for row in axes:
