@@ -99,6 +99,7 @@ def fluctuate(
     frames_per_period,
     settle_periods,
     seed,
+    random=False,
 ):
     """Equilibrium fluctuations in one LangevinMiddle run.
 
@@ -117,7 +118,9 @@ def fluctuate(
     frames_per_period : int
         Samples in a time of τ_2.
     seed : int
-        Of velocities and noise.
+        Of velocities and noise, and of a random mesh.
+    random : bool
+        Whether the mesh is a random one instead of the ordered one.
 
     Returns
     -------
@@ -128,7 +131,8 @@ def fluctuate(
         (SNAPSHOTS, num_vertices, 3), nm; "temperature", K; "interval", ps between frames;
         "time_step", ps.
     """
-    vesicle = vesicle_of(num_vertices, rigidity, radius, softness, scheme)
+    mesh_seed = seed if random else None
+    vesicle = vesicle_of(num_vertices, rigidity, radius, softness, scheme, mesh_seed)
     # The bound is that of bending waves and grows as κ falls, but the repulsion of the heights does
     # not get any slower: of four runs at 10 kBT with 1.1 ps, one blew up.
     time_step = TIME_STEP * vesicle.max_time_step * min(1, rigidity / RIGIDITY) ** 0.5
