@@ -152,3 +152,16 @@ def test_mean_shapes_are_no_fluctuation_and_powers_come_back():
     found, error = exponent(x, 3.1 * x**0.7, 0.03 * 3.1 * x**0.7)
     assert found == pytest.approx(0.7)
     assert error == pytest.approx(0.03 / np.sqrt(np.sum((np.log(x) - np.log(x).mean()) ** 2)))
+
+
+def test_a_run_that_breaks_down_is_made_again_with_half_of_its_step():
+    from fluctuations import relax
+
+    found = relax(162, 0.037, "verlet", 0.0, 2, 0.3, 120.0, time_step=30.0, seed=1)
+    # 2.7 ps is the bound of the vesicle; with fifteen or so runs of this length may last.
+    assert found["time_step"] in (15.0, 7.5)
+    assert found["interval"] == pytest.approx(120, abs=8)
+    assert found["temperature"] == pytest.approx(300, abs=100)
+    assert np.isfinite(found["fit"]).all()
+    # A usual step stays as it is.
+    assert relax(162, 0.037, "verlet", 0.0, 2, 0.1, 120.0, 1.5, seed=1)["time_step"] == 1.5
