@@ -28,6 +28,9 @@ VERSION = 2
 # Time step over the bound 0.1 √Ξ τ_fastest of Fig. 5.
 TIME_STEP = 0.75
 
+# How often the time step of a run that breaks down is halved.
+HALVINGS = 2
+
 # Displacements within the surface are fitted with harmonics up to this l.
 DISPLACEMENT_LMAX = 8
 
@@ -99,6 +102,7 @@ def fluctuate(
     frames_per_period,
     settle_periods,
     seed,
+    random=False,
 ):
     """Equilibrium fluctuations in one LangevinMiddle run.
 
@@ -117,7 +121,9 @@ def fluctuate(
     frames_per_period : int
         Samples in a time of τ_2.
     seed : int
-        Of velocities and noise.
+        Of velocities and noise, and of a random mesh.
+    random : bool
+        Whether the mesh is a random one instead of the ordered one.
 
     Returns
     -------
@@ -128,7 +134,8 @@ def fluctuate(
         (SNAPSHOTS, num_vertices, 3), nm; "temperature", K; "interval", ps between frames;
         "time_step", ps.
     """
-    vesicle = vesicle_of(num_vertices, rigidity, radius, softness, scheme)
+    mesh_seed = seed if random else None
+    vesicle = vesicle_of(num_vertices, rigidity, radius, softness, scheme, mesh_seed)
     # The bound is that of bending waves and grows as κ falls, but the repulsion of the heights does
     # not get any slower: of four runs at 10 kBT with 1.1 ps, one blew up.
     time_step = TIME_STEP * vesicle.max_time_step * min(1, rigidity / RIGIDITY) ** 0.5
@@ -185,7 +192,7 @@ def relax(num_vertices, softness, integrator, friction, lmax, periods, interval,
     interval : float
         Between frames, ps.
     time_step : float
-        ps.
+        ps; a run that breaks down is made again with half of it, up to HALVINGS times.
     seed : int
         Of the mesh, of velocities and noise.
 
@@ -193,32 +200,63 @@ def relax(num_vertices, softness, integrator, friction, lmax, periods, interval,
     -------
     dict
         "fit", amplitudes of shape (num_frames, (lmax+1)²), and "space", those of the paper's sum
-        over vertices in the frame of the laboratory; "interval", ps between frames; "temperature",
-        K, which means nothing without inertia.
+        over vertices in the frame of the laboratory; "interval", ps between frames; "time_step",
+        the one with which it lasted, ps; "temperature", K, which means nothing without inertia.
     """
     vesicle = vesicle_of(num_vertices, RIGIDITY, RADIUS, softness, "Julicher", mesh_seed=seed)
-    settling_step = TIME_STEP * vesicle.max_time_step
-    settling = integrator_of("langevin", 2 * np.pi / vesicle.tau_2, settling_step, seed)
-    simulation = vesicle.simulation(settling)
-    simulation.context.setVelocitiesToTemperature(TEMPERATURE, seed)
-    settling.step(round(3 * vesicle.tau_2 / settling_step))
-    state = simulation.context.getState(getPositions=True, getVelocities=True)
-    last = integrator_of(integrator, friction, time_step, seed + 1000)
-    context = vesicle.simulation(last).context
-    context.setPositions(state.getPositions())
-    context.setVelocities(state.getVelocities())
-    stride = max(1, round(interval / time_step))
-    num_frames = round(periods * vesicle.tau_2 / (stride * time_step))
-    positions, temperature = frames_of(context, last, num_frames, stride)
+    for halvings in range(HALVINGS + 1):
+        step = time_step / 2**halvings
+        stride = max(1, round(interval / step))
+        num_frames = round(periods * vesicle.tau_2 / (stride * step))
+        last = integrator_of(integrator, friction, step, seed + 1000)
+        try:
+            positions, temperature = follow(vesicle, last, num_frames, stride, seed, 2**halvings)
+            break
+        except openmm.OpenMMException:
+            # One run in many meets a triangle that a long step throws about.
+            if halvings == HALVINGS:
+                raise
     triangles = vesicle.mesh.triangles
     aligned = Displacements(vesicle.mesh.vertices, 1).aligned(positions)
     return {
         # The mean of the vertices is centre enough for motion, and takes a quarter of the time.
         "fit": mode_amplitudes(aligned, triangles, lmax, centre="mass").astype(np.float32),
         "space": mode_amplitudes(positions, triangles, lmax, "vertices").astype(np.float32),
-        "interval": stride * time_step,
+        "interval": stride * step,
+        "time_step": step,
         "temperature": temperature,
     }
+
+
+def follow(vesicle, integrator, num_frames, stride, seed, shorter=1):
+    """Frames of an integrator from equilibrium, to which LangevinMiddle brings it in 3 τ_2.
+
+    Parameters
+    ----------
+    vesicle : Vesicle
+    integrator : openmm.Integrator
+    num_frames, stride : int
+        See `frames_of`.
+    seed : int
+        Of velocities and noise of the time before.
+    shorter : int
+        By which its usual time step is divided.
+
+    Returns
+    -------
+    tuple
+        That of `frames_of`.
+    """
+    step = TIME_STEP * vesicle.max_time_step / shorter
+    settling = integrator_of("langevin", 2 * np.pi / vesicle.tau_2, step, seed)
+    simulation = vesicle.simulation(settling)
+    simulation.context.setVelocitiesToTemperature(TEMPERATURE, seed)
+    settling.step(round(3 * vesicle.tau_2 / step))
+    state = simulation.context.getState(getPositions=True, getVelocities=True)
+    context = vesicle.simulation(integrator).context
+    context.setPositions(state.getPositions())
+    context.setVelocities(state.getVelocities())
+    return frames_of(context, integrator, num_frames, stride)
 
 
 def frames_of(context, integrator, num_frames, stride):

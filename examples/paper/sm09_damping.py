@@ -12,7 +12,15 @@ what of a damping and of a frequency is the beat with flow of the vertices withi
 import matplotlib.pyplot as plt
 import numpy as np
 from _paper import Figure, mean_and_error
-from fig09_10_autocorrelation import FULL, QUICK, frequency_of, modes_in, modes_of, points_of
+from fig09_10_autocorrelation import (
+    FULL,
+    QUICK,
+    frequency_of,
+    modes_in,
+    modes_of,
+    note_halved,
+    points_of,
+)
 from fluctuations import SOFTNESS, VERSION, relax
 from openmmhelfrich.analysis import autocorrelation, theory
 from scipy.optimize import curve_fit
@@ -39,6 +47,7 @@ def main():
         # The bound of stable steps goes with √Ξ.
         step = setting.time_step * (softness / SOFTNESS[0]) ** 0.5
         runs = figure.sweep(relax, points_of([setting._replace(time_step=step)], softness), VERSION)
+        note_halved(figure, f"Ξ = {softness:g}", runs, step)
         kelvin.append(mean_and_error([run["temperature"] for run in runs]))
         found[softness] = [damping_of(runs, l, setting.num_vertices, softness) for l in modes]
     figure.parameters(

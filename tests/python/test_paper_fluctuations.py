@@ -129,3 +129,31 @@ def test_fits_of_meshes_find_what_spectra_were_made_with():
     )
     young, young_error = fit_shear(num_vertices, rigidity, l, ratio, error, 2.5)
     assert abs(young - 0.15) < 4 * young_error < 0.15
+
+
+def test_mean_shapes_are_no_fluctuation_and_powers_come_back():
+    from fig06e_radius import exponent, power
+
+    random = np.random.default_rng(11)
+    shape = random.normal(size=16)
+    runs = [{"fit": 0.5 * random.normal(size=(4000, 16)) + shape} for _ in range(3)]
+    for run in runs:
+        assert power(run, 3, still=False) == pytest.approx(0.25, abs=0.02)
+        assert power(run, 3) == pytest.approx(0.25 + np.mean(shape[9:] ** 2), abs=0.05)
+    x = np.array([252, 492, 1002, 1962])
+    found, error = exponent(x, 3.1 * x**0.7, 0.03 * 3.1 * x**0.7)
+    assert found == pytest.approx(0.7)
+    assert error == pytest.approx(0.03 / np.sqrt(np.sum((np.log(x) - np.log(x).mean()) ** 2)))
+
+
+def test_a_run_that_breaks_down_is_made_again_with_half_of_its_step():
+    from fluctuations import relax
+
+    found = relax(162, 0.037, "verlet", 0.0, 2, 0.3, 120.0, time_step=30.0, seed=1)
+    # 2.7 ps is the bound of the vesicle; with fifteen or so runs of this length may last.
+    assert found["time_step"] in (15.0, 7.5)
+    assert found["interval"] == pytest.approx(120, abs=8)
+    assert found["temperature"] == pytest.approx(300, abs=100)
+    assert np.isfinite(found["fit"]).all()
+    # A usual step stays as it is.
+    assert relax(162, 0.037, "verlet", 0.0, 2, 0.1, 120.0, 1.5, seed=1)["time_step"] == 1.5

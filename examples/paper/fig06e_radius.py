@@ -1,0 +1,260 @@
+"""Fig. 6 c and e: spectra and the Young modulus Y against radius and number of vertices.
+
+Random meshes, each sample on its own. The paper scales N with r0², so that a radius changes nothing
+but the size; and it has Y, in kBT/nm², as a function of Ξ alone, (45). Here N and r0 are varied
+apart too at Ξ = 0.59, which tells Y r0² ∝ r0² at given N, as a material of that Y has it, from
+Y r0² ∝ N kBT at any r0, an entropy of the vertices. Y is that of (A18) for l = 2 … 5, with what
+short waves add (`mesh_corrections.py`). The mean shape of a mesh is not part of fluctuations: its
+square is the product of the means over the two halves of a run.
+"""
+
+from typing import NamedTuple
+
+import matplotlib.pyplot as plt
+import numpy as np
+from _paper import Figure, mean_and_error
+from fluctuations import RIGIDITY, SOFTNESS, VERSION, fluctuate
+from mesh_corrections import SOFTENING, fit_shear
+from openmmhelfrich.analysis import theory
+
+SOFT, HARD = SOFTNESS[0], SOFTNESS[-1]
+L = np.arange(2, 6)
+
+
+class Mesh(NamedTuple):
+    """N, r0 in nm, Ξ, and whether the mesh is random."""
+
+    num_vertices: int
+    radius: float = 1000.0
+    softness: float = HARD
+    random: bool = True
+
+
+FULL = {
+    "scaled": ((252, 500.0), (492, 700.0), (1002, 1000.0), (1962, 1400.0)),
+    "radii": ((1002, 500.0), (1002, 1000.0), (1002, 2000.0)),
+    "vertices": ((252, 1000.0), (492, 1000.0), (1002, 1000.0), (1962, 1000.0)),
+    "ordered": 1002,
+    "samples": 10,
+}
+QUICK = {
+    "scaled": ((252, 700.0), (492, 1000.0)),
+    "radii": ((252, 700.0), (252, 1000.0)),
+    "vertices": ((252, 1000.0), (492, 1000.0)),
+    "ordered": 252,
+    "samples": 3,
+}
+
+
+def meshes_of(size):
+    """All meshes that are needed, each once."""
+    found = [Mesh(*pair) for name in ("scaled", "radii", "vertices") for pair in size[name]]
+    found += [Mesh(*pair, SOFT) for pair in size["scaled"]]
+    found.append(Mesh(size["ordered"], random=False))
+    return list(dict.fromkeys(found))
+
+
+def arguments_of(mesh, place, samples):
+    """The arguments of `fluctuate`, with seeds of their own for each mesh."""
+    return [
+        {
+            **mesh._asdict(),
+            "rigidity": RIGIDITY,
+            "scheme": "Julicher",
+            "lmax": 7,
+            "periods": 10,
+            "frames_per_period": 8,
+            "settle_periods": 2,
+            "seed": 60_000 + 100 * place + sample,
+        }
+        for sample in range(samples)
+    ]
+
+
+def power(run, l, still=True):
+    """⟨|u_lm|²⟩ of a run, the mean over m, with or without the square of its mean shape."""
+    modes = run["fit"][:, l**2 : (l + 1) ** 2].astype(float)
+    total = (modes**2).mean()
+    if still:
+        return total
+    first, second = (half.mean(axis=0) for half in np.array_split(modes, 2))
+    return total - (first * second).mean()
+
+
+def ratios(runs, still=False, orders=L):
+    """⟨|u_lm|²⟩ over (A17) for each l, and its error from the runs."""
+    powers = [[power(run, l, still) for l in orders] for run in runs]
+    mean, error = mean_and_error(powers)
+    fluid = theory.fluid_spectrum(orders, RIGIDITY)
+    return mean / fluid, error / fluid
+
+
+def modulus(mesh, runs):
+    """Y r0²/kBT and its error."""
+    y, error = fit_shear(mesh.num_vertices, RIGIDITY, L, *ratios(runs), SOFTENING["Julicher"])
+    return mesh.num_vertices * y, mesh.num_vertices * error
+
+
+def exponent(x, values, errors):
+    """The power of x with which values grow, and its error, by weighted least squares of logs."""
+    logs, weights = np.log(x), (values / errors) ** 2
+    centred = logs - np.average(logs, weights=weights)
+    scale = np.sum(weights * centred**2)
+    return float(np.sum(weights * centred * np.log(values)) / scale), float(scale**-0.5)
+
+
+def main():
+    figure = Figure("fig06e", "Fig. 6 c, e", "Spectra and Y against radius and N", __doc__)
+    size = figure.choose(FULL, QUICK)
+    meshes = meshes_of(size)
+    points = [
+        arguments
+        for place, mesh in enumerate(meshes)
+        for arguments in arguments_of(mesh, place, size["samples"])
+    ]
+    results = iter(figure.sweep(fluctuate, points, VERSION))
+    runs = {mesh: [next(results) for _ in range(size["samples"])] for mesh in meshes}
+    figure.parameters(
+        f"κ = {RIGIDITY:g} kBT, Jülicher, kV = 0; LangevinMiddle, 300 K, γ = ω_2, "
+        f"Δt = 0.075 √Ξ τ_fastest, {size['samples']} samples of 10 τ_2"
+    )
+    found = {mesh: modulus(mesh, of_mesh) for mesh, of_mesh in runs.items() if mesh.random}
+    check_scaled(figure, size, runs, found)
+    check_apart(figure, size, found)
+    check_spike(figure, size, runs)
+    figure.table(
+        "⟨|u_lm|²⟩ that fluctuates over (A17), and the modulus:",
+        ["mesh", *(f"l = {l}" for l in L), "Y r0²/kBT", "Y r0² / N kBT", "Y / kBT, 1/nm²"],
+        [row(mesh, runs[mesh], found[mesh]) for mesh in found],
+    )
+    draw(figure, size, runs, found)
+    figure.finish()
+
+
+def row(mesh, runs, found):
+    value, error = found
+    cells = [f"N = {mesh.num_vertices}, r0 = {mesh.radius:g} nm, Ξ = {mesh.softness:g}"]
+    cells += [f"{one:.2f} ± {e:.2f}" for one, e in zip(*ratios(runs), strict=True)]
+    for scale, form in ((1, "{:.0f} ± {:.0f}"), (mesh.num_vertices, "{:.3f} ± {:.3f}")):
+        cells.append(form.format(value / scale, error / scale))
+    cells.append(f"{value / mesh.radius**2:.2e} ± {error / mesh.radius**2:.1e}")
+    return cells
+
+
+def check_scaled(figure, size, runs, found):
+    """N ∝ r0²: the spectrum of soft meshes is that of one size, and Y of hard ones is (45)."""
+    (first, *others) = (Mesh(*pair, SOFT) for pair in size["scaled"])
+    reference, reference_error = ratios(runs[first])
+    for mesh in others:
+        value, error = ratios(runs[mesh])
+        both = np.hypot(error, reference_error)[0]
+        figure.check(
+            f"Ξ = {SOFT:g}, l = 2 over (A17), r0 = {mesh.radius:g} nm less {first.radius:g} nm, "
+            "N ∝ r0²",
+            value[0] - reference[0],
+            0,
+            3 * both,
+            both,
+            why="the modulus of a mesh with fixed neighbours is an entropy of its N vertices, and "
+            "Y r0² grows with N (rows of Ξ = 0.59 below)",
+        )
+    expected = theory.young_modulus(HARD)
+    for pair in size["scaled"]:
+        mesh = Mesh(*pair)
+        value, error = (one / mesh.radius**2 for one in found[mesh])
+        figure.check(
+            f"Ξ = {HARD:g}, Y/kBT, N = {mesh.num_vertices}, r0 = {mesh.radius:g} nm, (45), in "
+            "1e-3/nm²",
+            1e3 * value,
+            1e3 * expected,
+            3e3 * error,
+            1e3 * error,
+        )
+
+
+def check_apart(figure, size, found):
+    """N and r0 varied apart: powers of each with which Y r0² grows."""
+    for name, what, column, wanted in (
+        ("radii", "r0 at one N", 1, 2),
+        ("vertices", "N at one r0", 0, 1),
+    ):
+        meshes = [Mesh(*pair) for pair in size[name]]
+        values, errors = np.array([found[mesh] for mesh in meshes]).T
+        if not (values > 0).all():
+            figure.claim(f"power of {what} in Y r0²", "a modulus is negative", "positive", False)
+            continue
+        x, error = exponent([pair[column] for pair in size[name]], values, errors)
+        figure.check(
+            f"Ξ = {HARD:g}: power of {what} in Y r0²" + (", if Y is (45)" if wanted == 2 else ""),
+            x,
+            wanted,
+            3 * error,
+            error,
+            why="Y r0² is N kBT times a function of Ξ, whatever r0 is: an entropy of the vertices, "
+            "not an energy per area; next row",
+        )
+        if name == "radii":
+            figure.check(
+                f"Ξ = {HARD:g}: power of {what} in Y r0², if Y is an entropy",
+                x,
+                0,
+                3 * error,
+                error,
+            )
+
+
+def check_spike(figure, size, runs):
+    """The mean shape at l = 6, which an ordered mesh has and a random one should not."""
+    orders = np.array([5, 6, 7])
+    for random, name in ((True, "random"), (False, "ordered")):
+        mesh = Mesh(size["ordered"], random=random)
+        values, errors = ratios(runs[mesh], True, orders)
+        around = (values[0] + values[2]) / 2
+        error = np.hypot(errors[1], np.hypot(errors[0], errors[2]) / 2) / around
+        figure.check(
+            f"Ξ = {HARD:g}, {name} mesh: l = 6 over the mean of 5 and 7",
+            values[1] / around,
+            1,
+            0.2,
+            error,
+            why="an ordered mesh has the mean shape of an icosahedron, whose corners are at its "
+            "twelve vertices of five neighbours; random meshes have none (row above)",
+        )
+
+
+def draw(figure, size, runs, found):
+    page, axes = plt.subplots(1, 3, figsize=(11, 3.4), layout="constrained")
+    for axis, softness in zip(axes, (SOFT, HARD), strict=False):
+        for index, pair in enumerate(size["scaled"]):
+            mesh = Mesh(*pair, softness)
+            axis.errorbar(
+                L + 0.05 * index,
+                *ratios(runs[mesh]),
+                fmt="o-",
+                ms=4,
+                lw=0.8,
+                label=f"r0 = {mesh.radius:g} nm, N = {mesh.num_vertices}",
+            )
+        axis.axhline(1, color="black", lw=0.8)
+        axis.set(xlabel="l", ylabel="⟨|u_lm|²⟩ / (A17)", title=f"Ξ = {softness:g}", ylim=(0, None))
+        axis.set_xticks(L)
+        axis.legend(fontsize=7)
+    for name, label in (
+        ("radii", f"N = {size['radii'][0][0]}"),
+        ("vertices", "r0 = 1000 nm"),
+        ("scaled", "N ∝ r0²"),
+    ):
+        meshes = [Mesh(*pair) for pair in size[name]]
+        x = [mesh.radius**2 / mesh.num_vertices for mesh in meshes]
+        values, errors = np.array([found[mesh] for mesh in meshes]).T
+        counts = np.array([mesh.num_vertices for mesh in meshes])
+        axes[2].errorbar(x, values / counts, errors / counts, fmt="o", ms=4, label=label)
+    axes[2].set(xscale="log", xlabel="r0² / N (nm²)", ylabel="Y r0² / N kBT", ylim=(0, None))
+    grid = np.geomspace(200, 4500, 50)
+    axes[2].plot(grid, theory.young_modulus(HARD) * grid, color="black", lw=0.8, label="(45)")
+    axes[2].legend(fontsize=7)
+    figure.save(page, caption="Spectra for N ∝ r0², and Y with N and r0 varied apart")
+
+
+if __name__ == "__main__":
+    main()
