@@ -1,5 +1,6 @@
 """Sphinx's configuration of the site, which `make docs` builds of the Markdown here."""
 
+import logging
 import os
 import sys
 from pathlib import Path
@@ -26,14 +27,15 @@ highlight_language = "text"
 # Anchors of headings are GitHub's, and a link to one that is not there is a warning.
 myst_heading_anchors = 4
 
-# Tutorials run as a reader runs them: from their own folder. What has run before with the same package is taken from the
-# cache; an error in a cell ends the build.
+# Tutorials run as a reader runs them, from their own folder. What has run before with the same
+# package is taken from the cache; an error in a cell ends the build.
 nb_execution_mode = "cache"
 nb_execution_cache_path = str(notebooks.cache_folder())
 nb_execution_timeout = 600  # s, for a cell
 nb_execution_raise_on_error = True
 nb_execution_show_tb = True
 nb_merge_streams = True
+logging.getLogger("traitlets").setLevel(logging.ERROR)  # not that a notebook runs
 # Several run side by side, so one thread is enough for each.
 for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "OPENMM_CPU_THREADS"):
     os.environ[variable] = "1"

@@ -1,6 +1,7 @@
 """What the documentation shows is so: code runs, TOML is read, commands and options exist.
 
-Every fenced block of README.md, CONTRIBUTING.md and docs/*.md has a language. Comments in front of
+Every fenced block of README.md, CONTRIBUTING.md, docs/*.md and docs/tutorials/*.md has a language;
+cells of the tutorials, {code-cell}, run when the site is built. Comments in front of
 one, which pages do not show, say what it needs:
 
     <!-- test: before           lines of Python that are run first, up to the end of the comment
@@ -30,7 +31,12 @@ else:
     import tomli as tomllib
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
+PAGES = [
+    ROOT / "README.md",
+    ROOT / "CONTRIBUTING.md",
+    *sorted((ROOT / "docs").glob("*.md")),
+    *sorted((ROOT / "docs" / "tutorials").glob("*.md")),
+]
 LANGUAGES = {"python", "toml", "sh", "text"}
 VESICLE = "simulation.duration = 1\n\n[[vesicle]]\nmesh = { icosphere = 2, radius = 30 }\n\n"
 
