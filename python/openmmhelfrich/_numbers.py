@@ -6,6 +6,8 @@ import numbers
 
 import numpy as np
 
+from ._types import Array
+
 __all__ = ["finite_array", "positive_number", "whole_number"]
 
 
@@ -54,7 +56,7 @@ def positive_number(value, where: str, name: str) -> float:
     return number
 
 
-def finite_array(values, where: str, name: str) -> np.ndarray:
+def finite_array(values, where: str, name: str) -> Array:
     """Numbers as an array of floats, none of which is NaN or infinite.
 
     Raises

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ._types import Array
 from .errors import MeshError
 
 __all__ = ["length", "length_array"]
@@ -63,7 +64,7 @@ def length(value, where: str, name: str) -> float:
     return number
 
 
-def length_array(value, where: str, name: str) -> np.ndarray:
+def length_array(value, where: str, name: str) -> Array:
     """A new float64 array of lengths in nm, of whatever shape `value` has.
 
     Parameters
