@@ -29,8 +29,8 @@ from typing import Any, ClassVar, TypeAlias
 import numpy as np
 import openmm
 from numpy.typing import ArrayLike, NDArray
-from openmm.unit import Quantity
 
+from ._types import Quantity
 from .mesh import Mesh
 
 _Scalar: TypeAlias = float | Quantity

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from openmm import unit
 
 from . import _surface_movers
@@ -25,7 +27,7 @@ def accept_arguments(force: type) -> None:
     )
 
 
-def _get_statistics(self, context) -> dict:
+def _get_statistics(self, context) -> dict[str, Any]:
     """What has come of the flips that were tried in a Context since it was made.
 
     Parameters

@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from ._system import LIBRARY
+from ._types import Array
 from .errors import MeshError
 
 __all__ = ["LIBRARY_PATH", "last_error", "library", "orient"]
@@ -69,7 +70,7 @@ def last_error() -> str:
         size = length + 1
 
 
-def orient(vertices: np.ndarray, triangles: np.ndarray, box: np.ndarray | None = None) -> None:
+def orient(vertices: Array, triangles: Array, box: Array | None = None) -> None:
     """Validate a mesh and turn its triangles outward, in place.
 
     Parameters

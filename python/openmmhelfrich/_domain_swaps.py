@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from . import _surface_movers
 from ._surface_movers import in_python
 
@@ -13,7 +15,7 @@ def accept_arguments(force: type) -> None:
     _surface_movers.accept_arguments(force, _get_statistics)
 
 
-def _get_statistics(self, context) -> dict:
+def _get_statistics(self, context) -> dict[str, Any]:
     """What has come of the exchanges that were tried in a Context since it was made.
 
     Parameters

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -21,7 +22,7 @@ __all__ = ["InSystems"]
 _MAX_SEED = 2**31 - 1
 
 
-class InSystems:
+class InSystems(ABC):
     """A mesh of particles of one mass with forces by their names, bond flips and a viscosity.
 
     Derived classes have ``_mesh``, ``_mass``, and ``_forces(offset)`` for particles from `offset`
@@ -34,9 +35,9 @@ class InSystems:
     _viscosity: Mapping[str, Any] | None = None
     _placement: Placement | None = None
 
+    @abstractmethod
     def _forces(self, offset: int) -> dict[str, MembraneForce]:
         """The forces by name, for particles that start at `offset`."""
-        raise NotImplementedError
 
     def add_to(self, system: openmm.System, force_groups: Sequence[int] | None = None) -> Placement:
         """Add the particles and the forces to a System.

@@ -14,6 +14,7 @@ import numbers
 
 import numpy as np
 
+from ._types import Array
 from .errors import MeshError
 
 __all__ = [
@@ -74,7 +75,7 @@ def positive_number(value, where: str, name: str) -> float:
     return number
 
 
-def finite_array(values, where: str, name: str) -> np.ndarray:
+def finite_array(values, where: str, name: str) -> Array:
     """Numbers as an array of floats, none of which is NaN or infinite.
 
     Raises

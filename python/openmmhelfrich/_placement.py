@@ -1,12 +1,23 @@
 """Where a vesicle is in a System, and the forces that act on it."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import cast
 
 import openmm
 from openmm import unit
 
-from .forces import MembraneForce, MonteCarloBondFlip, SurfaceViscosityThermostat
+from .forces import (
+    BendingForce,
+    EnclosedVolumeForce,
+    MembraneForce,
+    MonteCarloBondFlip,
+    SurfaceAreaForce,
+    SurfaceViscosityThermostat,
+    TriangleHeightForce,
+)
 from .mesh import Mesh
 
 __all__ = ["NUM_GROUPS", "Placement", "groups_for"]
@@ -33,21 +44,36 @@ class Placement:
     viscosity: SurfaceViscosityThermostat | None = None
     """What makes the membrane viscous, if anything does."""
 
-    area = property(lambda self: self.forces["area"], doc="The `SurfaceAreaForce`.")
-    volume = property(lambda self: self.forces["volume"], doc="The `EnclosedVolumeForce`.")
-    bending = property(lambda self: self.forces["bending"], doc="The `BendingForce`.")
-    heights = property(lambda self: self.forces["heights"], doc="The `TriangleHeightForce`.")
+    @property
+    def area(self) -> SurfaceAreaForce:
+        """The `SurfaceAreaForce`."""
+        return cast(SurfaceAreaForce, self.forces["area"])
 
     @property
-    def particles(self):
+    def volume(self) -> EnclosedVolumeForce:
+        """The `EnclosedVolumeForce`."""
+        return cast(EnclosedVolumeForce, self.forces["volume"])
+
+    @property
+    def bending(self) -> BendingForce:
+        """The `BendingForce`."""
+        return cast(BendingForce, self.forces["bending"])
+
+    @property
+    def heights(self) -> TriangleHeightForce:
+        """The `TriangleHeightForce`."""
+        return cast(TriangleHeightForce, self.forces["heights"])
+
+    @property
+    def particles(self) -> range:
         """Indices of the particles, a range."""
         return range(self.offset, self.offset + self.num_vertices)
 
-    def mesh(self, context):
+    def mesh(self, context: openmm.Context) -> Mesh:
         """The `Mesh` as it is now in a Context of the System: positions and triangles."""
         return Mesh.from_context(context, self.area)
 
-    def energies(self, context):
+    def energies(self, context: openmm.Context) -> dict[str, float]:
         """Energy per term in a Context of the System, a dict of float, kJ/mol.
 
         Each is the energy of the term's force group, and so holds other forces that share it.

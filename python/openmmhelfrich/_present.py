@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from openmm import unit
 
+from ._types import Array
 from .forces import (
     MembraneForce,
     MonteCarloBondFlip,
@@ -32,7 +35,7 @@ def is_periodic(context, force) -> bool:
     return False
 
 
-def present_box(context, state, particles: np.ndarray) -> np.ndarray | None:
+def present_box(context, state, particles: Array) -> Array | None:
     """The box of a State, shape (3, 3), nm, if a surface on these particles lives in it."""
     for force in surfaces_of(context):
         corners = np.frombuffer(force._triangleBuffer(), dtype=np.intc)
@@ -41,7 +44,7 @@ def present_box(context, state, particles: np.ndarray) -> np.ndarray | None:
     return None
 
 
-def surfaces_of(context) -> list:
+def surfaces_of(context) -> list[Any]:
     """One force on each of the triangulated surfaces of a Context, in their order.
 
     It is the MonteCarloBondFlip of a surface where there is one.
@@ -59,7 +62,7 @@ def surfaces_of(context) -> list:
     return list(found.values())
 
 
-def present_triangles(context, corners: np.ndarray) -> np.ndarray:
+def present_triangles(context, corners: Array) -> Array:
     """What has become of triangles with which a Context began.
 
     It does not matter what has changed them: a MonteCarloBondFlip, or `setTrianglesInContext` of

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import openmm
 
@@ -59,7 +60,7 @@ class Snapshot:
             force._restoreState(context, sweeps)
 
 
-def moving_surfaces(context: openmm.Context) -> list:
+def moving_surfaces(context: openmm.Context) -> list[Any]:
     """A mover on each surface that has one: those that flip bonds, then those that swap only."""
     flips = all_of(context, MonteCarloBondFlip)
     flipping = {mover._triangleBuffer() for mover in flips}
@@ -81,6 +82,6 @@ def thermostats_of(context: openmm.Context) -> list[SurfaceViscosityThermostat]:
     return all_of(context, SurfaceViscosityThermostat)
 
 
-def all_of(context: openmm.Context, cls: type) -> list:
+def all_of(context: openmm.Context, cls: type) -> list[Any]:
     """The forces of a class in a Context, in its order."""
     return [cls.cast(force) for force in context.getSystem().getForces() if cls.isinstance(force)]

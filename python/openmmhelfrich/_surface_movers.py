@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import inspect
+from typing import Any
 
 from openmm import unit
 
@@ -56,7 +57,7 @@ def accept_arguments(force: type, get_statistics, scalars=(), counts=(), order=(
     own_what_is_cast(force)
 
 
-def _accept_in_constructor(force: type, readers: dict, defaults: dict) -> None:
+def _accept_in_constructor(force: type, readers: dict[str, Any], defaults: dict[str, Any]) -> None:
     keyword = inspect.Parameter.POSITIONAL_OR_KEYWORD
     parameters = [inspect.Parameter("triangles", keyword)]
     parameters += [
@@ -73,7 +74,7 @@ def _accept_in_constructor(force: type, readers: dict, defaults: dict) -> None:
     accept_in_constructor(force, parameters, start)
 
 
-def in_python(found: dict, reasons: tuple[str, ...]) -> dict:
+def in_python(found: dict[str, Any], reasons: tuple[str, ...]) -> dict[str, Any]:
     """Statistics as users get them: counts are integers, and refusals a dict by their reasons."""
     statistics = {name: int(found[name]) for name in ("attempts", "accepted")}
     statistics["refused"] = {

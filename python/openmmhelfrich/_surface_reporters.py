@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from openmm import unit
@@ -12,13 +13,14 @@ from ._mesh.geometry import edges_of
 from ._mesh.periodic import unfolded
 from ._numbers import whole_number
 from ._present import present_box, present_triangles
+from ._types import File
 from .analysis._arrays import triangles_of
 from .analysis.tables import open_table
 
 __all__ = ["NextReport", "SurfaceReporter", "TableReporter"]
 
 
-class NextReport(dict):
+class NextReport(dict[str, Any]):
     """What `describeNextReport` returns: the dict of OpenMM 8.1 and later.
 
     Programs that drive reporters themselves may still index the tuple of old (steps, positions,
@@ -46,10 +48,12 @@ class SurfaceReporter:
     box are whole. Those that span it are refused unless `_spans`.
     """
 
-    _spans = False
-    _include = ("positions",)
+    _spans: bool = False
+    _include: tuple[str, ...] = ("positions",)
 
-    def __init__(self, file, reportInterval, triangles, offset, append):
+    def __init__(
+        self, file: File, reportInterval: int, triangles: Any, offset: int, append: bool
+    ) -> None:
         name = type(self).__name__
         self._interval = whole_number(reportInterval, name, "reportInterval", 1)
         offset = whole_number(offset, name, "offset", 0)
@@ -60,14 +64,14 @@ class SurfaceReporter:
         # Vertices in ascending order of particle index, as in the forces.
         self._particles = np.unique(self._corners)
 
-    def describeNextReport(self, simulation):
+    def describeNextReport(self, simulation: Any) -> NextReport:
         """When the next report is due, and what it needs, as OpenMM asks for it."""
         # What the file has beyond the step at which the simulation goes on is written again.
         self._open(simulation)
         steps = self._interval - simulation.currentStep % self._interval
         return NextReport(steps=steps, periodic=False, include=list(self._include))
 
-    def report(self, simulation, state):
+    def report(self, simulation: Any, state: Any) -> None:
         """Write a row, or a frame; it is on disk when this returns."""
         self._open(simulation)
         time = state.getTime().value_in_unit(unit.picosecond)

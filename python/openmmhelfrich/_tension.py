@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import inspect
+from typing import Any
 
 from openmm import unit
 
@@ -55,7 +56,7 @@ def accept_arguments(force: type) -> None:
     own_what_is_cast(force)
 
 
-def _get_statistics(self, context) -> dict:
+def _get_statistics(self, context) -> dict[str, Any]:
     """What has come of the moves that were tried in a Context since it was made.
 
     Parameters

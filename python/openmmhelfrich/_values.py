@@ -16,6 +16,7 @@ import numpy as np
 from openmm import unit
 
 from . import _core
+from ._types import Array
 
 __all__ = [
     "Scalar",
@@ -214,7 +215,7 @@ def scalar(force: str, parameter: Scalar, value) -> float:
         raise TypeError(f"{where} must be one number, got {value!r}") from None
 
 
-def whole_numbers(force: str, argument: str, one: str, given) -> np.ndarray:
+def whole_numbers(force: str, argument: str, one: str, given) -> Array:
     """Indices as a contiguous array of C integers, one list.
 
     Parameters
@@ -251,7 +252,7 @@ def whole_numbers(force: str, argument: str, one: str, given) -> np.ndarray:
     return np.ascontiguousarray(array, dtype=np.intc)
 
 
-def triangles(force: str, given, offset: int = 0) -> np.ndarray:
+def triangles(force: str, given, offset: int = 0) -> Array:
     """Triangles as a contiguous array of C integers, shape (num_triangles, 3).
 
     Parameters

@@ -10,6 +10,7 @@ from openmm import unit
 from . import _core
 from ._mesh.inputs import box_array
 from ._numbers import length_array
+from ._types import Array
 
 __all__ = ["accept_vertex_numbers", "domain_array", "vertex_numbers_of"]
 
@@ -126,7 +127,7 @@ def _accept_reference(force: type, give_method) -> None:
     give_method(force, "getReferenceBox", get_reference_box)
 
 
-def _reference(force: str, given) -> tuple[np.ndarray, np.ndarray | None]:
+def _reference(force: str, given) -> tuple[Array, Array | None]:
     """Positions, shape (num_vertices, 3), nm, and the box that a Mesh has."""
     if hasattr(given, "triangles"):
         return np.ascontiguousarray(given.vertices, dtype=np.float64), given.box
@@ -138,7 +139,7 @@ def _reference(force: str, given) -> tuple[np.ndarray, np.ndarray | None]:
     return points, None
 
 
-def domain_array(caller: str, given) -> np.ndarray:
+def domain_array(caller: str, given) -> Array:
     """Numbers of domains as floats, shape (num_vertices,).
 
     Parameters

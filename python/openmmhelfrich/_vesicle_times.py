@@ -16,14 +16,14 @@ class TimeScales:
     """
 
     @property
-    def tau_2(self):
+    def tau_2(self) -> float:
         """Period of the slowest mode, l = 2, without friction, ps: τ_2 = 2π/ω_2 (A30)."""
         return theory.mode_period(
             2, float(np.mean(self.rigidity)), self.mass, self.mesh.num_vertices, self.radius
         )
 
     @property
-    def tau_fastest(self):
+    def tau_fastest(self) -> float:
         """Period of the fastest mode that the mesh has, ps.
 
         (A30) in the limit of large l at l = √N: τ_2 √24 / N.
@@ -31,12 +31,12 @@ class TimeScales:
         return self.tau_2 * math.sqrt(24) / self.mesh.num_vertices
 
     @property
-    def tau_heights(self):
+    def tau_heights(self) -> float:
         """Time in which triangle heights relax, ps: τ_h = d √(m/ε)."""
         return self.min_height * math.sqrt(self.mass / self.epsilon)
 
     @property
-    def max_time_step(self):
+    def max_time_step(self) -> float:
         """Largest time step with which the paper's runs last, ps: 0.1 √Ξ τ_fastest (Fig. 5).
 
         It is a rule of thumb for the defaults of the other moduli, not a proof of stability. The

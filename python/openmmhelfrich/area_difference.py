@@ -7,13 +7,16 @@ import math
 from openmm import unit
 
 from ._numbers import checked_number
+from ._types import Scalar
 
 __all__ = ["area_difference_parameters"]
 
 _ENERGY = unit.kilojoule_per_mole
 
 
-def area_difference_parameters(rigidity, alpha, area, delta_a0) -> tuple[float, float]:
+def area_difference_parameters(
+    rigidity: Scalar, alpha: float, area: Scalar, delta_a0: float
+) -> tuple[float, float]:
     """Modulus and target of an `AreaDifferenceForce`, from those of the ADE model.
 
     E = α κ π (ΔA − ΔA0)² / (2 A D²) of Miao, Seifert, Wortis and Döbereiner, Phys. Rev. E 49, 5389

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 from openmm import unit
 
 from ._vertex_numbers import domain_array
@@ -12,7 +14,7 @@ from ._vertex_numbers import domain_array
 __all__ = ["values_of_domains"]
 
 
-def values_of_domains(domains, table: Mapping) -> dict:
+def values_of_domains(domains: ArrayLike, table: Mapping[Any, Any]) -> dict[str, Any]:
     """The values of all vertices, from what those of each domain have.
 
     ::
@@ -75,7 +77,7 @@ def values_of_domains(domains, table: Mapping) -> dict:
     return found
 
 
-def _of_all(name: str, rows: dict) -> tuple[dict[int, float], unit.Unit | None]:
+def _of_all(name: str, rows: dict[str, Any]) -> tuple[dict[int, float], unit.Unit | None]:
     """The values of one name by their domains, and their unit, if they have one."""
     for domain, values in rows.items():
         if name not in values:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import inspect
+from typing import Any
 
 import numpy as np
 from openmm import unit
 
 from ._integrators import DENSITY
+from ._types import Array
 from ._values import Scalar, plain_value, scalar
 from .analysis import triangle_areas
 from .mesh import Mesh
@@ -19,7 +21,9 @@ _MASS = Scalar("total_mass", unit.amu, inspect.Parameter.empty, None)
 _AREAS = Scalar("areas", unit.nanometer**2, inspect.Parameter.empty, None)
 
 
-def plaquette_masses(areas, density=None, total_mass=None) -> np.ndarray:
+def plaquette_masses(
+    areas: Any, density: Scalar | None = None, total_mass: Scalar | None = None
+) -> Array:
     """Masses in proportion to the mean areas of the plaquettes, ρ ⟨aᵢ⟩, for `System.addParticle`.
 
     What VariableMassVerletIntegrator does in every step, once and for all: for meshes whose
@@ -65,7 +69,7 @@ def plaquette_masses(areas, density=None, total_mass=None) -> np.ndarray:
     return _above_zero(_MASS, total_mass) * means / means.sum()
 
 
-def _mean_areas(areas) -> np.ndarray:
+def _mean_areas(areas) -> Array:
     if isinstance(areas, Mesh):
         thirds = np.repeat(triangle_areas(areas, areas) / 3, 3)
         return np.bincount(areas.triangles.ravel(), thirds, areas.num_vertices)

@@ -7,17 +7,16 @@ import openmm
 from numpy.typing import ArrayLike
 from openmm import unit
 
+from ._numbers import checked_number
 from ._placement import NUM_GROUPS
-from ._quantities import checked_number
+from ._types import Values
 
 __all__ = ["pull"]
 
 _FORCE = unit.kilojoule_per_mole / unit.nanometer
 
 
-def pull(
-    system: openmm.System, particles: ArrayLike, force: ArrayLike | unit.Quantity
-) -> openmm.CustomExternalForce:
+def pull(system: openmm.System, particles: ArrayLike, force: Values) -> openmm.CustomExternalForce:
     """Pull at particles with a constant force, which they share equally.
 
     The energy is −Σ F·r / n over the n particles. It gets the lowest force group that the System
@@ -85,7 +84,7 @@ def _particles(particles: ArrayLike, count: int) -> list[int]:
     return array.tolist()
 
 
-def _components(force: ArrayLike | unit.Quantity) -> list[float]:
+def _components(force: Values) -> list[float]:
     """Three numbers in kJ/mol/nm."""
     if unit.is_quantity(force):
         if not force.unit.is_compatible(_FORCE):

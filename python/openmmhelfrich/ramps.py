@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from ._numbers import length, whole_number
+from ._types import Scalar
 from .forces import TriangleHeightForce
 
 __all__ = ["harden"]
 
 
-def harden(simulation, force, min_height, steps, increments=100) -> None:
+def harden(
+    simulation: Any,
+    force: TriangleHeightForce,
+    min_height: Scalar,
+    steps: int,
+    increments: int = 100,
+) -> None:
     """Raise (or lower) the least triangle height d of a running simulation, slowly.
 
     A mesh that is hard from the start would push violently where its triangles are still flat. So

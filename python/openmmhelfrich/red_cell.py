@@ -5,12 +5,14 @@ from __future__ import annotations
 import dataclasses
 import math
 from dataclasses import dataclass
+from typing import Any
 
 from openmm import unit
 
 from ._in_systems import InSystems
 from ._mesh.discs import EVANS_FUNG_DIAMETER, evans_fung, spheroid
 from ._numbers import checked_number
+from ._types import Scalar
 from .analysis import triangle_areas
 from .area_difference import area_difference_parameters
 from .forces import (
@@ -191,7 +193,15 @@ class RedCell(InSystems):
     >>> cell.energies(simulation.context)["shear"]
     """
 
-    def __init__(self, model="fedosov", num_vertices=1002, *, mass=50.0, seed=1, **changes):
+    def __init__(
+        self,
+        model: str | RedCellModel = "fedosov",
+        num_vertices: int = 1002,
+        *,
+        mass: Scalar = 50.0,
+        seed: int = 1,
+        **changes: Any,
+    ) -> None:
         if isinstance(model, str):
             if model not in RED_CELL_MODELS:
                 known = ", ".join(RED_CELL_MODELS)
@@ -225,7 +235,7 @@ class RedCell(InSystems):
     model = property(lambda self: self._model, doc="The `RedCellModel`, in plain numbers.")
     mass = property(lambda self: self._mass, doc="Mass of one vertex, amu.")
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"RedCell({self._model.shear_law}, {self._mesh.num_vertices} vertices)"
 
     def _forces(self, offset):

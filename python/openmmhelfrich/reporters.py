@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from typing import Any
 
 import numpy as np
 import openmm
@@ -11,6 +12,7 @@ from openmm import unit
 from ._frame_reporters import ExtendedXYZReporter, GSDReporter, VTKHDFReporter
 from ._numbers import whole_number
 from ._surface_reporters import TableReporter
+from ._types import File
 from .analysis import mode_amplitudes, shape
 from .forces import MonteCarloBondFlip, MonteCarloDomainSwap, MonteCarloMembraneTension
 from .virials import virial
@@ -83,16 +85,16 @@ class ModeReporter(TableReporter):
 
     def __init__(
         self,
-        file,
-        reportInterval,
-        triangles,
-        lmax,
-        quadrature="fit",
-        centre=None,
+        file: File,
+        reportInterval: int,
+        triangles: Any,
+        lmax: int,
+        quadrature: str = "fit",
+        centre: str | None = None,
         *,
-        offset=0,
-        append=False,
-    ):
+        offset: int = 0,
+        append: bool = False,
+    ) -> None:
         super().__init__(file, reportInterval, triangles, offset, append)
         self._lmax = whole_number(lmax, "ModeReporter", "lmax", 0)
         self._options = {"quadrature": quadrature, "centre": centre}
@@ -147,7 +149,15 @@ class MembraneReporter(TableReporter):
     _include = ("positions", "energy")
     _spans = True
 
-    def __init__(self, file, reportInterval, triangles, *, offset=0, append=False):
+    def __init__(
+        self,
+        file: File,
+        reportInterval: int,
+        triangles: Any,
+        *,
+        offset: int = 0,
+        append: bool = False,
+    ) -> None:
         super().__init__(file, reportInterval, triangles, offset, append)
 
     def _columns(self, simulation):
@@ -217,7 +227,15 @@ class VirialReporter(TableReporter):
     _include = ("positions", "velocities")
     _spans = True
 
-    def __init__(self, file, reportInterval, triangles, *, offset=0, append=False):
+    def __init__(
+        self,
+        file: File,
+        reportInterval: int,
+        triangles: Any,
+        *,
+        offset: int = 0,
+        append: bool = False,
+    ) -> None:
         super().__init__(file, reportInterval, triangles, offset, append)
 
     def _columns(self, simulation):
@@ -275,7 +293,7 @@ def _group_names(system):
     return joined
 
 
-def degrees_of_freedom(system):
+def degrees_of_freedom(system: Any) -> Any:
     masses = [system.getParticleMass(i) / unit.dalton for i in range(system.getNumParticles())]
     count = 3 * np.count_nonzero(masses) - system.getNumConstraints()
     fixed = any(isinstance(force, openmm.CMMotionRemover) for force in system.getForces())

@@ -8,6 +8,7 @@ read on any platform.
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from openmm import unit
@@ -16,6 +17,7 @@ from . import _blocks, _writing
 from ._mesh.inputs import box_array
 from ._present import surfaces_of
 from ._snapshots import all_of, tensions_of, thermostats_of
+from ._types import File
 from .forces import MonteCarloMembraneTension, SurfaceViscosityThermostat
 
 __all__ = ["load_state", "save_state"]
@@ -35,7 +37,7 @@ _KNOWN = {
 _NEEDED = sorted(_KNOWN.keys() - {"connectivity", "tension", "viscosity"})
 
 
-def save_state(context, path) -> None:
+def save_state(context: Any, path: File) -> None:
     """Save positions, velocities, parameters, time and connectivity of a Context.
 
     `load_state` restores them to the last bit of what OpenMM hands out: of all digits on the
@@ -85,7 +87,7 @@ def save_state(context, path) -> None:
     _writing.write_whole(path, _blocks.pack(_KIND, blocks))
 
 
-def load_state(context, path) -> None:
+def load_state(context: Any, path: File) -> None:
     """Restore what `save_state` has saved, the connectivity too.
 
     Under integrators that draw random numbers, as LangevinMiddle, the run does not go on with the
@@ -149,7 +151,7 @@ def load_state(context, path) -> None:
     context.setStepCount(values["clock"]["step"])
 
 
-def _restore(context, surfaces: list, connectivity: list[bytes], stateful: list) -> None:
+def _restore(context, surfaces: list[Any], connectivity: list[bytes], stateful: list[Any]) -> None:
     """Restore the connectivity of all surfaces and the states of all movers, or of none."""
     steps = [
         (force._restoreConnectivity, force._saveConnectivity, saved)
@@ -168,7 +170,7 @@ def _restore(context, surfaces: list, connectivity: list[bytes], stateful: list)
         raise
 
 
-def _check_values(name, values: dict) -> None:
+def _check_values(name, values: dict[str, Any]) -> None:
     """Refuse blocks that are not what `save_state` writes, before anything is changed.
 
     Raises
@@ -209,7 +211,7 @@ def _is_right(block: str, value) -> bool:
     return isinstance(value, bytes)
 
 
-def _in_order(values: dict, block: str) -> list[bytes]:
+def _in_order(values: dict[str, Any], block: str) -> list[bytes]:
     """What was saved of surfaces, or of movers, in their order."""
     found = []
     while (key := f"{block}/{len(found)}") in values:

@@ -17,6 +17,7 @@ from ._in_systems import InSystems
 from ._numbers import checked_field, checked_number
 from ._types import Scalar, Values
 from ._vesicle_flips import checked_flips, mover_of
+from ._vesicle_parameters import Parameters
 from ._vesicle_skeleton import checked_skeleton, skeleton_of
 from ._vesicle_times import TimeScales
 from ._vesicle_totals import checked_area_difference, checked_osmotic, encloses
@@ -46,7 +47,7 @@ KBT = theory.BOLTZMANN * 300
 _ENERGY = unit.kilojoule_per_mole
 
 
-class Vesicle(InSystems, TimeScales):
+class Vesicle(InSystems, Parameters, TimeScales):
     """A fluid vesicle: bending, global area, global volume, and soft triangle heights.
 
     E = ½ κ Σ_i [J_i²/a_i − 2 C0 J_i + C0² a_i] + ½ kA (A − A0)²/A0 + ½ kV (V − V0)²/V0 + U_h
@@ -257,44 +258,6 @@ class Vesicle(InSystems, TimeScales):
             f"softness={self._softness:.6g}, epsilon={self._epsilon:.6g}, mass={self._mass:.6g}, "
             f"area={self._area:.6g}" + (f", volume={self._volume:.6g})" if self._encloses else ")")
         )
-
-    mesh = property(lambda self: self._mesh, doc="The Mesh with which the vesicle starts.")
-    rigidity = property(
-        lambda self: self._rigidity,
-        doc="Bending rigidity κ, kJ/mol, a number or one for each vertex.",
-    )
-    area_modulus = property(lambda self: self._area_modulus, doc="kA, kJ/mol/nm².")
-    volume_modulus = property(lambda self: self._volume_modulus, doc="kV, kJ/mol/nm³.")
-    softness = property(lambda self: self._softness, doc="Softness Ξ of the mesh.")
-    min_height = property(lambda self: self._min_height, doc="Least triangle height d, nm.")
-    epsilon = property(lambda self: self._epsilon, doc="ε of the triangle heights, kJ/mol.")
-    mass = property(lambda self: self._mass, doc="Mass of one vertex, amu.")
-    scheme = property(lambda self: self._scheme, doc="Bending scheme of `BendingForce`.")
-    spontaneous_curvature = property(
-        lambda self: self._spontaneous_curvature, doc="C0, 1/nm, a number or one for each vertex."
-    )
-    flips = property(
-        lambda self: None if self._flips is None else dict(self._flips),
-        doc="Arguments of the `MonteCarloBondFlip` by name, or None.",
-    )
-    viscosity = property(
-        lambda self: None if self._viscosity is None else dict(self._viscosity),
-        doc="Arguments of the `SurfaceViscosityThermostat` by name, or None.",
-    )
-    area = property(lambda self: self._area, doc="Target area A0, nm².")
-    volume = property(lambda self: self._volume, doc="Target volume V0, nm³, or None.")
-
-    @property
-    def radius(self) -> float:
-        """Radius of the sphere of area A0, nm."""
-        return math.sqrt(self._area / (4 * math.pi))
-
-    @property
-    def reduced_volume(self) -> float | None:
-        """V0 over the volume of the sphere of area A0, or None."""
-        if self._volume is None:
-            return None
-        return self._volume / (4 / 3 * math.pi * self.radius**3)
 
     def _forces(self, offset):
         """The forces by name, for particles that start at `offset`."""

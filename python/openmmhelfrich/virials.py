@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 
 from ._present import surfaces_of
+from ._types import Array
 
 __all__ = ["virial"]
 
 
-def virial(context, groups: int | Iterable[int] = -1) -> np.ndarray:
+def virial(context: Any, groups: int | Iterable[int] = -1) -> Array:
     """The derivative of the membranes' energy with respect to a homogeneous strain.
 
     With positions r → r + ε r, and the vectors of the periodic box likewise, it is W = ∂E/∂ε:

@@ -3,8 +3,13 @@
 A PDB file will not do: its columns overflow at 10 000 Å, the size of one vesicle.
 """
 
+from __future__ import annotations
+
+from typing import Any
+
 from openmm import unit
 
+from ._types import Values
 from ._writing import write_whole
 
 # Readers of PSF expect these too.
@@ -18,7 +23,7 @@ _EMPTY_PSF_SECTIONS = (
 )
 
 
-def write_psf(path, topology, system):
+def write_psf(path: Any, topology: Any, system: Any) -> None:
     """Write the atoms and bonds of a topology as a PSF file, which VMD reads.
 
     ``vmd vesicle.psf vesicle.xtc`` then shows the mesh in the drawing method "Lines". The file is
@@ -57,7 +62,7 @@ def write_psf(path, topology, system):
     _write(path, lines)
 
 
-def write_lammps_data(path, topology, system, positions):
+def write_lammps_data(path: Any, topology: Any, system: Any, positions: Values) -> None:
     """Write atoms, bonds and positions as a LAMMPS data file, which OVITO reads.
 
     Open the file in OVITO and add the modifier "Load trajectory" with the XTC file. Positions are

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from .._types import Array
 from . import repair
 from .source import Source
 
@@ -38,9 +39,7 @@ class Cells:
         VTK's numbers of their kinds, shape (num_cells,).
     """
 
-    def __init__(
-        self, connectivity: np.ndarray, offsets: np.ndarray, types: np.ndarray | None = None
-    ):
+    def __init__(self, connectivity: Array, offsets: Array, types: Array | None = None):
         self.connectivity = connectivity
         self.offsets = offsets
         self.types = types
@@ -48,7 +47,7 @@ class Cells:
     def __len__(self) -> int:
         return len(self.offsets) - 1
 
-    def mesh(self, source: Source, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def mesh(self, source: Source, points: Array) -> tuple[Array, Array]:
         """Vertices and triangles; vertices of points and lines only are left out.
 
         Raises

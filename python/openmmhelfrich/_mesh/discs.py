@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from scipy.integrate import cumulative_simpson
+
+from .._types import Array
 
 __all__ = ["EVANS_FUNG_DIAMETER", "Profile", "evans_fung", "spheroid"]
 
@@ -19,7 +22,7 @@ _POINTS = 20_001
 class Profile:
     """A meridian from pole to equator, ρ(t) and z(t) with 0 ≤ t ≤ π/2, mirrored at the equator."""
 
-    def __init__(self, distance: Callable, height: Callable) -> None:
+    def __init__(self, distance: Callable[..., Any], height: Callable[..., Any]) -> None:
         self._t = np.linspace(0, np.pi / 2, _POINTS)
         self._distance, self._height = distance, height
         rho, z = distance(self._t), height(self._t)
@@ -29,7 +32,7 @@ class Profile:
         #: nm² and nm³, of the whole surface.
         self.area, self.volume = 2 * float(self._areas[-1]), 2 * float(volume[-1])
 
-    def of_sphere(self, points: np.ndarray) -> np.ndarray:
+    def of_sphere(self, points: Array) -> Array:
         """The images of points on a sphere: meridians stay meridians, and areas their share."""
         unit = points / np.linalg.norm(points, axis=1)[:, None]
         # Near the pole areas grow as t², so their roots are what is smooth.

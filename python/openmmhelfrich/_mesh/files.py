@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from .._types import Array
 from .._writing import write_whole
 from ..errors import MeshError
 from . import obj, off, other, ply, repair, stl, vtk_legacy, vtk_xml
@@ -30,7 +32,7 @@ _TEXT_ONLY = {".obj": obj.write, ".off": off.write, ".stl": stl.write}
 
 def read(
     path, triangulate: bool = False, merge: float | None = None, drop_unused: bool = False
-) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
+) -> tuple[Array, Array, Array | None]:
     """Vertices, triangles and box of a file, not yet validated as a mesh.
 
     Parameters
@@ -84,7 +86,7 @@ def read(
     return vertices, triangles, None if source.box is None else np.reshape(source.box, (3, 3))
 
 
-def explained(path, reason: MeshError, vertices: np.ndarray, triangles: np.ndarray) -> MeshError:
+def explained(path, reason: MeshError, vertices: Array, triangles: Array) -> MeshError:
     """The error of a mesh that is not valid, with its file and with what could mend it."""
     text = str(reason).removeprefix("Mesh: ")
     return MeshError(f"Mesh.read: {path}: {text}{repair.hints(vertices, triangles)}")
@@ -102,11 +104,11 @@ def refuse_cracks(path, mesh) -> None:
 
 def write(
     path,
-    vertices: np.ndarray,
-    triangles: np.ndarray,
-    point_data: dict[str, np.ndarray] | None = None,
+    vertices: Array,
+    triangles: Array,
+    point_data: dict[str, Array] | None = None,
     binary: bool | None = None,
-    box: np.ndarray | None = None,
+    box: Array | None = None,
 ) -> None:
     """Write a mesh in the format of the extension; arguments and errors as for `Mesh.write`."""
     path = Path(path)
@@ -146,7 +148,7 @@ def write(
         raise _unknown("write", path, known)
 
 
-def _checked(point_data: dict, num_vertices: int) -> dict[str, np.ndarray]:
+def _checked(point_data: dict[str, Any], num_vertices: int) -> dict[str, Array]:
     """Values of the vertices as arrays of doubles."""
     found = {}
     for name, values in point_data.items():

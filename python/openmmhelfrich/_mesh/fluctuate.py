@@ -9,6 +9,7 @@ import math
 
 import numpy as np
 
+from .._types import Array
 from ..errors import MeshError
 from .inputs import integer, not_negative
 
@@ -21,7 +22,7 @@ _RADIUS = 1000.0
 _FRACTIONS = 1 / 60, 0.3
 
 
-def fluctuating(mesh, softness, seed, duration) -> np.ndarray:
+def fluctuating(mesh, softness, seed, duration) -> Array:
     """Vertices of a sphere after a short run with U_A, U_V and U_h only, put back on the sphere.
 
     Parameters

@@ -12,6 +12,7 @@ import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
+from .._types import Array
 from ..errors import MeshError
 
 __all__ = [
@@ -27,13 +28,13 @@ __all__ = [
 ]
 
 
-def surface_area(corners: np.ndarray) -> float:
+def surface_area(corners: Array) -> float:
     """Total area A = Σ_t |AB × AC| / 2 (B2), nm²."""
     a, b, c = (corners[:, corner] for corner in range(3))
     return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)
 
 
-def volume_enclosed(vertices: np.ndarray, triangles: np.ndarray) -> float:
+def volume_enclosed(vertices: Array, triangles: Array) -> float:
     """Enclosed volume V = Σ_t A · (B × C) / 6 (B3, B4), nm³, positive if oriented outward."""
     # The sum over a closed surface does not depend on the origin, but its rounding errors grow
     # with the distance to it; the centroid keeps them small for meshes that lie far out.
@@ -47,14 +48,14 @@ def reduced_volume(area: float, volume: float) -> float:
     return float(6 * np.sqrt(np.pi) * volume / area**1.5)
 
 
-def edges_of(triangles: np.ndarray) -> np.ndarray:
+def edges_of(triangles: Array) -> Array:
     """Each edge once, shape (num_edges, 2), lower index first, in lexicographic order."""
     sides = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     sides.sort(axis=1)
     return np.unique(sides, axis=0)
 
 
-def dihedral_angles(corners: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+def dihedral_angles(corners: Array, triangles: Array) -> Array:
     """φ of each edge in the order of `edges_of`; 0 at borders, which have none."""
     halves = np.stack([triangles, triangles[:, [1, 2, 0]]], axis=-1).reshape(-1, 2)
     order = np.lexsort((halves.max(axis=1), halves.min(axis=1)))
@@ -73,7 +74,7 @@ def dihedral_angles(corners: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     return angles
 
 
-def border_loops(triangles: np.ndarray) -> list[np.ndarray]:
+def border_loops(triangles: Array) -> list[Array]:
     """The borders as loops of vertices, in the direction of their triangles.
 
     Each begins with its lowest vertex, and loops are in the order of those.
@@ -93,7 +94,7 @@ def border_loops(triangles: np.ndarray) -> list[np.ndarray]:
     return loops
 
 
-def check_closed(loops: list[np.ndarray], subject: str) -> None:
+def check_closed(loops: list[Array], subject: str) -> None:
     """Refuse a surface with borders where there must be none; `subject` begins the message."""
     if loops:
         first = loops[0].tolist()
@@ -104,13 +105,13 @@ def check_closed(loops: list[np.ndarray], subject: str) -> None:
         )
 
 
-def component_count(num_vertices: int, edges: np.ndarray) -> int:
+def component_count(num_vertices: int, edges: Array) -> int:
     """The number of connected components."""
     graph = edge_graph(num_vertices, edges)
     return int(connected_components(graph, directed=False, return_labels=False))
 
 
-def edge_graph(num_vertices: int, edges: np.ndarray) -> csr_array:
+def edge_graph(num_vertices: int, edges: Array) -> csr_array:
     """Which vertices are connected, as scipy.sparse.csgraph has it, each edge in one direction."""
     ones = np.ones(len(edges), dtype=np.int8)
     return csr_array((ones, (edges[:, 0], edges[:, 1])), shape=(num_vertices, num_vertices))

@@ -7,6 +7,7 @@ import operator
 import numpy as np
 
 from .._numbers import length_array
+from .._types import Array
 from ..errors import MeshError
 
 __all__ = [
@@ -23,7 +24,7 @@ __all__ = [
 _ROUNDED = 1 + 1e-6
 
 
-def vertex_array(vertices) -> np.ndarray:
+def vertex_array(vertices) -> Array:
     """Vertices as a new float64 array of shape (num_vertices, 3), nm, not yet validated."""
     points = length_array(vertices, "Mesh", "vertices")
     if points.size == 0:
@@ -36,7 +37,7 @@ def vertex_array(vertices) -> np.ndarray:
     return points
 
 
-def triangle_array(triangles) -> np.ndarray:
+def triangle_array(triangles) -> Array:
     """Triangles as a new int64 array of shape (num_triangles, 3), not yet validated."""
     try:
         given = np.asarray(triangles)
@@ -59,7 +60,7 @@ def triangle_array(triangles) -> np.ndarray:
     return np.array(given, dtype=np.int64, order="C")
 
 
-def box_array(box, where: str) -> np.ndarray:
+def box_array(box, where: str) -> Array:
     """Box vectors as a read-only float64 array of shape (3, 3), nm, in OpenMM's reduced form."""
     rows = length_array(box, where, "box")
     if rows.shape != (3, 3) or not np.isfinite(rows).all():
@@ -76,7 +77,7 @@ def box_array(box, where: str) -> np.ndarray:
     return rows.view()
 
 
-def numbers(value, where: str, name: str) -> np.ndarray:
+def numbers(value, where: str, name: str) -> Array:
     """A plain float64 array of numbers without units."""
     try:
         return np.asarray(value, dtype=np.float64)

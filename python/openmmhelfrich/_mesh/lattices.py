@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from .._types import Array
 from ..errors import MeshError
 from .inputs import integer, positive
 
@@ -115,12 +116,12 @@ def schwarz_p(n, size: float):
     return np.array(vertices), np.concatenate(triangles), size * np.eye(3)
 
 
-def _rows(nx: int, ny: int) -> tuple[np.ndarray, np.ndarray]:
+def _rows(nx: int, ny: int) -> tuple[Array, Array]:
     """Row and column of each vertex, row by row."""
     return np.divmod(np.arange(nx * ny), nx)
 
 
-def _strips(nx: int, ny: int, close_x: bool, close_y: bool) -> np.ndarray:
+def _strips(nx: int, ny: int, close_x: bool, close_y: bool) -> Array:
     """Triangles between rows that are shifted to and fro, counter-clockwise seen from z."""
     row, column = _rows(nx if close_x else nx - 1, ny if close_y else ny - 1)
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import numpy as np
-
+from .._types import Array
 from .source import Source, shorten
 
 __all__ = ["read", "write"]
@@ -21,7 +20,7 @@ _CURVED = {
 }
 
 
-def read(source: Source) -> tuple[np.ndarray, np.ndarray]:
+def read(source: Source) -> tuple[Array, Array]:
     """Vertices (``v``) and triangles (``f``) of an OBJ file.
 
     Corners count from 1, or backward from −1 for the last vertex that has been read, and may carry
@@ -80,7 +79,7 @@ def _corner(source: Source, word: str, face: int, vertices_so_far: int) -> int:
     return number - 1
 
 
-def write(vertices: np.ndarray, triangles: np.ndarray) -> bytes:
+def write(vertices: Array, triangles: Array) -> bytes:
     """An OBJ file of doubles, each with the fewest digits that give it back exactly."""
     lines = [
         "# openmm-helfrich mesh, nm",

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import numpy as np
-
+from .._types import Array
 from .source import Source, shorten
 
 __all__ = ["read", "write"]
@@ -12,7 +11,7 @@ __all__ = ["read", "write"]
 _KEYWORDS = [st + c + n + "OFF" for st in ("", "ST") for c in ("", "C") for n in ("", "N")]
 
 
-def read(source: Source) -> tuple[np.ndarray, np.ndarray]:
+def read(source: Source) -> tuple[Array, Array]:
     """Vertices and triangles of an OFF file; colours, normals and texture are skipped."""
     words = source.need("'OFF'", comment=b"#")
     if words[0] not in _KEYWORDS:
@@ -38,7 +37,7 @@ def read(source: Source) -> tuple[np.ndarray, np.ndarray]:
     return source.mesh(vertices, faces, lines)
 
 
-def write(vertices: np.ndarray, triangles: np.ndarray) -> bytes:
+def write(vertices: Array, triangles: Array) -> bytes:
     """An OFF file of doubles, each with the fewest digits that give it back exactly."""
     lines = [
         "OFF",

@@ -9,12 +9,13 @@ import copy
 
 import numpy as np
 
+from .._types import Array
 from ..errors import MeshError
 
 __all__ = ["energy", "present", "topology"]
 
 
-def topology(num_vertices: int, edges: np.ndarray, box: np.ndarray | None):
+def topology(num_vertices: int, edges: Array, box: Array | None):
     """What `Mesh.topology` returns: one chain, an atom per vertex, a bond per edge."""
     from openmm import app
 
@@ -31,7 +32,7 @@ def topology(num_vertices: int, edges: np.ndarray, box: np.ndarray | None):
     return result
 
 
-def energy(vertices: np.ndarray, force, box: np.ndarray | None) -> float:
+def energy(vertices: Array, force, box: Array | None) -> float:
     """What `Mesh.energy` returns: the energy of a copy of the force on the Reference platform."""
     import openmm
     from openmm import unit
@@ -65,7 +66,7 @@ def _check_periodic(force) -> None:
             )
 
 
-def present(context, force) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
+def present(context, force) -> tuple[Array, Array, Array | None]:
     """What `Mesh.from_context` makes a mesh of: vertices, triangles, and the box."""
     from openmm import unit
 

@@ -10,9 +10,11 @@ import io
 import tempfile
 import warnings
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from .._types import Array
 from .._writing import in_memory, naming, write_whole
 from ..errors import MeshError
 from . import repair
@@ -41,7 +43,7 @@ def trimesh_extensions() -> set[str]:
     return {"." + name for name in trimesh.available_formats()}
 
 
-def read_meshio(source: Source) -> tuple[np.ndarray, np.ndarray]:
+def read_meshio(source: Source) -> tuple[Array, Array]:
     """Vertices and triangles of a file, read by meshio.
 
     Points and lines are ignored, together with vertices that belong to nothing else.
@@ -53,7 +55,7 @@ def read_meshio(source: Source) -> tuple[np.ndarray, np.ndarray]:
     """
     mesh = _load(source)
     source.by_line = False
-    faces: list = []
+    faces: list[Any] = []
     ignored = [np.empty(0, dtype=np.int64)]
     points = np.asarray(mesh.points, dtype=np.float64)
     if points.ndim != 2 or points.shape[1] != 3:
@@ -83,9 +85,9 @@ def read_meshio(source: Source) -> tuple[np.ndarray, np.ndarray]:
 
 def write_meshio(
     path: Path,
-    vertices: np.ndarray,
-    triangles: np.ndarray,
-    point_data: dict[str, np.ndarray] | None = None,
+    vertices: Array,
+    triangles: Array,
+    point_data: dict[str, Array] | None = None,
 ) -> None:
     """Write a VTU or Gmsh file of doubles, binary: as text meshio would round them."""
     import meshio
@@ -98,7 +100,7 @@ def write_meshio(
     write_whole(path, data)
 
 
-def read_trimesh(path: Path) -> tuple[np.ndarray, np.ndarray]:
+def read_trimesh(path: Path) -> tuple[Array, Array]:
     """Vertices and triangles of a file, read by trimesh, with repeated vertices merged.
 
     Formats made for rendering, such as glTF, repeat a vertex that has several normals or colours.

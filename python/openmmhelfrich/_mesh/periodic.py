@@ -10,31 +10,30 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse.csgraph import breadth_first_order, connected_components
 
+from .._types import Array
 from .geometry import edge_graph
 
 __all__ = ["corner_positions", "cut", "cut_images", "half_width", "nearest", "unfolded", "wrapped"]
 
 
-def half_width(box: np.ndarray) -> float:
+def half_width(box: Array) -> float:
     """Half of the least distance between opposite faces, nm: what is shorter has one image."""
     a, b, c = box
     faces = [np.linalg.norm(np.cross(*pair)) for pair in ((b, c), (c, a), (a, b))]
     return float(abs(np.linalg.det(box)) / max(faces) / 2)
 
 
-def nearest(separations: np.ndarray, box: np.ndarray | None) -> np.ndarray:
+def nearest(separations: Array, box: Array | None) -> Array:
     """Separations, shape (…, 3), as their shortest images; of long ones, as some short image."""
     return _reduced(separations, box, np.rint)
 
 
-def wrapped(positions: np.ndarray, box: np.ndarray | None) -> np.ndarray:
+def wrapped(positions: Array, box: Array | None) -> Array:
     """Positions, shape (…, 3), in the brick of sides ax, by and cz that begins at the origin."""
     return _reduced(positions, box, np.floor)
 
 
-def corner_positions(
-    vertices: np.ndarray, triangles: np.ndarray, box: np.ndarray | None
-) -> np.ndarray:
+def corner_positions(vertices: Array, triangles: Array, box: Array | None) -> Array:
     """Corners of triangles, those beside the first as its nearest images.
 
     Parameters
@@ -57,9 +56,7 @@ def corner_positions(
     return first + nearest(corners - first, box)
 
 
-def unfolded(
-    vertices: np.ndarray, edges: np.ndarray, box: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def unfolded(vertices: Array, edges: Array, box: Array) -> tuple[Array, Array, Array]:
     """Vertices moved by box vectors so that edges of a tree are nearest images.
 
     Parameters
@@ -100,14 +97,14 @@ def unfolded(
     return result, part, spanning
 
 
-def cut(vertices: np.ndarray, triangles: np.ndarray, edges: np.ndarray, box: np.ndarray):
+def cut(vertices: Array, triangles: Array, edges: Array, box: Array):
     """The positions and triangles of `cut_images`."""
     return cut_images(vertices, triangles, edges, box)[:2]
 
 
 def cut_images(
-    vertices: np.ndarray, triangles: np.ndarray, edges: np.ndarray, box: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    vertices: Array, triangles: Array, edges: Array, box: Array
+) -> tuple[Array, Array, Array]:
     """Whole triangles, and vertices once for each of their images that triangles need.
 
     Where a part spans the box, its triangles are those with their middles inside of the box.
@@ -133,13 +130,13 @@ def cut_images(
     return places[owners] + images[:, 1:] @ box, number.reshape(-1, 3), owners
 
 
-def _steps(shifts: np.ndarray, box: np.ndarray) -> np.ndarray:
+def _steps(shifts: Array, box: Array) -> Array:
     """Sums of box vectors, shape (…, 3), as how many of each."""
     flat = np.linalg.solve(box.T, shifts.reshape(-1, 3).T).T
     return np.rint(flat).astype(int).reshape(shifts.shape)
 
 
-def _reduced(vectors: np.ndarray, box: np.ndarray | None, count) -> np.ndarray:
+def _reduced(vectors: Array, box: Array | None, count) -> Array:
     if box is None:
         return vectors
     rest = np.array(vectors, dtype=float)

@@ -6,10 +6,11 @@ whatever the header declares, so that none of the digits is lost.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from .._types import Array
 from ..errors import MeshError
 from .source import Source, shorten
 
@@ -49,7 +50,7 @@ class _Element(NamedTuple):
     properties: list[_Property]
 
 
-def read(source: Source) -> tuple[np.ndarray, np.ndarray]:
+def read(source: Source) -> tuple[Array, Array]:
     """Vertices and triangles of a PLY file; elements and properties besides those are skipped."""
     if source.words() != ["ply"]:
         raise source.error("a PLY file starts with a line 'ply'")
@@ -66,11 +67,11 @@ def read(source: Source) -> tuple[np.ndarray, np.ndarray]:
 
 
 def write(
-    vertices: np.ndarray,
-    triangles: np.ndarray,
-    point_data: dict[str, np.ndarray] | None = None,
+    vertices: Array,
+    triangles: Array,
+    point_data: dict[str, Array] | None = None,
     binary: bool = False,
-    box: np.ndarray | None = None,
+    box: Array | None = None,
 ) -> bytes:
     """A PLY file of doubles; as text, each with the fewest digits that give it back exactly.
 
@@ -180,7 +181,7 @@ def _refuse_repeated(source: Source, names: list[str], what: str) -> None:
             raise source.error(f"two {what} are called {name!r}; rename one of them")
 
 
-def _read_ascii(source: Source, elements: list[_Element]) -> tuple[np.ndarray, np.ndarray]:
+def _read_ascii(source: Source, elements: list[_Element]) -> tuple[Array, Array]:
     num_vertices = next(element.count for element in elements if element.name == "vertex")
     vertices, faces, lines = [], [], []
     for name, count, properties in elements:
@@ -203,7 +204,7 @@ def _read_ascii(source: Source, elements: list[_Element]) -> tuple[np.ndarray, n
     return source.mesh(vertices, faces, lines)
 
 
-def _start_of_corners(source: Source, properties: list, words: list[str], face: int) -> int:
+def _start_of_corners(source: Source, properties: list[Any], words: list[str], face: int) -> int:
     """Where in a line the list of corners starts: scalars and other lists may precede it."""
     at = 0
     for entry in properties:
@@ -217,14 +218,12 @@ def _start_of_corners(source: Source, properties: list, words: list[str], face: 
     raise source.error(f"face {face} ends before its vertex indices: {shorten(words)}")
 
 
-def _read_binary(
-    source: Source, elements: list[_Element], order: str
-) -> tuple[np.ndarray, np.ndarray]:
+def _read_binary(source: Source, elements: list[_Element], order: str) -> tuple[Array, Array]:
     data = source.rest()
     at = 0
     vertices, faces = np.empty((0, 3)), []
 
-    def take(dtype: np.dtype, count: int, what: str) -> np.ndarray:
+    def take(dtype: np.dtype, count: int, what: str) -> Array:
         nonlocal at
         needed = dtype.itemsize * count
         if at + needed > len(data):

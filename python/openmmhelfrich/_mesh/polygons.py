@@ -12,8 +12,11 @@ one another where the face was.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
+
+from .._types import Array
 
 __all__ = ["split"]
 
@@ -27,7 +30,7 @@ _CROSSED = (
 )
 
 
-def split(points: np.ndarray, faces: Sequence, fail: Callable[[int, str], Exception]) -> np.ndarray:
+def split(points: Array, faces: Sequence[Any], fail: Callable[[int, str], Exception]) -> Array:
     """The triangles of polygons.
 
     Parameters
@@ -79,7 +82,7 @@ def _fault(face) -> str:
     return _CROSSED
 
 
-def _quadrilaterals(points: np.ndarray, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _quadrilaterals(points: Array, corners: Array) -> tuple[Array, Array]:
     """The two halves of each quadrilateral, shape (…, 2, 3), and which ones have none."""
     a, b, c, d = (points[corners[:, k]] for k in range(4))
     normal = np.cross(c - a, d - b)
@@ -101,7 +104,7 @@ def _quadrilaterals(points: np.ndarray, corners: np.ndarray) -> tuple[np.ndarray
     return halves, ~(along_ac | along_bd) | repeated
 
 
-def _ears(points: np.ndarray) -> np.ndarray | None:
+def _ears(points: Array) -> Array | None:
     """The triangles of one polygon, by places of its corners; None if it cannot be split."""
     flat, double_area = _seen_along_normal(points)
     least = _SLIVER * double_area
@@ -132,7 +135,7 @@ def _ears(points: np.ndarray) -> np.ndarray | None:
     return np.array([*triangles, tuple(left)])
 
 
-def _seen_along_normal(points: np.ndarray) -> tuple[np.ndarray, float]:
+def _seen_along_normal(points: Array) -> tuple[Array, float]:
     """Coordinates in the plane of a polygon, counter-clockwise, and twice its area there."""
     sides = points - points[0]
     normal = np.cross(sides, np.roll(sides, -1, axis=0)).sum(axis=0)
@@ -145,6 +148,6 @@ def _seen_along_normal(points: np.ndarray) -> tuple[np.ndarray, float]:
     return sides @ np.stack([first, np.cross(normal, first)], axis=1), double_area
 
 
-def _cross(p: np.ndarray, q: np.ndarray) -> np.ndarray:
+def _cross(p: Array, q: Array) -> Array:
     """Twice the signed area between vectors in the plane."""
     return p[..., 0] * q[..., 1] - p[..., 1] * q[..., 0]

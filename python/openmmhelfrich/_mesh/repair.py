@@ -7,6 +7,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from .._types import Array
 from ..errors import MeshError
 
 __all__ = ["doubled", "drop", "hints", "merge"]
@@ -19,9 +20,7 @@ _HUGE = 1e100
 _MANY = 100
 
 
-def merge(
-    points: np.ndarray, triangles: np.ndarray, distance: float
-) -> tuple[np.ndarray, np.ndarray]:
+def merge(points: Array, triangles: Array, distance: float) -> tuple[Array, Array]:
     """The mesh with vertices at most `distance` apart joined, chains of them too.
 
     The first one of each group in the file stays where it is, and numbers close up.
@@ -61,9 +60,7 @@ def merge(
     return drop(points, corners, np.flatnonzero(target != np.arange(len(points))))
 
 
-def drop(
-    points: np.ndarray, corners: np.ndarray, dropped: np.ndarray | None = None
-) -> tuple[np.ndarray, np.ndarray]:
+def drop(points: Array, corners: Array, dropped: Array | None = None) -> tuple[Array, Array]:
     """The mesh without some vertices, which no triangle uses; without all of these by default."""
     if not _in_range(points, corners):
         # An index out of range is left to the validation of the mesh, which names it.
@@ -78,7 +75,7 @@ def drop(
     return points[kept], number[corners]
 
 
-def hints(points: np.ndarray, triangles: np.ndarray) -> str:
+def hints(points: Array, triangles: Array) -> str:
     """What reading a refused mesh in another way could mend; empty if nothing of that kind."""
     if not _sound(points, triangles) or len(triangles) == 0:
         return ""
@@ -90,7 +87,7 @@ def hints(points: np.ndarray, triangles: np.ndarray) -> str:
     return found + doubled(points, triangles)
 
 
-def doubled(points: np.ndarray, triangles: np.ndarray) -> str:
+def doubled(points: Array, triangles: Array) -> str:
     """A hint at vertices that nearly coincide, without an edge between them; empty if none do."""
     sides = np.concatenate([triangles[:, [k, (k + 1) % 3]] for k in range(3)])
     lengths = np.linalg.norm(points[sides[:, 0]] - points[sides[:, 1]], axis=1)
@@ -110,7 +107,7 @@ def doubled(points: np.ndarray, triangles: np.ndarray) -> str:
     )
 
 
-def _pairs(points: np.ndarray, distance: float) -> np.ndarray | None:
+def _pairs(points: Array, distance: float) -> Array | None:
     """Pairs of vertices at most so far apart, shape (num_pairs, 2); None if they are too many."""
     tree = cKDTree(points)
     if tree.count_neighbors(tree, distance) > (_MANY + 1) * len(points):
@@ -118,14 +115,14 @@ def _pairs(points: np.ndarray, distance: float) -> np.ndarray | None:
     return tree.query_pairs(distance, output_type="ndarray")
 
 
-def _unused(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+def _unused(points: Array, triangles: Array) -> Array:
     return np.setdiff1d(np.arange(len(points)), triangles)
 
 
-def _in_range(points: np.ndarray, triangles: np.ndarray) -> bool:
+def _in_range(points: Array, triangles: Array) -> bool:
     return bool(((triangles >= 0) & (triangles < len(points))).all())
 
 
-def _sound(points: np.ndarray, triangles: np.ndarray) -> bool:
+def _sound(points: Array, triangles: Array) -> bool:
     """Whether distances and indices mean something; if not, the validation says why."""
     return len(points) > 0 and bool((abs(points) < _HUGE).all()) and _in_range(points, triangles)

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
+from typing import Any
 
 import numpy as np
 
+from .._types import Array
 from ..errors import MeshError
 from . import polygons
 
@@ -162,8 +164,8 @@ class Source:
             raise self.error(f"face {face} has {count} vertices, not 3; {_OPTION}")
 
     def mesh(
-        self, vertices, faces: list, lines: list[int] | None = None, first: int = 0
-    ) -> tuple[np.ndarray, np.ndarray]:
+        self, vertices, faces: list[Any], lines: list[int] | None = None, first: int = 0
+    ) -> tuple[Array, Array]:
         """Vertices and triangles as arrays; larger faces are split, see `polygons`.
 
         Parameters
@@ -204,7 +206,7 @@ def shorten(words: list[str]) -> str:
     return repr(text if len(text) <= 40 else text[:37] + "...") if text else ""
 
 
-def merge_repeated(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def merge_repeated(corners: Array) -> tuple[Array, Array]:
     """The vertices of facets that repeat the coordinates of their corners.
 
     Parameters

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from scipy.spatial import ConvexHull
 
+from .._types import Array
 from ..errors import MeshError
 from .inputs import integer, positive
 
@@ -20,7 +23,7 @@ _MOST_STEPS = 1000
 _ATTEMPTS = 20
 
 
-def icosphere(n, radius: float) -> tuple[np.ndarray, np.ndarray]:
+def icosphere(n, radius: float) -> tuple[Array, Array]:
     """Class-I subdivision of the icosahedron, projected on a sphere about the origin.
 
     Every face is cut into n² triangles by n equal parts of its sides. The 12 corners of the
@@ -76,12 +79,12 @@ def icosphere(n, radius: float) -> tuple[np.ndarray, np.ndarray]:
     return radius * _project(points[order]), rank[flat].reshape(-1, 3)
 
 
-def _sides(faces: np.ndarray) -> np.ndarray:
+def _sides(faces: Array) -> Array:
     """The sides of the icosahedron, lower corner first, shape (30, 2)."""
     return np.unique(np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]], axis=2).reshape(-1, 2), axis=0)
 
 
-def _shares(n: int) -> np.ndarray:
+def _shares(n: int) -> Array:
     """What each corner of a face contributes to each of its points, in parts of n.
 
     Shape ((n + 1)(n + 2) / 2, 3): every i, j, k ≥ 0 with i + j + k = n, ascending by i, then j.
@@ -90,7 +93,7 @@ def _shares(n: int) -> np.ndarray:
     return np.stack([i, j, n - i - j], axis=1)
 
 
-def _subdivision(n: int) -> np.ndarray:
+def _subdivision(n: int) -> Array:
     """The triangles of a subdivided face as indices into `_shares`, shape (n², 3)."""
     i, j, k = _shares(n - 1).T
 
@@ -105,7 +108,7 @@ def _subdivision(n: int) -> np.ndarray:
     return np.stack([upright, turned], axis=1)[exists]
 
 
-def _names(face: np.ndarray, number: int, sides: dict, shares: np.ndarray) -> np.ndarray:
+def _names(face: Array, number: int, sides: dict[str, Any], shares: Array) -> Array:
     """A number for every point of a face, under which neighbouring faces know it too.
 
     First come the 12 corners of the icosahedron, then the inner points of its 30 sides, then those
@@ -126,7 +129,7 @@ def _names(face: np.ndarray, number: int, sides: dict, shares: np.ndarray) -> np
     return names
 
 
-def random_sphere(num_vertices, radius: float, seed) -> tuple[np.ndarray, np.ndarray]:
+def random_sphere(num_vertices, radius: float, seed) -> tuple[Array, Array]:
     """An irregular, nearly even triangulation of a sphere about the origin.
 
     Vertices of the Fibonacci lattice are displaced at random by about a third of their spacing and
@@ -182,7 +185,7 @@ def random_sphere(num_vertices, radius: float, seed) -> tuple[np.ndarray, np.nda
     )
 
 
-def _jittered_lattice(count: int, random: np.random.Generator) -> np.ndarray:
+def _jittered_lattice(count: int, random: np.random.Generator) -> Array:
     """Unit vectors, even over long distances and irregular over short ones.
 
     Independent random points would need many more steps of relaxation, since their density varies
@@ -197,7 +200,7 @@ def _jittered_lattice(count: int, random: np.random.Generator) -> np.ndarray:
     return _project(lattice + 0.35 * spacing * random.normal(size=lattice.shape))
 
 
-def _lloyd_step(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+def _lloyd_step(points: Array, triangles: Array) -> Array:
     """Unit vectors moved beyond the centroids of their Voronoi cells on the sphere.
 
     The cell of a vertex P is cut into thin triangles (P, middle of an edge, circumcentre), whose
@@ -220,7 +223,7 @@ def _lloyd_step(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     return _project(points + _OVERSHOOT * (_project(moments) - points))
 
 
-def _outward(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+def _outward(points: Array, triangles: Array) -> Array:
     """Triangles of a star-shaped surface round the origin, counter-clockwise from outside."""
     a, b, c = (points[triangles[:, corner]] for corner in range(3))
     inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), a) < 0
@@ -229,5 +232,5 @@ def _outward(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     return turned
 
 
-def _project(vectors: np.ndarray) -> np.ndarray:
+def _project(vectors: Array) -> Array:
     return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)

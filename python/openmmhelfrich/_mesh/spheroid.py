@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import brentq
 
+from .._types import Array
 from ..errors import MeshError
 from .geometry import reduced_volume, surface_area, volume_enclosed
 from .inputs import numbers
@@ -12,9 +13,7 @@ from .inputs import numbers
 __all__ = ["spheroid"]
 
 
-def spheroid(
-    vertices: np.ndarray, triangles: np.ndarray, target, prolate: bool, where: str
-) -> np.ndarray:
+def spheroid(vertices: Array, triangles: Array, target, prolate: bool, where: str) -> Array:
     """Vertices stretched along z, or flattened, to a reduced volume at unchanged area.
 
     x' = c + s (x − c), y likewise, z' = c + s t (z − c): c is the mean of the vertices, t solves
@@ -47,7 +46,7 @@ def spheroid(
     centre = vertices.mean(axis=0)
     centred = vertices - centre
 
-    def stretched(log_aspect: float) -> np.ndarray:
+    def stretched(log_aspect: float) -> Array:
         return centred * np.array([1.0, 1.0, np.exp(log_aspect)])
 
     def excess(log_aspect: float) -> float:

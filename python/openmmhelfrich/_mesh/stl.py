@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from .._types import Array
 from .source import Source, merge_repeated, shorten
 
 __all__ = ["read", "write"]
@@ -16,7 +17,7 @@ _HEADER_BYTES = 84
 _FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
-def read(source: Source) -> tuple[np.ndarray, np.ndarray]:
+def read(source: Source) -> tuple[Array, Array]:
     """Vertices and triangles of an STL file; the normals are ignored, solids are merged."""
     # Some programs begin binary files with 'solid' too, but their length gives them away.
     count = int.from_bytes(source.raw[_HEADER_BYTES - 4 : _HEADER_BYTES], "little")
@@ -46,7 +47,7 @@ def _is_text(source: Source) -> bool:
     return source.raw != source.data or (len(head) > 0 and all(9 <= byte < 127 for byte in head))
 
 
-def _read_ascii(source: Source) -> tuple[np.ndarray, np.ndarray]:
+def _read_ascii(source: Source) -> tuple[Array, Array]:
     corners: list[list[float]] = []
     sizes, lines = [], []
     open_solid = False
@@ -90,7 +91,7 @@ def _expect(source: Source, keywords: list[str], facet: int) -> None:
         raise source.error(f"expected {shorten(keywords)}, got {shorten(words)}")
 
 
-def write(vertices: np.ndarray, triangles: np.ndarray) -> bytes:
+def write(vertices: Array, triangles: Array) -> bytes:
     """An ASCII STL file, which unlike a binary one has room for all digits of a double."""
     corners = vertices[triangles]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

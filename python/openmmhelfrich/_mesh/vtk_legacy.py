@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from .._types import Array
 from .cells import TRIANGLE, Cells, polydata_cells
 from .source import Source, plain, shorten
 
@@ -31,7 +32,7 @@ _DATASETS = ("POLYDATA", "UNSTRUCTURED_GRID")
 _CELLS = ("VERTICES", "LINES", "POLYGONS", "TRIANGLE_STRIPS", "CELLS")
 
 
-def read(source: Source) -> tuple[np.ndarray, np.ndarray]:
+def read(source: Source) -> tuple[Array, Array]:
     """Vertices and triangles of a legacy VTK file; values of points and cells are skipped."""
     return _Reader(source).read()
 
@@ -44,7 +45,7 @@ class _Reader:
         self._binary = False
         self._offsets = False
 
-    def read(self) -> tuple[np.ndarray, np.ndarray]:
+    def read(self) -> tuple[Array, Array]:
         """The whole of it."""
         source = self._source
         dataset = self._header()
@@ -117,7 +118,7 @@ class _Reader:
             raise self._source.error(f"the number after {words[at - 1]} is {count}")
         return count
 
-    def _values(self, type_name: str, count: int, what: str) -> np.ndarray:
+    def _values(self, type_name: str, count: int, what: str) -> Array:
         """So many numbers, as doubles or as 64-bit integers."""
         source = self._source
         if type_name.lower() not in _TYPES:
@@ -196,9 +197,9 @@ class _Reader:
 
 
 def write(
-    vertices: np.ndarray,
-    triangles: np.ndarray,
-    point_data: dict[str, np.ndarray] | None = None,
+    vertices: Array,
+    triangles: Array,
+    point_data: dict[str, Array] | None = None,
     binary: bool = False,
 ) -> bytes:
     """An UNSTRUCTURED_GRID of triangles and doubles, version 3.0, which every reader knows.
@@ -207,7 +208,7 @@ def write(
     are SCALARS or VECTORS of POINT_DATA.
     """
 
-    def rows(values: np.ndarray, stored: str) -> bytes:
+    def rows(values: Array, stored: str) -> bytes:
         if binary:
             return values.astype(stored).tobytes() + b"\n"
         return ("\n".join(" ".join(map(repr, row)) for row in values.tolist()) + "\n").encode()

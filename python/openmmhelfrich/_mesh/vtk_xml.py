@@ -15,6 +15,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from .._types import Array
 from ..errors import MeshError
 from .cells import Cells, polydata_cells
 from .source import Source, plain, shorten
@@ -37,7 +38,7 @@ _PARTS = {
 _APPENDED = re.compile(rb"<AppendedData[^>]*encoding\s*=\s*[\"'](raw|base64)[\"'][^>]*>\s*_")
 
 
-def read(source: Source) -> tuple[np.ndarray, np.ndarray]:
+def read(source: Source) -> tuple[Array, Array]:
     """Vertices and triangles of a .vtp or .vtu file; values of points and cells are skipped."""
     return _Reader(source).read()
 
@@ -92,7 +93,7 @@ class _Reader:
             return lambda data, size: decompress(data, uncompressed_size=size)
         raise self._error(f"unknown compressor {name!r}; save it with ZLib or none")
 
-    def read(self) -> tuple[np.ndarray, np.ndarray]:
+    def read(self) -> tuple[Array, Array]:
         """The whole surface; pieces follow one another."""
         kind = self._root.get("type", "")
         if self._root.tag != "VTKFile" or kind not in ("PolyData", "UnstructuredGrid"):
@@ -147,7 +148,7 @@ class _Reader:
         corners = self._array(piece, tag, "connectivity", np.int64)
         return Cells(corners, np.concatenate([[0], ends]).astype(np.int64))
 
-    def _array(self, piece, tag: str, name: str | None, wanted) -> np.ndarray:
+    def _array(self, piece, tag: str, name: str | None, wanted) -> Array:
         """The numbers of one DataArray."""
         for element in piece.iterfind(f"{tag}/DataArray"):
             if name is None or element.get("Name") == name:

@@ -8,6 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .._types import Array
+
 __all__ = ["GSDFrame", "frames_in", "import_gsd", "read_gsd"]
 
 
@@ -18,17 +20,17 @@ class GSDFrame(NamedTuple):
     """Of the simulation."""
     time: float | None
     """ps; None in a file of another program."""
-    vertices: np.ndarray
+    vertices: Array
     """Shape (num_vertices, 3), nm, with the images of the periodic box undone."""
-    triangles: np.ndarray | None
+    triangles: Array | None
     """Shape (num_triangles, 3); None in a file of another program."""
-    bonds: np.ndarray
+    bonds: Array
     """Pairs of vertices, shape (num_bonds, 2): the edges."""
-    box: np.ndarray | None
+    box: Array | None
     """The periodic box, shape (3, 3), nm, in OpenMM's form; None without one."""
-    types: np.ndarray
+    types: Array
     """Kind of each vertex, from 0, shape (num_vertices,)."""
-    masses: np.ndarray
+    masses: Array
     """amu, shape (num_vertices,)."""
 
 
@@ -72,7 +74,7 @@ def frames_in(path: Path, where: str) -> Iterator[GSDFrame]:
         ) from None
 
 
-def _vectors(box: np.ndarray) -> np.ndarray:
+def _vectors(box: Array) -> Array:
     """Box vectors, shape (3, 3), of HOOMD's six numbers."""
     x, y, z, xy, xz, yz = box.astype(float)
     return np.array([[x, 0, 0], [xy * y, y, 0], [xz * z, yz * z, z]])

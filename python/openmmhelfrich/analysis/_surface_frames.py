@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from .._types import Array
 from .._writing import naming
 from ._arrays import box_of, in_boxes, over_frames
 from .surface_series import SurfaceFrame, components
@@ -121,7 +122,7 @@ class Types:
                 f"{self._given.shape}"
             )
 
-    def next(self, frame: SurfaceFrame) -> np.ndarray:
+    def next(self, frame: SurfaceFrame) -> Array:
         """Those of the next frame, shape (num_vertices,)."""
         count, number = len(frame.vertices), self._number
         self._number += 1

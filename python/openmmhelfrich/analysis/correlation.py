@@ -1,12 +1,20 @@
 """Autocorrelation functions and times."""
 
+from __future__ import annotations
+
+from typing import Any
+
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.fft import next_fast_len
 
 from .._numbers import finite_array, whole_number
+from .._types import Array
 
 
-def autocorrelation(series, lags=None, subtract_mean=False, normalise=True):
+def autocorrelation(
+    series: ArrayLike, lags: int | None = None, subtract_mean: bool = False, normalise: bool = True
+) -> Array:
     """Autocorrelation function C(k) = Σ_t x(t) x(t+k) / (n − k), by fast Fourier transform.
 
     Each lag is divided by the number of its pairs, so that the estimate of a series of known zero
@@ -54,7 +62,7 @@ def autocorrelation(series, lags=None, subtract_mean=False, normalise=True):
     return result
 
 
-def mode_autocorrelation(amplitudes, lags=None):
+def mode_autocorrelation(amplitudes: ArrayLike, lags: int | None = None) -> Any:
     """Autocorrelation functions of the modes, averaged over m, ⟨u_lm(t) u_lm(0)⟩ / ⟨u_lm²⟩.
 
     Parameters
@@ -96,7 +104,7 @@ def mode_autocorrelation(amplitudes, lags=None):
     return mean, spread
 
 
-def autocorrelation_time(series):
+def autocorrelation_time(series: ArrayLike) -> float:
     """Integrated autocorrelation time τ = ½ + Σ_{k>0} ρ(k), in steps of the series.
 
     A mean over n values has the variance σ² · 2τ/n. The sum ends at the first lag k ≥ 5 τ(k),

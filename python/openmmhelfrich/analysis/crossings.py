@@ -1,9 +1,14 @@
 """Where a triangulated surface passes through itself."""
 
+from __future__ import annotations
+
+from typing import Any
+
 import numpy as np
 from scipy.spatial import cKDTree
 
 from .._mesh.periodic import corner_positions, wrapped
+from .._types import Array, Values
 from ._arrays import box_of, dot, frames_of, triangles_of
 
 # Ends of an edge that are nearer to the plane of a triangle than this part of the edge lie in it.
@@ -12,7 +17,7 @@ _FLAT = 1e-12
 _CHUNK = 1 << 16
 
 
-def crossings(vertices, triangles=None, *, box=None):
+def crossings(vertices: Any, triangles: Any = None, *, box: Values | None = None) -> Array:
     """Pairs of triangles that pass through each other.
 
     Two triangles in general position meet where an edge of one of them meets the other, so every

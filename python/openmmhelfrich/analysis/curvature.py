@@ -1,10 +1,13 @@
 """Areas, normals and curvatures of the vertices of a triangulated surface."""
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from .._mesh.periodic import corner_positions, nearest
+from .._types import Array, Values
 from ._arrays import box_of, dot, gather_sum, in_boxes, over_frames
 from .elements import edges_of
 
@@ -24,20 +27,20 @@ class VertexQuantities(NamedTuple):
     Curvatures are not defined at a border: `julicher`, `cotangent` and `umbrella` are NaN there.
     """
 
-    barycentric_area: np.ndarray
+    barycentric_area: Array
     """a_B = Σ_t a_t / 3 (B12), nm²."""
-    voronoi_area: np.ndarray
+    voronoi_area: Array
     """a_V = Σ_j l_ij² (cot θ1 + cot θ2) / 8 (B8), nm²; 0 or negative where triangles are obtuse."""
-    normal: np.ndarray
+    normal: Array
     """n = Σ_t θ_t n_t / |…| (B9), a unit vector outward, shape (…, 3)."""
-    julicher: np.ndarray
+    julicher: Array
     """J = Σ_j l_ij φ_ij / 2 (B11), nm; positive where the surface is convex."""
-    cotangent: np.ndarray
+    cotangent: Array
     """S = Σ_j (cot θ1 + cot θ2)(r_i − r_j) / 2 (B7), nm, shape (…, 3)."""
-    umbrella: np.ndarray
+    umbrella: Array
     """Σ_j (r_i − r_j) / √3, Espriu's vector, nm, shape (…, 3); S if triangles are equilateral."""
 
-    def mean_curvature(self, scheme="Julicher"):
+    def mean_curvature(self, scheme: str | int = "Julicher") -> Any:
         """Mean curvature H at every vertex by a scheme, see `mean_curvature`, 1/nm."""
         name = _scheme(scheme)
         area = self.voronoi_area if name in _VORONOI else self.barycentric_area
@@ -50,7 +53,9 @@ class VertexQuantities(NamedTuple):
 _VORONOI = ("GompperKroll", "JulicherVoronoi")
 
 
-def mean_curvature(vertices, triangles, scheme="Julicher", *, box=None):
+def mean_curvature(
+    vertices: Any, triangles: Any, scheme: str | int = "Julicher", *, box: Values | None = None
+) -> Array:
     """Mean curvature H of every vertex, by one of the schemes of `BendingForce`.
 
     ========================= ======================== =====
@@ -101,7 +106,7 @@ def mean_curvature(vertices, triangles, scheme="Julicher", *, box=None):
     return vertex_quantities(vertices, triangles, box=box).mean_curvature(scheme)
 
 
-def vertex_quantities(vertices, triangles, *, box=None) -> VertexQuantities:
+def vertex_quantities(vertices: Any, triangles: Any, *, box: Any = None) -> VertexQuantities:
     """Areas, normals and integrated curvatures of all vertices.
 
     Parameters
@@ -133,7 +138,7 @@ def vertex_quantities(vertices, triangles, *, box=None) -> VertexQuantities:
     )
 
 
-def total_mean_curvature(vertices, triangles, *, box=None):
+def total_mean_curvature(vertices: Any, triangles: Any, *, box: Any = None) -> Array | float:
     """Integral M = ∫ (C1 + C2)/2 dA over the surface, which is Σ l φ / 2 over its edges.
 
     It is 4πr on a sphere, and what an `AreaDifferenceForce` keeps near its target: the monolayers
@@ -157,7 +162,7 @@ def total_mean_curvature(vertices, triangles, *, box=None):
     return _totals(vertices, triangles, box)[0]
 
 
-def area_difference(vertices, triangles, *, box=None):
+def area_difference(vertices: Any, triangles: Any, *, box: Any = None) -> Array | float:
     """Reduced difference of the areas of two monolayers, Δa = ΔA / 8πD R_A = M / 4πR_A.
 
     R_A is the radius of the sphere of the same area, 4πR_A² = A, so that Δa is 1 on a sphere; D is
@@ -194,12 +199,12 @@ def _totals(vertices, triangles, box):
 
 
 class _Edges(NamedTuple):
-    start: np.ndarray
-    end: np.ndarray
-    right: np.ndarray
-    vectors: np.ndarray
-    lengths: np.ndarray
-    angles: np.ndarray
+    start: Array
+    end: Array
+    right: Array
+    vectors: Array
+    lengths: Array
+    angles: Array
 
 
 def _edges(frames, faces, box):

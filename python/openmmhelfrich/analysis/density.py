@@ -1,14 +1,19 @@
 """Density of the vertices on the sphere, and its structure factor."""
 
+from __future__ import annotations
+
+from typing import Any
+
 import numpy as np
 
 from .._numbers import whole_number
+from .._types import Array
 from ._arrays import check_whole, over_frames
 from .harmonics import harmonics_of
 from .statistics import Spectrum, spectrum
 
 
-def density_modes(vertices, lmax):
+def density_modes(vertices: Any, lmax: int) -> Array:
     """Modes of the density of vertices on the unit sphere, ρ_lm = √(4π/N) Σ_i Y_lm(θ_i, φ_i).
 
     The directions are those seen from the centre of mass, the mean of the vertices. In this norm
@@ -57,7 +62,7 @@ def density_modes(vertices, lmax):
     return over_frames(work, vertices, cost=lambda n, t: n * max(30, (lmax + 1) ** 2))
 
 
-def structure_factor(vertices, lmax) -> Spectrum:
+def structure_factor(vertices: Any, lmax: int) -> Spectrum:
     """Structure factor S(l) = ⟨|ρ_lm|²⟩ of the vertices on the sphere, with error bars.
 
     The mean over m and over the frames of `density_modes`, with errors that account for correlation

@@ -1,12 +1,17 @@
 """Edges and triangles of a surface: which there are, and their sizes."""
 
+from __future__ import annotations
+
+from typing import Any
+
 import numpy as np
 
 from .._mesh.periodic import corner_positions, nearest
+from .._types import Array, Values
 from ._arrays import box_of, in_boxes, over_frames
 
 
-def triangle_areas(vertices, triangles, *, box=None):
+def triangle_areas(vertices: Any, triangles: Any, *, box: Values | None = None) -> Array:
     """Area of every triangle.
 
     Parameters
@@ -41,7 +46,7 @@ def triangle_areas(vertices, triangles, *, box=None):
     return over_frames(in_boxes(work, box), vertices, triangles, lambda n, t: 15 * t)
 
 
-def triangle_heights(vertices, triangles, *, box=None):
+def triangle_heights(vertices: Any, triangles: Any, *, box: Any = None) -> Array:
     """The three heights of every triangle, 2 a_t / l.
 
     Parameters
@@ -71,7 +76,7 @@ def triangle_heights(vertices, triangles, *, box=None):
     return over_frames(in_boxes(work, box), vertices, triangles, lambda n, t: 20 * t)
 
 
-def edge_lengths(vertices, triangles, *, box=None):
+def edge_lengths(vertices: Any, triangles: Any, *, box: Any = None) -> Array:
     """Length of every edge, in the order of `Mesh.edges`.
 
     Parameters
@@ -102,7 +107,7 @@ def edge_lengths(vertices, triangles, *, box=None):
     return over_frames(in_boxes(work, box), vertices, triangles, lambda n, t: 12 * t)
 
 
-def edges_of(faces):
+def edges_of(faces: Any) -> Any:
     """Edges of an oriented surface, each once.
 
     Returns

@@ -6,9 +6,12 @@ The format: https://github.com/libAtoms/extxyz.
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from .._types import Array, File
 from ._surface_frames import Types, each_surface, fresh_file
 from .curvature import vertex_quantities
 from .elements import edges_of
@@ -24,7 +27,14 @@ _PROPERTIES = (
 
 
 def write_extended_xyz(
-    path, vertices, triangles=None, times=None, steps=None, *, box=None, types=None
+    path: File,
+    vertices: Any,
+    triangles: Any = None,
+    times: Any = None,
+    steps: Any = None,
+    *,
+    box: Any = None,
+    types: ArrayLike | None = None,
 ) -> int:
     """Write vertices over time as extended XYZ, with values of each: OVITO and ASE read it.
 
@@ -73,7 +83,7 @@ def write_extended_xyz(
         return each_surface("write_extended_xyz", add, vertices, triangles, times, steps, box)
 
 
-def text_of(frame: SurfaceFrame, kinds: np.ndarray) -> str:
+def text_of(frame: SurfaceFrame, kinds: Array) -> str:
     """One frame; kinds: the type of each vertex, shape (num_vertices,)."""
     count = len(frame.vertices)
     start, end = edges_of(frame.triangles)[:2]

@@ -1,8 +1,11 @@
 """Elastic constants and damping rates from measured spectra and autocorrelations."""
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.optimize import curve_fit, least_squares
 
 from .._numbers import finite_array, positive_number, whole_number
@@ -39,7 +42,13 @@ class DampingFit(NamedTuple):
     """Its standard error, rad/ps, 0 if it was given."""
 
 
-def fit_young(spectrum, radius, kappa_over_kT=None, lmin=2, lmax=None) -> ElasticFit:
+def fit_young(
+    spectrum: Any,
+    radius: float,
+    kappa_over_kT: float | None = None,
+    lmin: int = 2,
+    lmax: int | None = None,
+) -> ElasticFit:
     """Young modulus of a vesicle from its spectrum, by (A18).
 
     ln ⟨|u_lm|²⟩ = −ln [κ (l+2)(l+1) l (l−1) + Y r0² · 3 (l² + l − 2) / (3 (l² + l) − 2)]
@@ -147,7 +156,9 @@ def fit_young(spectrum, radius, kappa_over_kT=None, lmin=2, lmax=None) -> Elasti
     )
 
 
-def fit_damping(series, interval, lags=None, frequency=None) -> DampingFit:
+def fit_damping(
+    series: ArrayLike, interval: float, lags: int | None = None, frequency: float | None = None
+) -> DampingFit:
     """Damping rate γ and frequency ω of a mode from its autocorrelation function.
 
     `theory.langevin_autocorrelation` (A35–A37) is fitted to the unbiased autocorrelation, averaged

@@ -6,9 +6,12 @@ The format and its chunks: https://gsd.readthedocs.io/en/stable/schema-hoomd.htm
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from .._types import Array, File
 from ._gsd import import_gsd
 from ._surface_frames import Types, each_surface, fresh_file
 from .curvature import vertex_quantities
@@ -19,7 +22,15 @@ __all__ = ["Frames", "masses_of", "write_gsd"]
 
 
 def write_gsd(
-    path, vertices, triangles=None, times=None, steps=None, *, box=None, types=None, masses=1.0
+    path: File,
+    vertices: Any,
+    triangles: Any = None,
+    times: Any = None,
+    steps: Any = None,
+    *,
+    box: Any = None,
+    types: ArrayLike | None = None,
+    masses: ArrayLike = 1.0,
 ) -> int:
     """Write surfaces over time as GSD, with the bonds of each frame: HOOMD and OVITO read it.
 
@@ -87,7 +98,7 @@ def masses_of(where: str, masses) -> np.ndarray:
 class Frames:
     """Surfaces as frames of the package gsd."""
 
-    def __init__(self, hoomd, types: Types, masses: np.ndarray):
+    def __init__(self, hoomd, types: Types, masses: Array):
         self._hoomd, self._types, self._masses = hoomd, types, masses
         self._first, self._side = None, 0.0
 
@@ -137,14 +148,14 @@ class Frames:
             self._first = triangles
         return result
 
-    def _cell(self, vertices: np.ndarray) -> np.ndarray:
+    def _cell(self, vertices: Array) -> Array:
         """A cube around the origin that is twice as wide as what is in it, and seldom grows."""
         if (farthest := float(np.abs(vertices).max())) >= self._side / 2:
             self._side = 4 * farthest or 1.0
         return self._side * np.eye(3)
 
 
-def _lengths_and_tilts(box: np.ndarray) -> np.ndarray:
+def _lengths_and_tilts(box: Array) -> Array:
     """HOOMD's Lx, Ly, Lz, xy, xz, yz of vectors of OpenMM's reduced form, shape (6,)."""
     x, y, z = np.diag(box)
     return np.array([x, y, z, box[1, 0] / y, box[2, 0] / z, box[2, 1] / z], dtype=np.float32)

@@ -1,11 +1,17 @@
 """Real spherical harmonics."""
 
+from __future__ import annotations
+
+from typing import Any
+
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .._numbers import finite_array, whole_number
+from .._types import Array
 
 
-def real_harmonics(directions, lmax):
+def real_harmonics(directions: ArrayLike, lmax: int) -> Array:
     """Real orthonormal spherical harmonics, ∫ Y_lm Y_l'm' dΩ = δ_ll' δ_mm'.
 
     Y_lm = √2 N P_l^m(cos θ) cos mφ for m > 0, N P_l(cos θ) for m = 0 and √2 N P_l^|m|(cos θ)
@@ -46,7 +52,7 @@ def real_harmonics(directions, lmax):
     return np.moveaxis(harmonics, 0, -1)
 
 
-def harmonics_of(directions, lmax):
+def harmonics_of(directions: Any, lmax: int) -> Any:
     """Y_lm for unit vectors of shape (num_frames, …, 3), shape (num_frames, (lmax+1)², …).
 
     The Legendre functions are divided by sin^m θ, which leaves polynomials of z that a stable

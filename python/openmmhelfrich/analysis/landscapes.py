@@ -1,27 +1,30 @@
 """The energy of a mesh as a function of the place of one of its vertices."""
 
+from __future__ import annotations
+
 import copy
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import openmm
 from openmm import unit
 
 from .._numbers import positive_number, whole_number
+from .._types import Array
 
 
 class Grid(NamedTuple):
     """Points to which a vertex is moved, as `sphere_grid` and `plane_grid` make them."""
 
-    points: np.ndarray
+    points: Array
     """Positions, shape (size, size, 3), nm; the first axis is that of `v`."""
-    u: np.ndarray
+    u: Array
     """First coordinate, shape (size,), nm."""
-    v: np.ndarray
+    v: Array
     """Second coordinate, shape (size,), nm."""
 
 
-def sphere_grid(mesh, vertex, half_width=None, size=320) -> Grid:
+def sphere_grid(mesh: Any, vertex: int, half_width: float | None = None, size: int = 320) -> Grid:
     """Points on the sphere through a vertex, about the mean of all vertices.
 
     u and v are arc lengths along two perpendicular great circles through the vertex, u towards its
@@ -61,7 +64,7 @@ def sphere_grid(mesh, vertex, half_width=None, size=320) -> Grid:
     return Grid(points, axis, axis.copy())
 
 
-def plane_grid(mesh, vertex, half_width=None, size=320) -> Grid:
+def plane_grid(mesh: Any, vertex: Any, half_width: float | None = None, size: int = 320) -> Grid:
     """Points on a plane perpendicular to the surface, through a vertex.
 
     u is along the surface, towards the first neighbour of the vertex, v along the radius, outward.
@@ -86,7 +89,7 @@ def plane_grid(mesh, vertex, half_width=None, size=320) -> Grid:
     return Grid(points, axis, axis.copy())
 
 
-def landscape(mesh, forces, vertex, points):
+def landscape(mesh: Any, forces: Any, vertex: int, points: Any) -> Any:
     """Energies of forces on a mesh with one vertex moved to each of many points.
 
     Every point is one evaluation of the whole mesh on OpenMM's Reference platform, in double

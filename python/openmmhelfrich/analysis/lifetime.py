@@ -1,12 +1,16 @@
 """How long a simulation runs before it fails."""
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 import openmm
 from openmm import unit
 
 from .._numbers import positive_number, whole_number
+from .._types import Scalar
 
 _ENERGY = unit.kilojoule_per_mole
 _VARIABLE = (openmm.VariableVerletIntegrator, openmm.VariableLangevinIntegrator)
@@ -25,7 +29,13 @@ class Lifetime(NamedTuple):
     """What went wrong; empty if nothing did."""
 
 
-def time_to_failure(simulation, max_time, interval=100, max_heating=10.0, check=None) -> Lifetime:
+def time_to_failure(
+    simulation: openmm.app.Simulation,
+    max_time: Scalar,
+    interval: int = 100,
+    max_heating: float = 10.0,
+    check: Callable[..., Any] | None = None,
+) -> Lifetime:
     """Run a Simulation until it fails, or for a given time.
 
     A run has failed when

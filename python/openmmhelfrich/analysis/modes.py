@@ -1,8 +1,13 @@
 """Amplitudes of the modes of a nearly spherical vesicle."""
 
+from __future__ import annotations
+
+from typing import Any
+
 import numpy as np
 
 from .._numbers import whole_number
+from .._types import Array
 from ._arrays import check_whole, dot, over_frames
 from .elements import edges_of
 from .harmonics import harmonics_of
@@ -20,7 +25,9 @@ _LONGEST_STEP = 0.2
 _DETERMINED = 0.02
 
 
-def mode_amplitudes(vertices, triangles, lmax, quadrature="fit", centre=None):
+def mode_amplitudes(
+    vertices: Any, triangles: Any, lmax: int, quadrature: str = "fit", centre: Any = None
+) -> Array:
     """Amplitudes u_lm of a nearly spherical vesicle, r(θ, φ) = R_V [1 + Σ u_lm Y_lm(θ, φ)].
 
     u_lm = ∫ (r / R_V − 1) Y_lm dΩ,   R_V = (3V / 4π)^⅓

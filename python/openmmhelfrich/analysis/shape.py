@@ -1,10 +1,13 @@
 """Measures of the shape of a vesicle as a whole."""
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from .._mesh.periodic import corner_positions, unfolded
+from .._types import Array, Values
 from ._arrays import box_of, check_whole, dot, in_boxes, over_frames
 from .elements import edges_of
 
@@ -12,24 +15,24 @@ from .elements import edges_of
 class Shape(NamedTuple):
     """What `shape` returns; arrays of shape (num_frames,), or scalars for one frame."""
 
-    area: np.ndarray
+    area: Array
     """Area A of the triangles, nm²."""
-    volume: np.ndarray
+    volume: Array
     """Volume V within them, nm³; NaN where the surface has borders or spans its box."""
-    reduced_volume: np.ndarray
+    reduced_volume: Array
     """6 √π V / A^{3/2}, without unit, 1 for a sphere."""
-    radius_of_gyration: np.ndarray
+    radius_of_gyration: Array
     """√(λ1 + λ2 + λ3) of the gyration tensor's eigenvalues, nm."""
-    asphericity: np.ndarray
+    asphericity: Array
     """λ3 − (λ1 + λ2)/2, nm², λ3 the largest."""
-    acylindricity: np.ndarray
+    acylindricity: Array
     """λ2 − λ1, nm²."""
-    anisotropy: np.ndarray
+    anisotropy: Array
     """Relative shape anisotropy κ², without unit: 0 for a sphere, ¼ for a flat disk and 1 for a
     rod."""
 
 
-def shape(vertices, triangles, *, box=None) -> Shape:
+def shape(vertices: Any, triangles: Any, *, box: Values | None = None) -> Shape:
     """Area, volume, reduced volume and the measures of the gyration tensor.
 
     With the eigenvalues λ1 ≤ λ2 ≤ λ3 of the tensor of `gyration_tensor`: R_g² = λ1 + λ2 + λ3,
@@ -97,7 +100,7 @@ def shape(vertices, triangles, *, box=None) -> Shape:
     return Shape(*over_frames(in_boxes(work, box), vertices, triangles, lambda n, t: 20 * t))
 
 
-def gyration_tensor(vertices):
+def gyration_tensor(vertices: Any) -> Array:
     """Gyration tensor of the vertices, S = Σ_i (x_i − x̄)(x_i − x̄)ᵀ / N.
 
     Parameters
@@ -125,7 +128,7 @@ def gyration_tensor(vertices):
     return over_frames(work, vertices)
 
 
-def area_excess(vertices, triangles, *, box=None):
+def area_excess(vertices: Any, triangles: Any, *, box: Any = None) -> Array | float:
     """Area in excess of the sphere of equal volume, A / 4πR_V² − 1 with R_V = (3V/4π)^⅓.
 
     `theory.area_excess` has its mean for thermal undulations. In terms of the reduced volume v it

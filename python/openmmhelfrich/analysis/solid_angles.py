@@ -1,11 +1,16 @@
 """Solid angles of vertices and triangles."""
 
+from __future__ import annotations
+
+from typing import Any
+
 import numpy as np
 
+from .._types import Array
 from ._arrays import check_whole, dot, gather_sum, over_frames
 
 
-def solid_angles(vertices, triangles):
+def solid_angles(vertices: Any, triangles: Any) -> Array:
     """Solid angle Ω_i of every vertex: its Voronoi cell after projection to the unit sphere.
 
     The vertices are projected from the origin. Every spherical triangle is divided among its
@@ -50,7 +55,7 @@ def solid_angles(vertices, triangles):
     return over_frames(work, vertices, triangles)
 
 
-def vertex_solid_angles(directions, faces):
+def vertex_solid_angles(directions: Any, faces: Any) -> Any:
     """`solid_angles` of unit vectors, shape (num_frames, num_vertices, 3)."""
     corners = [directions[:, faces[:, corner]] for corner in range(3)]
     a, b, c = corners
@@ -68,7 +73,7 @@ def vertex_solid_angles(directions, faces):
     return gather_sum(shares.reshape(len(shares), -1), faces.ravel(), directions.shape[1])
 
 
-def triangle_solid_angles(directions, faces):
+def triangle_solid_angles(directions: Array, faces: Array) -> Array:
     """A third of the signed solid angles of the triangles around each vertex.
 
     Parameters

@@ -1,11 +1,15 @@
 """Means over a run, with error bars that know about correlation in time."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .._numbers import finite_array
+from .._types import Array
 from .correlation import autocorrelation_time
 
 
@@ -25,16 +29,16 @@ class Estimate(NamedTuple):
 class Spectrum(NamedTuple):
     """Mean square amplitudes per l, as `spectrum` returns them; arrays of equal length."""
 
-    l: np.ndarray
+    l: Array
     """Mode number, 0 … lmax."""
-    mean: np.ndarray
+    mean: Array
     """⟨|u_lm|²⟩, without unit, mean over the 2l + 1 values of m and over the frames."""
-    error: np.ndarray
+    error: Array
     """Standard error of the mean, without unit."""
-    correlation_time: np.ndarray
+    correlation_time: Array
     """Integrated autocorrelation time of |u_lm|², in frames; ½ if frames are independent."""
 
-    def interval(self, width=1.96):
+    def interval(self, width: float = 1.96) -> Any:
         """Confidence interval of ⟨|u_lm|²⟩, [mean / (1 + w ε), mean / (1 − w ε)], ε = error / mean.
 
         What a run fixes is the *relative* error, for a mode that happened to be quiet has a mean
@@ -62,17 +66,17 @@ class Spectrum(NamedTuple):
 class MeanShape(NamedTuple):
     """The part of the modes that does not fluctuate, as `mean_shape` returns it."""
 
-    amplitudes: np.ndarray
+    amplitudes: Array
     """⟨u_lm⟩, without unit, shape ((lmax+1)²,)."""
-    l: np.ndarray
+    l: Array
     """Mode number, 0 … lmax."""
-    share: np.ndarray
+    share: Array
     """Σ_m ⟨u_lm⟩² / Σ_m ⟨u_lm²⟩, without unit, free of bias and so below 0 now and then."""
-    error: np.ndarray
+    error: Array
     """Standard error of the share, without unit."""
 
 
-def spectrum(amplitudes) -> Spectrum:
+def spectrum(amplitudes: Any) -> Spectrum:
     """Fluctuation spectrum ⟨|u_lm|²⟩ per l with error bars, of one run or of several.
 
     The standard error is √(2 τ σ² / n): σ² is the variance of |u_lm|², n the number of
@@ -115,7 +119,7 @@ def spectrum(amplitudes) -> Spectrum:
     return Spectrum(modes, mean / width, np.sqrt(error**2 + wandering / width**2), time)
 
 
-def mean_shape(runs) -> MeanShape:
+def mean_shape(runs: Any) -> MeanShape:
     """The mean shape ⟨u_lm⟩ of several runs, and its share of ⟨|u_lm|²⟩ for each l.
 
     ⟨u_lm⟩² is estimated without bias from the means ū_i of independent runs, as a mean over
@@ -158,7 +162,7 @@ def mean_shape(runs) -> MeanShape:
     return MeanShape(shape, modes, share, error)
 
 
-def mean_with_error(series) -> Estimate:
+def mean_with_error(series: ArrayLike) -> Estimate:
     """Mean of a correlated series with its standard error, √(2 τ σ² / n).
 
     τ is the integrated autocorrelation time, see `autocorrelation_time`. The variance σ² is that
@@ -192,11 +196,11 @@ def mean_with_error(series) -> Estimate:
 class Blocking(NamedTuple):
     """Errors of a mean by block length, as `blocking` returns them."""
 
-    length: np.ndarray
+    length: Array
     """Block lengths 1, 2, 4, … in steps."""
-    error: np.ndarray
+    error: Array
     """Standard error of the mean from blocks of this length, in the unit of the series."""
-    uncertainty: np.ndarray
+    uncertainty: Array
     """Standard error of that error, error / √(2 (blocks − 1)), in the same unit."""
     best: int
     """Index of the shortest length whose blocks are long against the correlation."""
@@ -207,7 +211,7 @@ class Blocking(NamedTuple):
         return float(self.error[self.best])
 
 
-def blocking(series) -> Blocking:
+def blocking(series: ArrayLike) -> Blocking:
     """Standard error of a mean by blocking: neighbours are averaged in pairs, again and again.
 
     As soon as blocks are longer than the memory of the series they are independent, and the

@@ -15,6 +15,7 @@ import numpy as np
 
 from .._journal import JournaledFile
 from .._mesh.periodic import cut_images
+from .._types import Array, File
 from .._writing import naming
 from ._arrays import triangles_of
 from .curvature import vertex_quantities
@@ -42,11 +43,11 @@ class SurfaceFrame(NamedTuple):
     """Of the simulation."""
     time: float
     """ps."""
-    vertices: np.ndarray
+    vertices: Array
     """Shape (num_vertices, 3), nm."""
-    triangles: np.ndarray
+    triangles: Array
     """Shape (num_triangles, 3), counter-clockwise seen from outside."""
-    box: np.ndarray | None = None
+    box: Array | None = None
     """The periodic box, shape (3, 3), nm, if the surface lives in one."""
 
 
@@ -76,7 +77,7 @@ class SurfaceSeries:
         Without h5py.
     """
 
-    def __init__(self, path):
+    def __init__(self, path: File) -> None:
         self.path = Path(path)
         self._h5py = import_h5py("or write PLY, OBJ or VTK")
         self._file = JournaledFile(self.path)
@@ -148,7 +149,7 @@ class SurfaceSeries:
             raise ValueError(f"{self.path} has {found} frames, not {num_frames}")
         return found
 
-    def steps(self) -> np.ndarray:
+    def steps(self) -> Array:
         """The step of the simulation of each frame, shape (num_frames,).
 
         Raises
@@ -303,7 +304,7 @@ class SurfaceSeries:
         return int(ours.attrs["vertices"]), int(ours.attrs["triangles"])
 
 
-def components(triangles: np.ndarray, num_vertices: int) -> np.ndarray:
+def components(triangles: Array, num_vertices: int) -> Array:
     """The number of the connected surface of each vertex, in the order of their first vertices.
 
     Parameters

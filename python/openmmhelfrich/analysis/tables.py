@@ -8,11 +8,12 @@ import csv
 import os
 import re
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from .._journal import JournaledFile
+from .._types import Array, File
 from .._writing import naming, write_whole
 
 __all__ = ["Modes", "open_table", "read_modes", "read_table"]
@@ -28,11 +29,11 @@ _UNIT = re.compile(r" \([^()]*\)$")
 class Modes(NamedTuple):
     """Amplitudes over time, as `read_modes` returns them."""
 
-    step: np.ndarray
+    step: Array
     """Step of the simulation, int, shape (num_frames,)."""
-    time: np.ndarray
+    time: Array
     """Time, ps, shape (num_frames,)."""
-    amplitudes: np.ndarray
+    amplitudes: Array
     """u_lm at index l² + l + m, shape (num_frames, (lmax+1)²)."""
 
     @property
@@ -44,7 +45,7 @@ class Modes(NamedTuple):
         return float(gaps.mean())
 
 
-def read_modes(path) -> Modes:
+def read_modes(path: File) -> Modes:
     """Read the file of a `ModeReporter`.
 
     Parameters
@@ -80,7 +81,7 @@ def read_modes(path) -> Modes:
     return Modes(table["step"].astype(int), table["time"], amplitudes)
 
 
-def read_table(path) -> dict[str, np.ndarray]:
+def read_table(path: File) -> dict[str, Array]:
     """Read the columns of a file that a reporter wrote.
 
     A last line that is cut off, because the run was killed in the middle of it, is left out.
@@ -154,7 +155,7 @@ def _open_hdf5(path):
         return import_h5py(_INSTEAD).File(path, "r")
 
 
-def open_table(path, columns, append):
+def open_table(path: File, columns: Any, append: bool) -> Any:
     """A table to which rows are added, in the format of its suffix.
 
     Parameters
@@ -293,7 +294,7 @@ class _Hdf5:
             yield file["rows"]
 
 
-def import_h5py(otherwise):
+def import_h5py(otherwise: Any) -> Any:
     """h5py, or an ImportError that says how to get it, and what to do otherwise."""
     try:
         import h5py

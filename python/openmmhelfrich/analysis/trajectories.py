@@ -5,10 +5,12 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from .._numbers import whole_number
+from .._types import Array, File
 from ._gsd import GSDFrame, frames_in
 from .elements import edges_of
 
@@ -18,7 +20,7 @@ _SUFFIXES = (".xtc", ".dcd", ".pdb", ".gsd")
 _ANGSTROM = 0.1  # nm
 
 
-def read_triangles(path, num_triangles: int) -> np.ndarray:
+def read_triangles(path: File, num_triangles: int) -> Array:
     """The triangles of each frame of a run whose bonds flip, which stand beside its XTC file.
 
     Parameters
@@ -93,7 +95,14 @@ class Trajectory:
     >>> modes = mode_amplitudes(trajectory, mesh, lmax=10)
     """
 
-    def __init__(self, path, particles=None, start=0, stop=None, stride=1):
+    def __init__(
+        self,
+        path: File,
+        particles: Any = None,
+        start: int = 0,
+        stop: int | None = None,
+        stride: int = 1,
+    ) -> None:
         self.path = Path(path)
         self.suffix = self.path.suffix.lower()
         if self.suffix not in _SUFFIXES:
@@ -113,15 +122,15 @@ class Trajectory:
         else:
             raise ValueError(f"Trajectory: {self.path} has no frame in the range asked for")
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"Trajectory({str(self.path)!r}, {self.num_vertices} vertices)"
 
-    def __iter__(self) -> Iterator[np.ndarray]:
+    def __iter__(self) -> Iterator[Array]:
         """Frames of shape (num_vertices, 3), nm."""
         for frames in self.chunks(64):
             yield from frames
 
-    def chunks(self, size) -> Iterator[np.ndarray]:
+    def chunks(self, size: int) -> Iterator[Array]:
         """Successive frames.
 
         Parameters
@@ -151,11 +160,11 @@ class Trajectory:
             if self.stop is not None and first >= self.stop:
                 return
 
-    def read(self) -> np.ndarray:
+    def read(self) -> Array:
         """All frames at once, shape (num_frames, num_vertices, 3), nm."""
         return np.concatenate(list(self.chunks(256)))
 
-    def times(self) -> np.ndarray:
+    def times(self) -> Array:
         """The time of each frame, ps, shape (num_frames,).
 
         Raises
@@ -170,7 +179,7 @@ class Trajectory:
             return np.array(found)
         return self._column(1, "times").astype(float)
 
-    def steps(self) -> np.ndarray:
+    def steps(self) -> Array:
         """The step of the simulation of each frame, shape (num_frames,); errors as for `times`."""
         if self.suffix == ".gsd":
             return np.array([frame.step for frame in self._chosen_gsd()])
@@ -183,7 +192,7 @@ class Trajectory:
             return next(self._gsd()).time is not None
         return self.suffix == ".xtc"
 
-    def boxes(self) -> np.ndarray | None:
+    def boxes(self) -> Array | None:
         """The periodic box of each frame, nm, shape (num_frames, 3, 3).
 
         None if the file has none, or has boxes of no size, as XTC files without a box do. All
@@ -209,13 +218,13 @@ class Trajectory:
         found = found[self.start : self.stop : self.stride].astype(float)
         return found if found.any(axis=2).all() else None
 
-    def _column(self, number: int, what: str) -> np.ndarray:
+    def _column(self, number: int, what: str) -> Array:
         """What MDTraj returns at this place for each of the chosen frames of an XTC file."""
         if self.suffix != ".xtc":
             raise ValueError(f"Trajectory: {self.path} has no {what}; XTC files have them")
         return self._rows(number)[self.start : self.stop : self.stride]
 
-    def _rows(self, number: int) -> np.ndarray | None:
+    def _rows(self, number: int) -> Array | None:
         """What MDTraj returns at this place for each frame of an XTC or DCD file, if anything."""
         found = []
         try:
@@ -226,7 +235,7 @@ class Trajectory:
             raise ValueError(f"Trajectory: {self.path} cannot be read: {reason}") from None
         return None if found[0] is None else np.concatenate(found)
 
-    def triangles(self, num_triangles=None) -> np.ndarray | None:
+    def triangles(self, num_triangles: int | None = None) -> Array | None:
         """The triangles of each frame, of a GSD file or of ``<name>.triangles`` beside this one.
 
         Parameters
@@ -352,7 +361,7 @@ class Trajectory:
         return kinds[self.suffix](str(self.path))
 
 
-def _vectors(lengths: np.ndarray, angles: np.ndarray) -> np.ndarray:
+def _vectors(lengths: Array, angles: Array) -> Array:
     """Box vectors, shape (num_frames, 3, 3), of lengths and angles in degrees."""
     from mdtraj.utils import lengths_and_angles_to_box_vectors
 

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import Any
 
+from numpy.typing import ArrayLike
+
+from .._types import File, Values
 from .._writing import naming
 from ._surface_frames import each_surface
 from .surface_series import SurfaceSeries
@@ -15,7 +19,15 @@ __all__ = ["write_vtkhdf"]
 _BATCH = 64
 
 
-def write_vtkhdf(path, vertices, triangles=None, times=None, steps=None, *, box=None) -> int:
+def write_vtkhdf(
+    path: File,
+    vertices: Any,
+    triangles: Any = None,
+    times: ArrayLike | None = None,
+    steps: ArrayLike | None = None,
+    *,
+    box: Values | None = None,
+) -> int:
     """Write surfaces over time as VTKHDF, which ParaView opens: a finished run, or any frames.
 
     `SurfaceSeries` says what is in the file.

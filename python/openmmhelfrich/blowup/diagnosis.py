@@ -14,6 +14,7 @@ from openmm import unit
 
 from .._mesh import files
 from .._snapshots import Snapshot
+from .._types import File
 from .._writing import describe, naming, write_whole
 from ..errors import FAQ, Explained
 from ..forces import TriangleHeightForce
@@ -118,7 +119,7 @@ def _normal(moment: Moment, usual: list[Moment]) -> bool:
     )
 
 
-def diagnose(reason: str, replay: Replay, folder=None) -> str:
+def diagnose(reason: str, replay: Replay, folder: File | None = None) -> str:
     """Why it broke down, as a text; and the last good frame as files.
 
     Parameters

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import openmm
@@ -12,6 +13,7 @@ from openmm import unit
 from .._mesh.geometry import dihedral_angles, edges_of
 from .._mesh.periodic import corner_positions
 from .._present import is_periodic, surfaces_of
+from .._types import Array
 from ..reporters import degrees_of_freedom
 
 __all__ = ["Gauge", "Limits", "Moment", "Surface"]
@@ -94,12 +96,12 @@ class Moment:
 class Surface:
     """A surface of a moment: positions of all particles, nm, its triangles, its box or None."""
 
-    positions: np.ndarray
-    triangles: np.ndarray
-    box: np.ndarray | None
+    positions: Array
+    triangles: Array
+    box: Array | None
 
     @property
-    def heights(self) -> np.ndarray:
+    def heights(self) -> Array:
         """The least height of each triangle, nm, shape (num_triangles,)."""
         corners = corner_positions(self.positions, self.triangles, self.box)
         sides = np.roll(corners, -1, axis=1) - corners
@@ -107,7 +109,7 @@ class Surface:
         return doubled / np.linalg.norm(sides, axis=2).max(axis=1)
 
     @property
-    def folds(self) -> np.ndarray:
+    def folds(self) -> Array:
         """By how much each edge is bent, degrees, in the order of `edges_of`."""
         corners = corner_positions(self.positions, self.triangles, self.box)
         return np.degrees(np.abs(dihedral_angles(corners, self.triangles)))
@@ -122,7 +124,7 @@ class Gauge:
         self._periodic = [is_periodic(context, force) for force in self._forces]
         self._freedom = degrees_of_freedom(context.getSystem())
 
-    def surfaces(self, state) -> list[Surface]:
+    def surfaces(self, state: Any) -> list[Surface]:
         """The triangulated surfaces, as they are in a State with positions."""
         positions = np.array(state.getPositions(asNumpy=True).value_in_unit(unit.nanometer))
         box = np.array(state.getPeriodicBoxVectors(asNumpy=True).value_in_unit(unit.nanometer))

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import openmm
 
 from .._numbers import positive_number, whole_number
 from .._surface_reporters import NextReport
+from .._types import File
 from .diagnosis import BlowUpError
 from .moments import Limits
 from .watch import Watch
@@ -61,8 +64,14 @@ class BlowUpReporter:
     """
 
     def __init__(
-        self, folder, reportInterval, *, maxTemperature=None, minHeight=None, maxFold=None
-    ):
+        self,
+        folder: File,
+        reportInterval: int,
+        *,
+        maxTemperature: float | None = None,
+        minHeight: float | None = None,
+        maxFold: float | None = None,
+    ) -> None:
         given = {"maxTemperature": maxTemperature, "minHeight": minHeight, "maxFold": maxFold}
         self._folder = folder
         self._interval = whole_number(reportInterval, "BlowUpReporter", "reportInterval", 1)
@@ -74,7 +83,7 @@ class BlowUpReporter:
         )
         self._context = self._watch = None
 
-    def describeNextReport(self, simulation):
+    def describeNextReport(self, simulation: Any) -> Any:
         """When the next report is due, as OpenMM asks for it."""
         if simulation.context is not self._context:
             self._context = simulation.context
@@ -85,11 +94,11 @@ class BlowUpReporter:
         steps = self._interval - simulation.currentStep % self._interval
         return NextReport(steps=steps, periodic=False, include=[])
 
-    def report(self, simulation, state):
+    def report(self, simulation: Any, state: Any) -> None:
         """Look at the Simulation."""
         self._watch.look()
 
-    def explain(self, reason="the simulation broke down"):
+    def explain(self, reason: str = "the simulation broke down") -> BlowUpError:
         """Why the Simulation broke down, after one of its steps has failed.
 
         Parameters
@@ -113,10 +122,10 @@ class BlowUpReporter:
             )
         return self._watch.explain(str(reason))
 
-    def __enter__(self):
+    def __enter__(self) -> Any:
         return self
 
-    def __exit__(self, kind, reason, traceback):
+    def __exit__(self, kind: Any, reason: Any, traceback: Any) -> None:
         if self._watch is None or isinstance(reason, BlowUpError):
             return
         # Reporters say with a ValueError that a number is not finite.

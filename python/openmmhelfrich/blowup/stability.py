@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import openmm
 from openmm import unit
+
+from .._types import Array, Scalar
 
 __all__ = ["stable_time_step"]
 
@@ -19,7 +22,7 @@ _DISPLACEMENT = {"double": 1e-5, "single": 1e-2}
 _TOLERANCE = 1e-2
 
 
-def stable_time_step(context, friction=None):
+def stable_time_step(context: openmm.Context, friction: Scalar | None = None) -> float:
     """Longest time step with which the present arrangement of particles can be integrated.
 
     The largest eigenvalue ω² of the Hessian of the energy, weighted by the masses, M^(−1/2) H
@@ -64,7 +67,7 @@ def stable_time_step(context, friction=None):
     return 2 / math.sqrt(highest) if friction is None else 2 * friction / highest
 
 
-def highest_eigenvalue(context) -> tuple[float, int]:
+def highest_eigenvalue(context: Any) -> tuple[float, int]:
     """ω², 1/ps², of the fastest oscillation, and the particle that it moves most."""
     # Imported here, because it takes a fifth of a second.
     from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
@@ -76,14 +79,14 @@ def highest_eigenvalue(context) -> tuple[float, int]:
     positions = np.array(state.getPositions(asNumpy=True).value_in_unit(_NM))
     step = _step(context, positions[moving])
 
-    def forces(displaced: np.ndarray) -> np.ndarray:
+    def forces(displaced: Array) -> Array:
         moved = positions.copy()
         moved[moving] += displaced
         context.setPositions(moved)
         found = context.getState(getForces=True).getForces(asNumpy=True)
         return np.array(found.value_in_unit(_FORCE))[moving]
 
-    def times_hessian(vector: np.ndarray) -> np.ndarray:
+    def times_hessian(vector: Array) -> Array:
         along = vector.reshape(-1, 3) * weights
         size = step / np.abs(along).max()
         change = forces(-size * along) - forces(size * along)
@@ -111,7 +114,7 @@ def highest_eigenvalue(context) -> tuple[float, int]:
     return float(values[-1]), int(np.flatnonzero(moving)[np.argmax(moves)])
 
 
-def _masses(system: openmm.System) -> np.ndarray:
+def _masses(system: openmm.System) -> Array:
     count = system.getNumParticles()
     if system.getNumConstraints():
         raise ValueError("stable_time_step: the System has constraints, with which steps differ")
@@ -123,7 +126,7 @@ def _masses(system: openmm.System) -> np.ndarray:
     return masses
 
 
-def _step(context: openmm.Context, positions: np.ndarray) -> float:
+def _step(context: openmm.Context, positions: Array) -> float:
     """How far to move, nm: a part of the distance between neighbours in a uniform arrangement."""
     name = context.getPlatform().getName()
     digits = "double" if name in ("Reference", "Helfrich") else "single"

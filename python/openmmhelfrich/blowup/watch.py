@@ -7,6 +7,7 @@ import time
 import openmm
 
 from .._snapshots import Snapshot
+from .._types import File
 from .diagnosis import BlowUpError, Replay, diagnose
 from .moments import Gauge, Limits, Moment
 
@@ -35,7 +36,13 @@ class Watch:
         Where to write the history and the last good frame, if it breaks down. Default: nowhere.
     """
 
-    def __init__(self, context, integrator, limits: Limits | None = None, folder=None):
+    def __init__(
+        self,
+        context: openmm.Context,
+        integrator: openmm.Integrator,
+        limits: Limits | None = None,
+        folder: File | None = None,
+    ) -> None:
         self._context, self._integrator, self._folder = context, integrator, folder
         self._limits = limits or Limits()
         self._gauge = Gauge(context)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from typing import Any
 
 import click
 
@@ -96,7 +97,9 @@ def bench(platforms, integrator, sizes, seconds, repeats, as_json):
         print_json({**found, "failed": failed, "rows": rows})
 
 
-def _rows(targets, size: int, integrator: str, seconds: float, repeats: int) -> Iterator[dict]:
+def _rows(
+    targets, size: int, integrator: str, seconds: float, repeats: int
+) -> Iterator[dict[str, Any]]:
     """What a step of a vesicle takes on each of the platforms."""
     import openmm
 
@@ -146,7 +149,7 @@ def _known(platforms) -> list[str] | None:
         raise click.BadParameter(str(reason), param_hint="--platform") from None
 
 
-def _head(integrator: str, seconds: float, repeats: int) -> dict:
+def _head(integrator: str, seconds: float, repeats: int) -> dict[str, Any]:
     from .. import _benchmark
 
     return {
@@ -159,7 +162,7 @@ def _head(integrator: str, seconds: float, repeats: int) -> dict:
     }
 
 
-def _head_lines(found: dict) -> list[str]:
+def _head_lines(found: dict[str, Any]) -> list[str]:
     return [
         ", ".join(f"{name}: {value}" for name, value in found["machine"].items()),
         ", ".join(f"{name} {value}" for name, value in found["versions"].items()),

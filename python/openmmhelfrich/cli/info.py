@@ -9,6 +9,7 @@ import contextlib
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -81,7 +82,7 @@ def _parts(config, platform, measure, vcm_compatible, ignore_unknown):
     yield "duration", duration, [_duration_line(duration, name)] if measure else []
 
 
-def _general(cfg) -> dict:
+def _general(cfg) -> dict[str, Any]:
     general = cfg.general
     is_damped = general["Integrator"] != "Verlet"
     return {
@@ -97,7 +98,7 @@ def _general(cfg) -> dict:
     }
 
 
-def _general_lines(found: dict) -> list[str]:
+def _general_lines(found: dict[str, Any]) -> list[str]:
     lines = [
         f"{found['name']}: {found['num_membranes']} membrane(s), {found['num_particles']} vertices",
         f"  {found['integrator']}, {found['num_steps']} steps of {found['time_step_ps']:g} ps: "
@@ -108,7 +109,7 @@ def _general_lines(found: dict) -> list[str]:
     return lines
 
 
-def _membrane(cfg, membrane) -> dict:
+def _membrane(cfg, membrane) -> dict[str, Any]:
     """The mesh of one membrane, and what its time scales are."""
     from ..vcm.springs import sticky_pairs
 
@@ -127,7 +128,7 @@ def _membrane(cfg, membrane) -> dict:
     }
 
 
-def _enclosed(mesh) -> dict:
+def _enclosed(mesh) -> dict[str, Any]:
     """What a mesh encloses; None if it has borders or spans the box."""
     volume = reduced = None
     if mesh.is_closed:
@@ -137,7 +138,7 @@ def _enclosed(mesh) -> dict:
     return {"volume_nm3": volume, "reduced_volume": reduced}
 
 
-def _time_scales(cfg, membrane) -> dict:
+def _time_scales(cfg, membrane) -> dict[str, Any]:
     """Softness, τ_h, τ_2 and the largest stable time step, None for what the membrane has not.
 
     The bound is 0.1 √Ξ τ of the fastest mode, Phys. Rev. E 108, 015301 (2023), equations 40 to 43
@@ -154,7 +155,7 @@ def _time_scales(cfg, membrane) -> dict:
     }
 
 
-def _membrane_lines(general: dict, membranes: list[dict]) -> Iterator[str]:
+def _membrane_lines(general: dict[str, Any], membranes: list[dict[str, Any]]) -> Iterator[str]:
     for found in membranes:
         yield ""
         yield (
@@ -174,7 +175,7 @@ def _membrane_lines(general: dict, membranes: list[dict]) -> Iterator[str]:
         yield from _time_scale_lines(general["time_step_ps"], found)
 
 
-def _enclosed_words(found: dict) -> str:
+def _enclosed_words(found: dict[str, Any]) -> str:
     if found["num_borders"]:
         return f", {found['num_borders']} border(s)"
     if found["volume_nm3"] is None:
@@ -182,7 +183,7 @@ def _enclosed_words(found: dict) -> str:
     return f", volume {found['volume_nm3']:.8g} nm³, reduced volume {found['reduced_volume']:.4f}"
 
 
-def _time_scale_lines(time_step: float, found: dict) -> Iterator[str]:
+def _time_scale_lines(time_step: float, found: dict[str, Any]) -> Iterator[str]:
     if found["softness"] is not None:
         yield (
             f"  softness Ξ = {found['softness']:.4g} (d = {found['min_height_nm']:.4g} nm), "
@@ -265,7 +266,7 @@ def _platform(cfg, asked: str | None) -> tuple[str, str]:
         raise click.ClickException(str(reason)) from None
 
 
-def _evaluators(cfg, platform: str) -> list[dict]:
+def _evaluators(cfg, platform: str) -> list[dict[str, Any]]:
     """What would compute which forces of membranes."""
     from ..platforms import evaluators
 
@@ -275,7 +276,7 @@ def _evaluators(cfg, platform: str) -> list[dict]:
     ]
 
 
-def _evaluator_lines(found: list[dict]) -> Iterator[str]:
+def _evaluator_lines(found: list[dict[str, Any]]) -> Iterator[str]:
     from .machine import WORDS
 
     for one in found:
@@ -283,7 +284,7 @@ def _evaluator_lines(found: list[dict]) -> Iterator[str]:
         yield f"{what}: computed by {WORDS[one['by']]}, for {one['reason']}"
 
 
-def _duration(cfg, platform: str) -> dict:
+def _duration(cfg, platform: str) -> dict[str, Any]:
     """How long the run would take, from a few of its steps."""
     import openmm
 
@@ -306,7 +307,7 @@ def _duration(cfg, platform: str) -> dict:
     return {"seconds_per_step": elapsed / steps, "seconds": elapsed / steps * cfg.num_steps}
 
 
-def _duration_line(found: dict, platform: str) -> str:
+def _duration_line(found: dict[str, Any], platform: str) -> str:
     return (
         f"Expected run time: {_clock(found['seconds'])} on {platform} "
         f"({found['seconds_per_step'] * 1e3:.3g} ms a step, without outputs)"

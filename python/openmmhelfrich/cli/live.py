@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from pathlib import Path
+from typing import Any
 
 from openmm import unit
 
@@ -25,20 +26,20 @@ class Table:
         Whether to show them; else only the speed is known.
     """
 
-    def __init__(self, job, shown: bool):
+    def __init__(self, job: Any, shown: bool) -> None:
         from ..reporters import degrees_of_freedom
 
         self._job = job
         self._shown = shown
         self._freedom = degrees_of_freedom(job.simulation.system)
-        self._bars: list = []
+        self._bars: list[Any] = []
         self._due = 0.0
         self._begin = (time.perf_counter(), job.step)
 
     def __enter__(self) -> Table:
         return self
 
-    def __exit__(self, *reason) -> None:
+    def __exit__(self, *reason: Any) -> None:
         for bar in reversed(self._bars):
             bar.close()
 
@@ -60,7 +61,7 @@ class Table:
         self._due = time.monotonic() + _SECONDS
 
     @staticmethod
-    def _lines(wanted: int) -> list:
+    def _lines(wanted: int) -> list[Any]:
         """As many lines as the terminal has room for."""
         import shutil
 
@@ -96,7 +97,7 @@ class Page:
         Of the HTML file.
     """
 
-    def __init__(self, job, path: Path):
+    def __init__(self, job: Any, path: Path) -> None:
         from ..viewer.live import LivePage
         from ..viewer.scene import Scene
 

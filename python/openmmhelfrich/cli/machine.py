@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 __all__ = ["WORDS", "lines_of", "machine"]
 
@@ -19,7 +20,7 @@ WORDS = {
 _MEASURED = (48, 96, 192)
 
 
-def machine() -> dict:
+def machine() -> dict[str, Any]:
     """Versions, platforms, adapters and the choice of a backend, measured now if it is not yet."""
     import dataclasses
 
@@ -54,7 +55,7 @@ def machine() -> dict:
     }
 
 
-def _defaults() -> list[dict]:
+def _defaults() -> list[dict[str, Any]]:
     """What simulations get that name no platform."""
     import openmm
 
@@ -78,7 +79,7 @@ def _defaults() -> list[dict]:
     return found
 
 
-def _natively() -> list[dict]:
+def _natively() -> list[dict[str, Any]]:
     """What would compute membranes on those of OpenMM's GPU platforms that are there."""
     from .. import Mesh, Vesicle
     from ..platforms import ON_DEVICES, evaluators, names
@@ -92,7 +93,7 @@ def _natively() -> list[dict]:
     return found
 
 
-def lines_of(found: dict) -> Iterator[str]:
+def lines_of(found: dict[str, Any]) -> Iterator[str]:
     """What `machine` found, for people."""
     from ..platforms import ON_DEVICES
 
@@ -126,7 +127,7 @@ def lines_of(found: dict) -> Iterator[str]:
         yield from _timing_lines(found["auto"]["timings"])
 
 
-def _timing_lines(timings: list[dict]) -> Iterator[str]:
+def _timing_lines(timings: list[dict[str, Any]]) -> Iterator[str]:
     """The measurements behind the choice."""
     yield "  above, by the time of an evaluation (paper's four forces, or what was simulated):"
     for machine in sorted({timing["machine"] for timing in timings}):

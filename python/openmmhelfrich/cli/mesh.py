@@ -6,6 +6,7 @@ import contextlib
 import json
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -196,7 +197,7 @@ def info(input, softness, as_json, **reading):
         click.echo(f"  {name:<{width}s}  {_text(value)}")
 
 
-def _facts(given, softness: float) -> dict:
+def _facts(given, softness: float) -> dict[str, Any]:
     """What `info` says, plain numbers by name."""
     import math
 

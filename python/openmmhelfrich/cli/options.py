@@ -8,6 +8,7 @@ import math
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -26,7 +27,7 @@ __all__ = [
 config_argument = click.argument("config", type=click.Path(path_type=Path, dir_okay=False))
 
 
-def check_platform(context: click.Context, parameter: click.Parameter, name: str | None):
+def check_platform(context: click.Context, parameter: click.Parameter, name: str | None) -> Any:
     """The name of a platform as OpenMM spells it; click calls this for an option."""
     if name is None:
         return None
@@ -52,7 +53,7 @@ json_option = click.option(
 )
 
 
-def print_json(values: dict) -> None:
+def print_json(values: dict[str, Any]) -> None:
     """Print values as a JSON object; numbers that are not finite become null."""
     click.echo(json.dumps(_plain(values), indent=2, ensure_ascii=False, allow_nan=False))
 
@@ -68,7 +69,7 @@ def _plain(value):
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def reader_options(command):
+def reader_options(command: Any) -> Any:
     """The options that `vcm.read` has."""
     command = click.option(
         "--ignore-unknown", is_flag=True, help="Skip keys that do not exist, as VCM does."

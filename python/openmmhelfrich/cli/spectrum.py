@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -127,7 +128,7 @@ def _amplitudes(source, mesh_path, membrane, lmax, skip, stride, quadrature, cen
     return analysis.mode_amplitudes(trajectory, triangles, lmax or 10, quadrature, centre)
 
 
-def _row(l, mean, error, time, theory) -> dict:
+def _row(l, mean, error, time, theory) -> dict[str, Any]:
     """One mode, by the names of the columns of the table."""
     numbers = [float(x) for x in (mean, error, time, theory, mean / theory)]
     return dict(zip(_COLUMNS, [int(l), *numbers], strict=True))

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import Any
+
 import click
 
 __all__ = ["open_trajectory"]
 
 
-def open_trajectory(source, mesh_path, membrane, start, stride, several=False):
+def open_trajectory(
+    source: Path, mesh_path: Any, membrane: Any, start: int, stride: int, several: bool = False
+) -> Any:
     """A trajectory with its triangles: those of each frame if bonds flipped, else those of a mesh.
 
     Parameters

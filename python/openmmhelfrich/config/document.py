@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from .._types import File
 from ..vcm.grammar import ConfigError
 
 if sys.version_info >= (3, 11):
@@ -50,7 +51,7 @@ class Document:
         If it is not TOML; the message has the line.
     """
 
-    def __init__(self, path):
+    def __init__(self, path: File) -> None:
         self.path = Path(path)
         if not self.path.is_file():
             raise FileNotFoundError(f"openmmhelfrich.config: there is no file {self.path}")

@@ -6,6 +6,7 @@ import re
 import secrets
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import openmm
@@ -13,6 +14,7 @@ from openmm import unit
 
 from .. import platforms, vcm
 from .._placement import NUM_GROUPS
+from .._types import Array, File
 from ..blowup import Limits
 from ..errors import MeshError
 from ..forces import MonteCarloMembraneTension, SurfaceRepulsionForce
@@ -43,7 +45,7 @@ class VesicleMembrane(Membrane):
 class Configuration(Model):
     """What a TOML file asks for. `read` makes it; its attributes are those of `Model`."""
 
-    def __init__(self, document: Document, seed: int = 0):
+    def __init__(self, document: Document, seed: int = 0) -> None:
         self.path = document.path
         for name in document.data:
             if name not in _TABLES:
@@ -194,7 +196,7 @@ class Configuration(Model):
         return force
 
 
-def read(path, *, seed: int = 0) -> Configuration:
+def read(path: File, *, seed: int = 0) -> Configuration:
     """Read a configuration in TOML; ``docs/config.md`` describes it.
 
     Parameters
@@ -222,13 +224,13 @@ def read(path, *, seed: int = 0) -> Configuration:
 
 
 def read_any(
-    path,
+    path: File,
     vcm_compatible: bool = False,
     *,
     ignore_unknown: bool = False,
     seed: int = 0,
     flips: float = 0.0,
-):
+) -> Any:
     """Read a configuration of either kind: TOML if the name ends in ``.toml``, or else VCM's.
 
     Arguments and errors are those of `vcm.read`; options that only VCM's have are refused with
@@ -244,7 +246,7 @@ def read_any(
     return read(path, seed=seed)
 
 
-def _general(simulation: Table, integrator: Table, output: Table, stem: str) -> dict:
+def _general(simulation: Table, integrator: Table, output: Table, stem: str) -> dict[str, Any]:
     """The settings that runs and outputs look at, by VCM's names and in VCM's units."""
     name = simulation["name"] or stem
     if not re.fullmatch(r"[^/\\\0]+", name) or name in (".", ".."):
@@ -276,9 +278,7 @@ def _platform(simulation: Table) -> str | None:
         raise simulation.error("platform", str(reason)) from None
 
 
-def _vesicles(
-    document: Document, kT: float
-) -> tuple[np.ndarray | None, tuple[VesicleMembrane, ...]]:
+def _vesicles(document: Document, kT: float) -> tuple[Array | None, tuple[VesicleMembrane, ...]]:
     """The box, and all vesicles in the order of the file, which is that of their particles."""
     given = document.data.get("vesicle")
     if not isinstance(given, list) or not given:
@@ -310,7 +310,7 @@ def _vesicles(
     return box, tuple(found)
 
 
-def _box_of(document: Document, tables: list, meshes: list[Mesh]) -> np.ndarray | None:
+def _box_of(document: Document, tables: list[Any], meshes: list[Mesh]) -> Array | None:
     """The box of the file, or else that of the meshes, which must agree."""
     if "box" in document.data:
         return Table(document, ("box",), "box")["vectors"]

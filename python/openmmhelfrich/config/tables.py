@@ -34,7 +34,9 @@ class Table(Mapping[str, Any]):
         If a key is unknown, has a bad value, or is missing.
     """
 
-    def __init__(self, document: Document, place: Place, kind: str, kT: float = 0.0, tables=()):
+    def __init__(
+        self, document: Document, place: Place, kind: str, kT: float = 0.0, tables: Any = ()
+    ) -> None:
         self._document = document
         self._place = place
         self._kind = kind
@@ -67,7 +69,7 @@ class Table(Mapping[str, Any]):
     def __getitem__(self, name: str) -> Any:
         return self._values[name]
 
-    def __iter__(self):
+    def __iter__(self) -> Any:
         return iter(self._values)
 
     def __len__(self) -> int:

@@ -73,14 +73,14 @@ def number(least: float | None = None, above: float | None = None) -> Reader:
     return read
 
 
-def energy(value, kT):
+def energy(value: Any, kT: Any) -> Any:
     """A number in kJ/mol, or a string such as ``"20 kT"``; 0 or more."""
     result = signed_energy(value, kT)
     _check_range(result, 0, None)
     return result
 
 
-def signed_energy(value, kT):
+def signed_energy(value: Any, kT: Any) -> Any:
     """A number in kJ/mol, or a string such as ``"-20 kT"``."""
     if isinstance(value, str):
         found = re.fullmatch(r"\s*(\S+)\s*kT\s*", value)
@@ -111,14 +111,14 @@ def integer(least: int, most: int = 2**31 - 1) -> Reader:
     return read
 
 
-def boolean(value, kT):
+def boolean(value: Any, kT: Any) -> Any:
     """True or false."""
     if not isinstance(value, bool):
         raise ValueError(f"expected true or false, got {value!r}")
     return value
 
 
-def text(value, kT):
+def text(value: Any, kT: Any) -> Any:
     """A string that is not empty."""
     if not isinstance(value, str) or not value.strip():
         raise ValueError(f"expected a string, got {value!r}")
@@ -151,7 +151,7 @@ def choices(meanings: Mapping[str, Any]) -> Reader:
     return read
 
 
-def vector(value, kT):
+def vector(value: Any, kT: Any) -> Any:
     """Three finite numbers."""
     if not isinstance(value, list) or len(value) != 3:
         raise ValueError(f"expected three numbers [x, y, z], got {value!r}")
@@ -169,7 +169,7 @@ def counts(least: int) -> Reader:
     return read
 
 
-def box(value, kT):
+def box(value: Any, kT: Any) -> Any:
     """Three lengths, or three box vectors, as an array of vectors."""
     if isinstance(value, list) and value and not isinstance(value[0], list):
         rows = np.diag(vector(value, kT))
@@ -183,7 +183,7 @@ def box(value, kT):
         raise ValueError(str(reason).removeprefix("[box]: ")) from None
 
 
-def scale(value, kT):
+def scale(value: Any, kT: Any) -> Any:
     """A factor, or one for each axis; none of them 0."""
     factors = vector(value, kT) if isinstance(value, list) else (_finite(value),)
     if 0 in factors:
@@ -191,7 +191,7 @@ def scale(value, kT):
     return factors if len(factors) == 3 else factors[0]
 
 
-def mode(value, kT):
+def mode(value: Any, kT: Any) -> Any:
     """A deformation ``{ l = 2, m = 0, amplitude = 0.1 }``, as a tuple."""
     if not isinstance(value, dict) or set(value) != {"l", "m", "amplitude"}:
         raise ValueError(f"expected {{ l = …, m = …, amplitude = … }}, got {value!r}")
@@ -210,7 +210,7 @@ _FLIPS = {
 }
 
 
-def flips(value, kT):
+def flips(value: Any, kT: Any) -> Any:
     """Attempts per edge and step, or a table of what `MonteCarloBondFlip` takes."""
     if not isinstance(value, dict):
         return number(least=0)(value, kT)
@@ -232,13 +232,13 @@ _AREA_DIFFERENCE = {
 }
 
 
-def osmotic(value, kT):
+def osmotic(value: Any, kT: Any) -> Any:
     """A table of what `OsmoticPressureForce` takes; kT is that of the integrator."""
     given = _arguments("osmotic", _OSMOTIC, table(value, kT), kT)
     return {"thermalEnergy": kT, **given}
 
 
-def area_difference(value, kT):
+def area_difference(value: Any, kT: Any) -> Any:
     """A table of what `area_difference_parameters` or `AreaDifferenceForce` takes."""
     return _arguments("area_difference", _AREA_DIFFERENCE, table(value, kT), kT)
 
@@ -251,7 +251,7 @@ _VISCOSITY = {
 }
 
 
-def viscosity(value, kT):
+def viscosity(value: Any, kT: Any) -> Any:
     """A surface shear viscosity, or a table of what `SurfaceViscosityThermostat` takes."""
     if not isinstance(value, dict):
         return number(least=0)(value, kT)
@@ -279,7 +279,7 @@ _SKELETON = {
 }
 
 
-def skeleton(value, kT):
+def skeleton(value: Any, kT: Any) -> Any:
     """A table of a law and of what its force takes."""
     return _arguments("skeleton", _SKELETON, table(value, kT), kT)
 
@@ -298,7 +298,7 @@ def _arguments(where, known, value, kT):
     return arguments
 
 
-def table(value, kT):
+def table(value: Any, kT: Any) -> Any:
     """A table, whose keys are read by themselves."""
     if not isinstance(value, dict):
         raise ValueError(f"expected a table, got {value!r}")

@@ -5,11 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from .._mesh import files, geometry
 from .._mesh.periodic import cut_images
+from .._types import Array
 from ..analysis.curvature import vertex_quantities
 from ..analysis.frame_files import ExtendedXYZSeries, FrameFile, GSDSeries
 from ..analysis.surface_series import SurfaceFrame, SurfaceSeries
@@ -25,7 +27,9 @@ FRAMES = ("none", "ply", "obj", "stl", "vtk", "vtkhdf", "gsd", "extxyz")
 _WITH_DATA = ("ply", "vtk")
 
 
-def frames_writer(folder: Path, name: str, kind: str, labels: Iterable[str], masses=1.0):
+def frames_writer(
+    folder: Path, name: str, kind: str, labels: Iterable[str], masses: Any = 1.0
+) -> Any:
     """What writes the meshes of a run in a format.
 
     Parameters
@@ -79,7 +83,9 @@ class SeriesFrames:
     def __init__(self, series: SurfaceSeries | FrameFile):
         self._series = series
 
-    def write(self, number: int, step: int, time: float, parts: list[Part], box=None) -> None:
+    def write(
+        self, number: int, step: int, time: float, parts: list[Part], box: Any = None
+    ) -> None:
         """Add a frame; arguments as for `MeshFrames.write`."""
         if number:
             self._series.require()
@@ -132,7 +138,9 @@ class MeshFrames:
         self._kind = kind
         self._labels = list(labels)
 
-    def write(self, number: int, step: int, time: float, parts: list[Part], box=None) -> None:
+    def write(
+        self, number: int, step: int, time: float, parts: list[Part], box: Array | None = None
+    ) -> None:
         """Write the meshes of one frame.
 
         Parameters
@@ -154,7 +162,7 @@ class MeshFrames:
             path = self._folder / f"{self._name}_{label}_{number:06d}.{self._kind}"
             self._write(path, vertices, triangles, box)
 
-    def _write(self, path: Path, vertices: np.ndarray, triangles: np.ndarray, box) -> None:
+    def _write(self, path: Path, vertices: Array, triangles: Array, box) -> None:
         data = None
         if self._kind in _WITH_DATA:
             found = vertex_quantities(vertices, triangles, box=box)

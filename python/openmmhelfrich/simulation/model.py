@@ -15,6 +15,7 @@ import openmm
 from openmm import app, unit
 
 from .. import _present, platforms
+from .._types import Array
 from ..analysis import theory
 from ..blowup import Limits
 from ..logs import logger
@@ -132,12 +133,12 @@ class Model(ABC):
         return round(self.general["SimulationTimeInPs"] / self.step_size)
 
     @cached_property
-    def positions(self) -> np.ndarray:
+    def positions(self) -> Array:
         """Start positions of all particles, shape (num_particles, 3), nm."""
         return np.concatenate([mesh.vertices for mesh in self.meshes])
 
     @property
-    def velocity_shifts(self) -> np.ndarray:
+    def velocity_shifts(self) -> Array:
         """Added to the first velocities, shape (num_particles, 3), nm/ps."""
         return np.zeros((self.num_particles, 3))
 
@@ -175,7 +176,7 @@ class Model(ABC):
         result.setRandomNumberSeed(self.seed)
         return result
 
-    def simulation(self, platform=None) -> app.Simulation:
+    def simulation(self, platform: Any = None) -> app.Simulation:
         """A Simulation at its start: positions and velocities set, minimised if the file says so.
 
         Parameters
@@ -188,7 +189,7 @@ class Model(ABC):
         self.prepare(made.context)
         return made
 
-    def unprepared_simulation(self, platform=None) -> app.Simulation:
+    def unprepared_simulation(self, platform: Any = None) -> app.Simulation:
         """A Simulation without positions and velocities, which a checkpoint may give instead."""
         system, integrator = self.system(), self.integrator()
         if platform is None:
@@ -226,7 +227,7 @@ class Model(ABC):
             for name, group in self.terms.items()
         }
 
-    def present_triangles(self, context: openmm.Context) -> tuple[np.ndarray, ...]:
+    def present_triangles(self, context: openmm.Context) -> tuple[Array, ...]:
         """The triangles of each membrane now, shape (num_triangles, 3), from its vertex 0."""
         return tuple(
             _present.present_triangles(context, membrane.mesh.triangles + membrane.offset)

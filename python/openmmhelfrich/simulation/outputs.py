@@ -12,7 +12,7 @@ import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import openmm
@@ -20,6 +20,7 @@ from openmm import unit
 from openmm.app.internal.xtc_utils import xtc_write_frame
 
 from .._mesh import files, geometry
+from .._types import Array, File
 from .._writing import in_memory, naming
 from ..analysis import mean_curvature, shape
 from ..wireframe import write_psf
@@ -81,12 +82,12 @@ class Frame:
     time: float
     potential: float
     kinetic: float
-    positions: np.ndarray
-    velocities: np.ndarray
-    forces: np.ndarray | None
+    positions: Array
+    velocities: Array
+    forces: Array | None
     terms: dict[str, float]
-    box: np.ndarray
-    triangles: tuple[np.ndarray, ...]
+    box: Array
+    triangles: tuple[Array, ...]
 
 
 def take_frame(cfg: Model, context: openmm.Context, step: int) -> Frame:
@@ -156,7 +157,7 @@ class Outputs:
         membrane and frame, or ``<name>.vtkhdf``, ``.gsd`` or ``.extxyz`` for all.
     """
 
-    def __init__(self, cfg: Model, folder, xtc: bool = True, frames: str = "none"):
+    def __init__(self, cfg: Model, folder: File, xtc: bool = True, frames: str = "none") -> None:
         self._cfg = cfg
         self._folder = Path(folder)
         self._names = [atom.name for atom in cfg.topology().atoms()]
@@ -238,7 +239,7 @@ class Outputs:
             self._frames.write(self._num_frames, frame.step, frame.time, parts, box)
         self._num_frames += 1
 
-    def state(self) -> dict:
+    def state(self) -> dict[str, Any]:
         """Frames so far, lengths of all files and digests of their ends, once on the disk."""
         sizes, ends = {}, {}
         for path in self.paths:
@@ -248,7 +249,7 @@ class Outputs:
             ends[path.name] = _digest_of_end(path, sizes[path.name])
         return {"frames": self._num_frames, "sizes": sizes, "ends": ends}
 
-    def restore(self, state: dict) -> None:
+    def restore(self, state: dict[str, Any]) -> None:
         """Cut every file back to an earlier `state`.
 
         Raises
@@ -265,7 +266,7 @@ class Outputs:
             os.truncate(path, sizes[path.name])
         self._num_frames = state["frames"]
 
-    def misfit(self, state: dict) -> str | None:
+    def misfit(self, state: dict[str, Any]) -> str | None:
         """Why the files cannot be cut back to an earlier `state`; None if they can."""
         sizes = state["sizes"]
         if {path.name for path in self.paths} != set(sizes):
@@ -283,7 +284,7 @@ class Outputs:
                 return f"{self._folder / name} is not the file that the checkpoint was saved beside"
         return None if self._frames is None else self._frames.misfit(state["frames"])
 
-    def _xyz(self, frame: Frame, values: np.ndarray) -> bytes:
+    def _xyz(self, frame: Frame, values: Array) -> bytes:
         """A frame in the XYZ format, with VCM's comment line; coordinates in nm."""
         lines = [
             str(len(self._names)),
@@ -341,7 +342,7 @@ class Outputs:
             vertices = frame.positions[membrane.offset : membrane.particles.stop]
             yield membrane, vertices, triangles, None if membrane.mesh.box is None else frame.box
 
-    def _curvatures(self, frame: Frame) -> np.ndarray:
+    def _curvatures(self, frame: Frame) -> Array:
         """Mean curvature H = C1 + C2 of every vertex, 1/nm."""
         parts = self._parts(frame)
         return np.concatenate(

@@ -12,6 +12,7 @@ import contextlib
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 from .. import _system
 from .._blocks import Block, BlockError, DamagedError, pack, unpack
@@ -47,9 +48,9 @@ class Saved:
     step: int
     platform: str
     seed: int
-    options: dict
+    options: dict[str, Any]
     fingerprint: str
-    outputs: dict | None
+    outputs: dict[str, Any] | None
 
 
 class RunFolder:

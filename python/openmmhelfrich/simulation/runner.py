@@ -12,10 +12,12 @@ import hashlib
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import openmm
 
 from .._snapshots import Snapshot
+from .._types import File
 from ..blowup import BlowUpError, Watch
 from ..config import read_any
 from ..errors import FAQ
@@ -73,8 +75,8 @@ class Run:
 
     def __init__(
         self,
-        config,
-        folder=None,
+        config: File,
+        folder: File | None = None,
         platform: str | None = None,
         seed: int = 0,
         resume: bool = False,
@@ -86,7 +88,7 @@ class Run:
         frames: str | None = None,
         flips: float = 0.0,
         checkpoint_seconds: float = 10.0,
-    ):
+    ) -> None:
         options = {
             "vcm_compatible": vcm_compatible,
             "ignore_unknown": ignore_unknown,
@@ -285,7 +287,7 @@ class Run:
             outputs = self.outputs.state()
         self._save(outputs)
 
-    def _save(self, outputs: dict | None) -> None:
+    def _save(self, outputs: dict[str, Any] | None) -> None:
         saved = Saved(
             self.step,
             self.platform,

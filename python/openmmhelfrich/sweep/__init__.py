@@ -25,6 +25,7 @@ import itertools
 import sys
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
+from typing import Any
 
 from tqdm import tqdm
 
@@ -37,7 +38,7 @@ from .plain import plain_point
 __all__ = ["Cache", "SweepError", "grid", "sweep"]
 
 
-def grid(**axes) -> list[dict]:
+def grid(**axes: Any) -> list[dict[str, Any]]:
     """All combinations of values, the last axis varying fastest.
 
     Parameters
@@ -59,17 +60,17 @@ def grid(**axes) -> list[dict]:
 
 
 def sweep(
-    function: Callable[..., Mapping],
-    points: Iterable[Mapping],
+    function: Callable[..., Mapping[str, Any]],
+    points: Iterable[Mapping[str, Any]],
     *,
-    cache=None,
+    cache: Any = None,
     version: int = 1,
     scheduler: str | None = None,
     workers: int | None = None,
     description: str | None = None,
     progress: bool = True,
     compute: bool = True,
-) -> list[dict]:
+) -> list[dict[str, Any]]:
     """Call ``function(**point)`` for every point and return the results in the order of the points.
 
     Parameters
@@ -133,8 +134,8 @@ def sweep(
     store = cache if cache is None or isinstance(cache, Cache) else Cache(cache)
     keys = [Cache.key(stored_name, point, version) for point in points]
     # Equal points are computed once.
-    results: dict[str, dict] = {}
-    missing: dict[str, dict] = {}
+    results: dict[str, dict[str, Any]] = {}
+    missing: dict[str, dict[str, Any]] = {}
     for key, point in zip(keys, points, strict=True):
         if key not in results and key not in missing:
             stored = store.load(stored_name, key, point) if store else None

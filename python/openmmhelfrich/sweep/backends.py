@@ -12,7 +12,9 @@ import signal
 import sys
 import threading
 import time
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 from ..logs import logger
 from .plain import plain_result
@@ -28,7 +30,7 @@ class SweepError(RuntimeError):
     """Some points of a sweep failed; the message names them. A cache has the others."""
 
 
-def on_this_process(function, points, scheduler, workers):
+def on_this_process(function: Any, points: Any, scheduler: Any, workers: Any) -> Iterator[Any]:
     """Compute in this process, and yield each key with what `timed` returns or the exception."""
     for key, point in points.items():
         try:
@@ -37,7 +39,7 @@ def on_this_process(function, points, scheduler, workers):
             yield key, error
 
 
-def on_dask(function, points, scheduler, workers):
+def on_dask(function: Any, points: Any, scheduler: Any, workers: Any) -> Iterator[Any]:
     """Compute on a Dask cluster, and yield each key with what `timed` returns or the exception."""
     try:
         import dask
@@ -145,7 +147,7 @@ def _deaf_to_interrupts():
         signal.signal(signal.SIGINT, before)
 
 
-def timed(function, point):
+def timed(function: Any, point: Any) -> Any:
     """The checked result of the function at a point, and the processor time that it took, s.
 
     It is checked here, where it was computed, so that a bad result is a failure of this point.
@@ -156,7 +158,7 @@ def timed(function, point):
     return plain_result(result, name_of(function)), seconds
 
 
-def name_of(function):
+def name_of(function: Any) -> Any:
     """What a function is called, for messages and keys; of a partial, what is partly applied."""
     while isinstance(function, functools.partial):
         function = function.func

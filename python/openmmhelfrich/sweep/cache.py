@@ -11,9 +11,11 @@ import tempfile
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from .._types import File
 from .._writing import naming
 from ..logs import logger
 
@@ -42,12 +44,12 @@ class Cache:
         Made where needed, when the first result is stored.
     """
 
-    def __init__(self, folder):
+    def __init__(self, folder: File) -> None:
         self.folder = Path(folder)
         self._entered: set[Path] = set()
 
     @staticmethod
-    def key(name: str, point: Mapping, version: int = 1) -> str:
+    def key(name: str, point: Mapping[str, Any], version: int = 1) -> str:
         """The name of a result: 20 hexadecimal digits of the SHA-256 of what it depends on.
 
         Parameters
@@ -80,7 +82,7 @@ class Cache:
         """
         return self.folder / name / f"{key}.npz"
 
-    def load(self, name: str, key: str, point: Mapping) -> dict | None:
+    def load(self, name: str, key: str, point: Mapping[str, Any]) -> dict[str, Any] | None:
         """Look for a result.
 
         Parameters
@@ -126,7 +128,9 @@ class Cache:
             return None
         return {**record["result"], **arrays}
 
-    def save(self, name: str, key: str, point: Mapping, result: Mapping) -> None:
+    def save(
+        self, name: str, key: str, point: Mapping[str, Any], result: Mapping[str, Any]
+    ) -> None:
         """Store a result, at once and completely or not at all.
 
         Parameters
@@ -161,7 +165,7 @@ class Cache:
             part.unlink(missing_ok=True)
         self._entered.add(folder)
 
-    def _save(self, path: Path, point: Mapping, result: Mapping) -> None:
+    def _save(self, path: Path, point: Mapping[str, Any], result: Mapping[str, Any]) -> None:
         arrays = {entry: value for entry, value in result.items() if isinstance(value, np.ndarray)}
         rest = {entry: value for entry, value in result.items() if entry not in arrays}
         record = {"point": point, "result": rest}

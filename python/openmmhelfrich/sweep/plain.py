@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from .cache import RECORD
 __all__ = ["plain_point", "plain_result"]
 
 
-def plain_result(result, name):
+def plain_result(result: Any, name: Any) -> Any:
     """A result of the function `name`, checked, numbers as JSON keeps them; else TypeError."""
     if not isinstance(result, Mapping):
         raise TypeError(f"{name} must return a dictionary, got {_shown(result)}")
@@ -28,7 +29,7 @@ def plain_result(result, name):
     return plain
 
 
-def plain_point(point):
+def plain_point(point: Any) -> Any:
     """A point, checked, with numbers and lists as JSON keeps them; else TypeError."""
     where = "sweep: point"
     if not isinstance(point, Mapping):

@@ -10,6 +10,7 @@ import numpy as np
 import openmm as mm
 from openmm import unit
 
+from .._types import Array, Values
 from .recognise.conditions import Condition, Search, plan_of
 from .recognise.constraints import CollectiveReading
 from .recognise.fixed import Fixed
@@ -22,7 +23,10 @@ __all__ = ["Left", "Replaced", "Report", "accelerate"]
 
 
 def accelerate(
-    system: mm.System, positions=None, tolerance: float = 1e-9, freeze: Iterable[str] = ()
+    system: mm.System,
+    positions: Values | None = None,
+    tolerance: float = 1e-9,
+    freeze: Iterable[str] = (),
 ) -> tuple[mm.System, Report]:
     """Replace the Custom forces of membranes by the forces of this package.
 
@@ -121,7 +125,7 @@ class _Accelerator:
     def __init__(
         self,
         system: mm.System,
-        positions: np.ndarray | None,
+        positions: Array | None,
         tolerance: float,
         frozen: dict[str, float],
     ):
@@ -347,5 +351,5 @@ def _without_forces(old: mm.System) -> mm.System:
     return new
 
 
-def _evaluate(reading, positions: np.ndarray) -> tuple[float, np.ndarray, float, np.ndarray]:
+def _evaluate(reading, positions: Array) -> tuple[float, Array, float, Array]:
     return (reading if isinstance(reading, CollectiveReading) else reading.bonds).forces(positions)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import combinations
+from typing import Any
 
 import openmm
 
@@ -45,7 +46,7 @@ def _bonds(force: openmm.Force) -> Iterator[tuple[int, ...]]:
                 yield tuple(particles(force, bond))
 
 
-def find_bond_on(edges, force: openmm.Force) -> tuple[int, int] | None:
+def find_bond_on(edges: Any, force: openmm.Force) -> tuple[int, int] | None:
     """Two ends of an edge that are in one bond of a force.
 
     Parameters

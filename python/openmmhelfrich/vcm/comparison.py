@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import openmm as mm
 from openmm import unit
 
 from .. import platforms
+from .._types import Array
 from .strings import custom_system, is_ours
 
 __all__ = ["Comparison", "TermComparison", "compare"]
@@ -59,7 +61,7 @@ class Comparison:
 
 
 def compare(
-    cfg,
+    cfg: Any,
     style: str = "sums",
     platform: str | None = None,
     seconds: float = 2.0,
@@ -123,7 +125,7 @@ def _terms(cfg, contexts: list[mm.Context], strain: float) -> tuple[TermComparis
     return tuple(found[name] for name in cfg.terms)
 
 
-def _strained(cfg, strain: float, size: float) -> np.ndarray:
+def _strained(cfg, strain: float, size: float) -> Array:
     random = np.random.default_rng(1)
     parts = []
     for mesh in cfg.meshes:
@@ -136,7 +138,7 @@ def _strained(cfg, strain: float, size: float) -> np.ndarray:
     return np.concatenate(parts)
 
 
-def _state(context: mm.Context, group: int) -> tuple[float, np.ndarray]:
+def _state(context: mm.Context, group: int) -> tuple[float, Array]:
     state = context.getState(energy=True, forces=True, groups={group})
     md = unit.md_unit_system
     energy = state.getPotentialEnergy().value_in_unit_system(md)

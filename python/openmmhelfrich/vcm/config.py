@@ -11,6 +11,7 @@ import openmm
 from scipy.spatial.transform import Rotation
 
 from .._mesh import files
+from .._types import Array, File
 from ..analysis import theory
 from ..errors import MeshError
 from ..mesh import Mesh
@@ -46,13 +47,13 @@ class Config(Model):
 
     def __init__(
         self,
-        path,
+        path: File,
         sections: list[Section],
         compatible: bool,
         ignore: bool,
         seed: int,
         flips: float = 0.0,
-    ):
+    ) -> None:
         self.path = Path(path)
         self.flips = flips
         self.vcm_compatible = compatible
@@ -81,7 +82,7 @@ class Config(Model):
         return (_VCM_BOLTZMANN if self.vcm_compatible else theory.BOLTZMANN) * self.temperature
 
     @cached_property
-    def velocity_shifts(self) -> np.ndarray:
+    def velocity_shifts(self) -> Array:
         """VelocityShiftVector of every particle, shape (num_particles, 3), nm/ps; 0 if frozen."""
         rows = []
         for membrane in self.membranes:
@@ -109,13 +110,13 @@ class Config(Model):
 
 
 def read(
-    path,
+    path: File,
     vcm_compatible: bool = False,
     *,
     ignore_unknown: bool = False,
     seed: int = 0,
     flips: float = 0.0,
-):
+) -> Config:
     """Read a configuration file of the Virtual Cell Model.
 
     Parameters
@@ -189,7 +190,7 @@ def _start_mesh(settings: Settings, folder: Path, random) -> tuple[Mesh, int]:
     return mesh.translated(settings["CoordinateTranslateVector"]), num_reversed
 
 
-def _reversals(before: np.ndarray, after: np.ndarray) -> int:
+def _reversals(before: Array, after: Array) -> int:
     """How many triangles run the other way round."""
     same = np.zeros(len(after), dtype=bool)
     for shift in range(3):

@@ -50,7 +50,7 @@ class Parser:
 
     _PRECEDENCE: ClassVar = {"+": 0, "-": 0, "*": 1, "/": 1, "^": 3}
 
-    def __init__(self, target: Expression, text: str, definitions: Mapping[str, int]):
+    def __init__(self, target: Expression, text: str, definitions: Mapping[str, int]) -> None:
         self._target = target
         self._tokens = tokens(text)
         self._definitions = definitions

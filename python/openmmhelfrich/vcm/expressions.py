@@ -17,10 +17,12 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from math import pi
+from typing import Any
 
 import numpy as np
 from scipy import special
 
+from .._types import Array
 from .expression_parser import ExpressionError, Parser
 
 __all__ = ["FUNCTIONS", "Expression", "ExpressionError"]
@@ -119,8 +121,8 @@ class Expression:
         self.text = text
         self._num_points = num_points
         #: (operation, arguments): a "number" has a value, a "variable" a name.
-        self._list: list[tuple[str, tuple]] = []
-        self._numbers: dict[tuple[str, tuple], int] = {}
+        self._list: list[tuple[str, tuple[Any, ...]]] = []
+        self._numbers: dict[tuple[str, tuple[Any, ...]], int] = {}
         self._seen: dict[int, set[bool]] = {}
         definitions: dict[str, int] = {}
         for name, formula in (given or {}).items():
@@ -145,7 +147,7 @@ class Expression:
                 needed.update(arguments)
         return sorted(needed)
 
-    def add(self, operation: str, *arguments) -> int:
+    def add(self, operation: str, *arguments: Any) -> int:
         """The number of an operation, which is new only if it was not there before."""
         key = (operation, arguments)
         if key not in self._numbers:
@@ -153,7 +155,7 @@ class Expression:
             self._list.append(key)
         return self._numbers[key]
 
-    def operation(self, number: int) -> tuple[str, tuple]:
+    def operation(self, number: int) -> tuple[str, tuple[Any, ...]]:
         """An operation and the numbers of its arguments."""
         return self._list[number]
 
@@ -204,8 +206,8 @@ class Expression:
         """The numbers written in the expression, and those computed of them."""
         return sorted({abs(v) for v in self._constants().values() if np.isfinite(v) and v != 0})
 
-    def _values(self, variables: Mapping[str, np.ndarray | float], watch: bool) -> dict:
-        values: dict[int, np.ndarray] = {}
+    def _values(self, variables: Mapping[str, Array | float], watch: bool) -> dict[str, Any]:
+        values: dict[int, Array] = {}
         with np.errstate(all="ignore"):
             for number in self._used:
                 operation, arguments = self._list[number]
@@ -224,20 +226,18 @@ class Expression:
                         seen.update(np.unique(sides).tolist())
         return values
 
-    def evaluate(self, variables: Mapping[str, np.ndarray | float]) -> np.ndarray:
+    def evaluate(self, variables: Mapping[str, Array | float]) -> Array:
         """The values for arrays of variables.
 
         Which branches of ``step``, ``select`` and their like were taken is remembered.
         """
         return self._values(variables, watch=True)[self._result]
 
-    def gradient(
-        self, variables: Mapping[str, np.ndarray | float]
-    ) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    def gradient(self, variables: Mapping[str, Array | float]) -> tuple[Array, dict[str, Array]]:
         """The values, and their derivatives by each variable (reverse mode)."""
         values = self._values(variables, watch=False)
-        slopes: dict[int, np.ndarray] = {self._result: np.float64(1.0)}
-        result: dict[str, np.ndarray] = {}
+        slopes: dict[int, Array] = {self._result: np.float64(1.0)}
+        result: dict[str, Array] = {}
         with np.errstate(all="ignore"):
             for number in reversed(self._used):
                 if number not in slopes:

@@ -15,6 +15,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from .._types import File
+
 __all__ = ["ConfigError", "ConfigWarning", "Entry", "Section", "near", "nearest", "read_sections"]
 
 GENERAL, MEMBRANE, TABLE = "GeneralParameters", "Membrane", "InteractionTable"
@@ -126,7 +128,7 @@ def _is_header(word: str) -> bool:
     return len(word) > 1 and word[0] == "-" and word[1].isalpha()
 
 
-def read_sections(path) -> list[Section]:
+def read_sections(path: File) -> list[Section]:
     """The sections of a file, in their order, inheritance done.
 
     Parameters

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import openmm
 
+from .._types import Array
 from .grammar import Section, nearest
 from .springs import edge_lengths
 
@@ -83,7 +84,7 @@ def read_table(section: Section | None, num_membranes: int) -> list[list[str]]:
     return [list(row.words) for row in rows]
 
 
-def node_radii(membrane: Membrane) -> np.ndarray:
+def node_radii(membrane: Membrane) -> Array:
     """The radius of every vertex for the interactions, nm."""
     value, mesh, lengths = membrane.settings["NodeRadius"], membrane.mesh, edge_lengths(membrane)
     if value == "Av":
@@ -94,7 +95,7 @@ def node_radii(membrane: Membrane) -> np.ndarray:
     return np.full(mesh.num_vertices, value)
 
 
-def _parameters(cfg: Config, kind: str) -> np.ndarray:
+def _parameters(cfg: Config, kind: str) -> Array:
     """Radius, nm, and ε, kJ/mol, of every particle; shape (num_particles, 2)."""
     rows = []
     for membrane in cfg.membranes:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import openmm
 
+from .._types import Array
 from ..forces import (
     BendingForce,
     DihedralForce,
@@ -80,7 +81,7 @@ def _area(cfg: Config, membrane: Membrane) -> Maker | None:
     return lambda: TriangleAreaForce(mesh, modulus, targets, offset=offset)
 
 
-def _triangle_areas(mesh: Mesh) -> np.ndarray:
+def _triangle_areas(mesh: Mesh) -> Array:
     a, b, c = (mesh.vertices[corner] for corner in mesh.triangles.T)
     return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
 
@@ -167,7 +168,7 @@ def _dihedrals(cfg: Config, membrane: Membrane) -> Maker | None:
         return None
     angle = settings["SpontaneousTriangleBendingAngleInDegrees"]
 
-    def own() -> np.ndarray:
+    def own() -> Array:
         return membrane.mesh.dihedral_angles
 
     rest = {180: lambda: 0.0, "Au": own, "Av": lambda: own().mean()}.get(angle)

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from .._types import Array
 from .grammar import nearest
 
 __all__ = [
@@ -153,7 +154,7 @@ def flag_and_number(words: tuple[str, ...]) -> tuple[bool, float | None]:
 def vector(length: int = 3, zero: bool = True) -> Parser:
     """Several finite numbers, none of them 0 unless `zero`."""
 
-    def parse(words: tuple[str, ...]) -> np.ndarray:
+    def parse(words: tuple[str, ...]) -> Array:
         _count(words, length)
         values = np.array([_float(word) for word in words])
         if not zero and not values.all():

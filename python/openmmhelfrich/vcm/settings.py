@@ -67,7 +67,7 @@ class Settings(Mapping[str, Any]):
     def __getitem__(self, name: str) -> Any:
         return self._values[name]
 
-    def __iter__(self):
+    def __iter__(self) -> Any:
         return iter(self._values)
 
     def __len__(self) -> int:

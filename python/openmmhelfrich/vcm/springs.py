@@ -12,6 +12,7 @@ import numpy as np
 import openmm
 from scipy.spatial import cKDTree
 
+from .._types import Array
 from .keys import NotDone
 
 if TYPE_CHECKING:
@@ -46,7 +47,7 @@ def makers(cfg: Config, membrane: Membrane) -> dict[str, Maker]:
     return {kind: make for kind, make in result.items() if make is not None}
 
 
-def edge_lengths(membrane: Membrane) -> np.ndarray:
+def edge_lengths(membrane: Membrane) -> Array:
     """The length of every edge of the start mesh, in the order of `Mesh.edges`, nm."""
     ends = membrane.mesh.vertices[membrane.mesh.edges]
     return np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)

@@ -19,6 +19,7 @@ import numpy as np
 import openmm as mm
 
 from .. import forces as our_forces
+from .._types import Array
 
 __all__ = ["STYLES", "custom_forces", "custom_system", "is_ours"]
 
@@ -121,7 +122,7 @@ def _volume(a: int, b: int, c: int) -> str:
     return f"({'+'.join(terms)})/6"
 
 
-def _constraint(measure, ours, triangles: np.ndarray, style: str) -> list[mm.Force]:
+def _constraint(measure, ours, triangles: Array, style: str) -> list[mm.Force]:
     """½ k (Σ q − q0)²/q0."""
     constants = _constants(k=ours.getModulus(), target=ours.getTarget())
     if style == "sums":
@@ -140,11 +141,11 @@ def _constraint(measure, ours, triangles: np.ndarray, style: str) -> list[mm.For
     return [single, _compound(expression, pairs)]
 
 
-def _surface_area(ours, triangles: np.ndarray, style: str) -> list[mm.Force]:
+def _surface_area(ours, triangles: Array, style: str) -> list[mm.Force]:
     return _constraint(_area, ours, triangles, style)
 
 
-def _enclosed_volume(ours, triangles: np.ndarray, style: str) -> list[mm.Force]:
+def _enclosed_volume(ours, triangles: Array, style: str) -> list[mm.Force]:
     return _constraint(_volume, ours, triangles, style)
 
 
@@ -160,21 +161,21 @@ def _of_total(expression: str, total: mm.Force, **constants: float) -> list[mm.F
     return [result]
 
 
-def _pressure(ours, triangles: np.ndarray, style: str) -> list[mm.Force]:
+def _pressure(ours, triangles: Array, style: str) -> list[mm.Force]:
     return _of_total("-p*total", _compound(_volume(1, 2, 3), triangles), p=ours.getPressure())
 
 
-def _surface_tension(ours, triangles: np.ndarray, style: str) -> list[mm.Force]:
+def _surface_tension(ours, triangles: Array, style: str) -> list[mm.Force]:
     return [_compound(f"s*{_area(1, 2, 3)}" + _constants(s=ours.getTension()), triangles)]
 
 
-def _osmotic_pressure(ours, triangles: np.ndarray, style: str) -> list[mm.Force]:
+def _osmotic_pressure(ours, triangles: Array, style: str) -> list[mm.Force]:
     values = {"n": ours.getSolutes(), "c": ours.getConcentration(), "kT": ours.getThermalEnergy()}
     volume = _compound(_volume(1, 2, 3), triangles)
     return _of_total("n*kT*(x-1-log(x)); x=c*total/n", volume, **values)
 
 
-def _area_difference(ours, triangles: np.ndarray, style: str) -> list[mm.Force]:
+def _area_difference(ours, triangles: Array, style: str) -> list[mm.Force]:
     share = f"0.5*distance(p2,p3)*{_turning(1, 2, 3, 4)}"
     values = {"m": ours.getModulus(), "target": ours.getTarget()}
     return _of_total("0.5*m*(total-target)^2", _compound(share, _wings(triangles)), **values)
@@ -188,7 +189,7 @@ def _repulsion(ratios: list[str]) -> str:
     return "+".join(f"eps*(({r})^8-({r})^4+0.25)*step(({r})^4-0.5)" for r in ratios)
 
 
-def _heights(ours, triangles: np.ndarray, style: str) -> list[mm.Force]:
+def _heights(ours, triangles: Array, style: str) -> list[mm.Force]:
     heights = [
         f"(distance(p{a},p{b})*sin(angle(p{a},p{b},p{c})))"
         for a, b, c in ((1, 2, 3), (2, 3, 1), (3, 1, 2))
@@ -197,19 +198,19 @@ def _heights(ours, triangles: np.ndarray, style: str) -> list[mm.Force]:
     return [_compound(_repulsion([f"d/{h}" for h in heights]) + constants, triangles)]
 
 
-def _area_repulsion(ours, triangles: np.ndarray, style: str) -> list[mm.Force]:
+def _area_repulsion(ours, triangles: Array, style: str) -> list[mm.Force]:
     constants = _constants(least=ours.getMinArea(), eps=ours.getEpsilon())
     return [_compound(_repulsion([f"least/({_area(1, 2, 3)})"]) + constants, triangles)]
 
 
-def _triangle_area(ours, triangles: np.ndarray, style: str) -> list[mm.Force]:
+def _triangle_area(ours, triangles: Array, style: str) -> list[mm.Force]:
     targets = np.array(ours.getTriangleTargets() or [ours.getTarget()] * len(triangles))
     expression = f"0.5*k*({_area(1, 2, 3)}-target)^2/target"
     constants = _constants(k=ours.getModulus())
     return [_compound(expression + constants, triangles, ["target"], targets[:, None])]
 
 
-def _wings(triangles: np.ndarray) -> list[tuple[int, int, int, int]]:
+def _wings(triangles: Array) -> list[tuple[int, int, int, int]]:
     """(c, a, b, d) for each edge ab of triangles abc and bad."""
     opposite = {}
     for a, b, c in triangles.tolist():
@@ -217,7 +218,7 @@ def _wings(triangles: np.ndarray) -> list[tuple[int, int, int, int]]:
     return [(c, a, b, opposite[b, a]) for (a, b), c in sorted(opposite.items()) if a < b]
 
 
-def _dihedral(ours, triangles: np.ndarray, style: str) -> list[mm.Force]:
+def _dihedral(ours, triangles: Array, style: str) -> list[mm.Force]:
     edges = _wings(triangles)
     # The half angle, because 1 − cos φ itself cancels where the surface is nearly flat.
     expression = _DIHEDRALS[ours.getForm()] + "; u=2*sin(0.5*phi)^2"
@@ -242,7 +243,7 @@ def _dihedral(ours, triangles: np.ndarray, style: str) -> list[mm.Force]:
 # --- bending -----------------------------------------------------------------------------------
 
 
-def _rings(triangles: np.ndarray) -> dict[int, list[int]]:
+def _rings(triangles: Array) -> dict[int, list[int]]:
     """The neighbours of each vertex, counter-clockwise."""
     following: dict[int, dict[int, int]] = defaultdict(dict)
     for a, b, c in triangles.tolist():
@@ -336,7 +337,7 @@ def _vertex_energy(degree: int, scheme: str, curved: bool, unsigned: bool) -> st
     return f"0.5*k*(s/a-2*C0*{along}+C0^2*a); {normal}; {square}"
 
 
-def _bending(ours, triangles: np.ndarray, style: str) -> list[mm.Force]:
+def _bending(ours, triangles: Array, style: str) -> list[mm.Force]:
     rings = _rings(triangles)
     rigidity = ours.getVertexRigidity() or [ours.getRigidity()] * len(rings)
     curvature = ours.getVertexSpontaneousCurvature()

@@ -6,11 +6,13 @@ import secrets
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from openmm import unit
 
 from .._numbers import whole_number
 from .._surface_reporters import NextReport
+from .._types import File
 from .page import page
 from .scene import Scene
 from .sources import add_context
@@ -36,7 +38,7 @@ class LivePage:
         To which frames are added.
     """
 
-    def __init__(self, path, scene: Scene):
+    def __init__(self, path: File, scene: Scene) -> None:
         self.path = Path(path)
         self.scene = scene
         self._key = f"openmm-helfrich {secrets.token_hex(8)}"
@@ -121,21 +123,21 @@ class LiveView:
     >>> live.finish(simulation)
     """
 
-    def __init__(self, reportInterval, file=None):
+    def __init__(self, reportInterval: int, file: File | None = None) -> None:
         self._interval = whole_number(reportInterval, "LiveView", "reportInterval", 1)
         self.scene = Scene("simulation")
         self._page = _Cell(self.scene) if file is None else LivePage(file, self.scene)
 
-    def describeNextReport(self, simulation):
+    def describeNextReport(self, simulation: Any) -> Any:
         """When the next report is due, as OpenMM asks for it."""
         steps = self._interval - simulation.currentStep % self._interval
         return NextReport(steps=steps, periodic=False, include=[])
 
-    def report(self, simulation, state):
+    def report(self, simulation: Any, state: Any) -> None:
         """Show the present frame if the last one was shown some seconds ago."""
         self._page.update(lambda: self._add(simulation))
 
-    def finish(self, simulation) -> None:
+    def finish(self, simulation: Any) -> None:
         """Show the present frame; a page no longer looks for a newer one."""
         self._page.finish(lambda: self._add(simulation))
 

@@ -13,9 +13,11 @@ import json
 import math
 import zlib
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from .._types import Array
 from .scene import FIELDS, Scene
 
 __all__ = ["GENERATOR", "page"]
@@ -74,7 +76,7 @@ def _script_safe(text: str) -> str:
     return text.replace("<", "\\u003c")
 
 
-def _encoded(scene: Scene) -> tuple[dict, bytes]:
+def _encoded(scene: Scene) -> tuple[dict[str, Any], bytes]:
     """The header of a scene and its compressed block."""
     ranges = [_range(scene, place) for place in range(len(FIELDS))]
     blocks, frames, meshes = [], [], []
@@ -131,7 +133,7 @@ def _encoded(scene: Scene) -> tuple[dict, bytes]:
     return header, zlib.compress(b"".join(blocks), 9)
 
 
-def _whole(values: np.ndarray, least: float, width: float) -> np.ndarray:
+def _whole(values: Array, least: float, width: float) -> Array:
     """Values as parts of their range, in 16 bits."""
     found = np.full(len(values), _NONE, dtype=np.uint16)
     known = np.isfinite(values)
@@ -139,14 +141,14 @@ def _whole(values: np.ndarray, least: float, width: float) -> np.ndarray:
     return found
 
 
-def _planes(numbers: np.ndarray) -> bytes:
+def _planes(numbers: Array) -> bytes:
     """All first bytes of little-endian numbers, all second ones and so on, which packs better."""
     size = numbers.dtype.itemsize
     numbers = np.ascontiguousarray(numbers, dtype=numbers.dtype.newbyteorder("<"))
     return numbers.view(np.uint8).reshape(-1, size).T.tobytes()
 
 
-def _values(scene: Scene, field: int) -> np.ndarray:
+def _values(scene: Scene, field: int) -> Array:
     found = np.concatenate([frame.fields[field] for frame in scene.frames])
     return found[np.isfinite(found)].astype(float)
 
@@ -159,7 +161,7 @@ def _range(scene: Scene, field: int) -> tuple[float, float]:
     return float(values.min()), float(values.max() - values.min()) or 1.0
 
 
-def _colours(scene: Scene, field: int) -> dict:
+def _colours(scene: Scene, field: int) -> dict[str, Any]:
     """Between which values colours change: all but the extremes, so that these do not pale it."""
     values = _values(scene, field)
     if len(values) == 0:

@@ -7,12 +7,14 @@ own and cannot differ from them.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .._mesh import geometry
 from .._mesh.periodic import corner_positions, cut_images, unfolded
+from .._types import Array
 from ..analysis import mode_amplitudes, shape
 from ..analysis._arrays import frames_of, triangles_of
 from ..analysis.curvature import vertex_quantities
@@ -58,16 +60,16 @@ class Series(NamedTuple):
 class _Frame(NamedTuple):
     step: int
     time: float
-    points: np.ndarray
+    points: Array
     """Shape (num_points, 3), float32, nm, from `origin`."""
-    origin: np.ndarray
+    origin: Array
     mesh: int
     """Which of `Scene.meshes` connects the points."""
-    fields: np.ndarray
+    fields: Array
     """Shape (number of FIELDS, num_points), float32; NaN where there is no value."""
     numbers: dict[tuple[int | None, str, str], float]
     """By surface, label and unit."""
-    spectra: tuple[np.ndarray | None, ...]
+    spectra: tuple[Array | None, ...]
     """Of each surface the mean of |u_lm|² over m, for l = 2, 3, …; None without one."""
 
 
@@ -89,13 +91,13 @@ class Scene:
     'area'
     """
 
-    def __init__(self, title: str, names=None):
+    def __init__(self, title: str, names: Any = None) -> None:
         self.title = title
         self.frames: list[_Frame] = []
-        self.meshes: list[tuple[np.ndarray, np.ndarray]] = []
+        self.meshes: list[tuple[Array, Array]] = []
         """Triangles, shape (num_triangles, 3), and the surface of each point."""
         self._names = None if names is None else list(names)
-        self._split: tuple[np.ndarray, list] | None = None
+        self._split: tuple[Array, list[Any]] | None = None
 
     @property
     def names(self) -> list[str]:
@@ -109,12 +111,12 @@ class Scene:
 
     def add(
         self,
-        vertices,
-        triangles,
+        vertices: ArrayLike,
+        triangles: ArrayLike,
         *,
         step: int = 0,
         time: float = 0.0,
-        box: np.ndarray | None = None,
+        box: Array | None = None,
         energies: Mapping[str, float] | None = None,
     ) -> None:
         """Add a moment.
@@ -188,7 +190,7 @@ class Scene:
         ]
         return [each for each in found if not np.isnan(each.values).all()]
 
-    def spectra(self) -> list[np.ndarray | None]:
+    def spectra(self) -> list[Array | None]:
         """Of each surface the mean of |u_lm|² over m.
 
         Shape (num_frames, number of l from 2 on), with NaN for frames that have none; None for
@@ -205,7 +207,7 @@ class Scene:
             found.append(np.stack([missing if row is None else row for row in rows]))
         return found
 
-    def _parts(self, corners: np.ndarray, count: int):
+    def _parts(self, corners: Array, count: int):
         """The surface of each vertex, and of each surface its vertices and triangles."""
         if self._split is not None and np.array_equal(self._split[0], corners):
             return self._split[1]
@@ -218,7 +220,7 @@ class Scene:
         self._split = (corners, (surfaces, parts))
         return surfaces, parts
 
-    def _mesh(self, corners: np.ndarray, surfaces: np.ndarray) -> int:
+    def _mesh(self, corners: Array, surfaces: Array) -> int:
         """The place of these triangles in `meshes`, at the end of which they are put if new."""
         last = self.meshes[-1] if self.meshes else None
         if last is None or not (
@@ -228,7 +230,7 @@ class Scene:
         return len(self.meshes) - 1
 
 
-def _used(vertices: np.ndarray, triangles) -> tuple[np.ndarray, np.ndarray]:
+def _used(vertices: Array, triangles) -> tuple[Array, Array]:
     """Without the vertices, or other particles, that belong to no triangle."""
     corners = triangles_of(triangles, len(vertices))
     used = np.unique(corners)
@@ -237,7 +239,7 @@ def _used(vertices: np.ndarray, triangles) -> tuple[np.ndarray, np.ndarray]:
     return vertices[used], np.searchsorted(used, corners)
 
 
-def _around(points, corners, box) -> tuple[np.ndarray, np.ndarray]:
+def _around(points, corners, box) -> tuple[Array, Array]:
     """The largest |φ| around each vertex, degrees, and how many neighbours it has."""
     edges = geometry.edges_of(corners)
     angles = np.abs(geometry.dihedral_angles(corner_positions(points, corners, box), corners))
@@ -246,7 +248,7 @@ def _around(points, corners, box) -> tuple[np.ndarray, np.ndarray]:
     return largest, np.bincount(edges.ravel(), minlength=len(points))
 
 
-def _measured(points, corners, curvature, box, surface) -> dict:
+def _measured(points, corners, curvature, box, surface) -> dict[str, Any]:
     """Area, volumes and the range of curvature of one surface, or of all."""
     whole = shape(points, corners, box=box)
     numbers = {
@@ -264,7 +266,7 @@ def _extreme(function, values) -> float:
     return function.reduce(values)
 
 
-def _spectrum(points, corners, box) -> np.ndarray | None:
+def _spectrum(points, corners, box) -> Array | None:
     """Mean of |u_lm|² over m for l = 2, 3, …; None if the surface has no such modes."""
     lmax = min(_LMAX, int(len(points) ** 0.5 / 2))
     if lmax < 2 or len(points) > _MOST_VERTICES:

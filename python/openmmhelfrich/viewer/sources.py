@@ -7,6 +7,7 @@ import os
 import re
 from collections.abc import Callable, Iterable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import openmm
@@ -15,6 +16,7 @@ import openmm.app
 from .._mesh import files
 from .._numbers import whole_number
 from .._present import is_periodic, surfaces_of
+from .._types import Array
 from ..analysis._arrays import frames_of, positions_in
 from ..analysis.tables import import_h5py
 from ..analysis.trajectories import Trajectory
@@ -39,7 +41,13 @@ Progress = Callable[[Iterable[int]], Iterable[int]]
 
 
 def scene_of(
-    thing, triangles=None, *, title=None, every=None, mesh=None, progress: Progress = iter
+    thing: Any,
+    triangles: Any = None,
+    *,
+    title: str | None = None,
+    every: Any = None,
+    mesh: Any = None,
+    progress: Progress = iter,
 ) -> Scene:
     """The scene of anything that can be shown.
 
@@ -87,7 +95,7 @@ def scene_of(
     return source.scene(Scene(title or "surface"), every, progress)
 
 
-def add_context(scene: Scene, context: openmm.Context, step: int, energies=None) -> None:
+def add_context(scene: Scene, context: openmm.Context, step: int, energies: Any = None) -> None:
     """Add all surfaces of a Context as they are now.
 
     Raises
@@ -113,7 +121,7 @@ def add_context(scene: Scene, context: openmm.Context, step: int, energies=None)
     scene.add(positions, corners, step=step, time=time, box=box, energies=energies)
 
 
-def _once(corners: np.ndarray) -> np.ndarray:
+def _once(corners: Array) -> Array:
     """Each triangle once: a force of contacts has those of other forces too."""
     turn = corners.argmin(axis=1)
     turned = corners[np.arange(len(corners))[:, np.newaxis], (turn[:, np.newaxis] + range(3)) % 3]
@@ -266,7 +274,7 @@ def _mesh_of(source):
         raise ValueError(f"view: {reason}") from None
 
 
-def _table_beside(path: Path, steps) -> tuple[list[str] | None, dict[str, np.ndarray]]:
+def _table_beside(path: Path, steps) -> tuple[list[str] | None, dict[str, Array]]:
     """Names of the membranes, and energies of the frames, from the CSV file of a run."""
     table = path.with_suffix(".csv")
     if not table.is_file():

@@ -7,7 +7,9 @@ import os
 import tempfile
 import webbrowser
 from pathlib import Path
+from typing import Any
 
+from .._types import File
 from .._writing import write_whole
 from .page import GENERATOR, page
 from .scene import Scene
@@ -28,10 +30,10 @@ class View:
         What it shows.
     """
 
-    def __init__(self, scene: Scene):
+    def __init__(self, scene: Scene) -> None:
         self.scene = scene
 
-    def write(self, path) -> Path:
+    def write(self, path: File) -> Path:
         """Write the page, an HTML file with everything in it.
 
         Parameters
@@ -69,7 +71,15 @@ class View:
         return embedded(page(self.scene))
 
 
-def view(thing, triangles=None, path=None, *, title=None, every=None, mesh=None) -> View:
+def view(
+    thing: Any,
+    triangles: Any = None,
+    path: File | None = None,
+    *,
+    title: str | None = None,
+    every: int | None = None,
+    mesh: Any = None,
+) -> View:
     """Show a surface, or surfaces over time, in a browser or a notebook.
 
     The page has the surface in three dimensions, coloured by mean curvature, area, dihedral angle
@@ -132,7 +142,7 @@ def check_replaceable(path: Path) -> None:
                 )
 
 
-def write_page(path: Path, scene: Scene, reload: float | None = None, key=None) -> int:
+def write_page(path: Path, scene: Scene, reload: float | None = None, key: Any = None) -> int:
     """Write a page in the place of none but another one; returns its size in bytes.
 
     Raises

@@ -11,6 +11,8 @@ from pathlib import Path
 import numpy as np
 from openmm.app.internal.xtc_utils import read_xtc
 
+from .._types import Array
+
 __all__ = ["read"]
 
 # A frame begins with a magic number, the number of particles, step, time and box, and the number of
@@ -22,7 +24,7 @@ _PLAIN = 9
 _WORDS = 32
 
 
-def read(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def read(path: Path) -> tuple[Array, Array, Array, Array]:
     """Positions, boxes, times and steps of all whole frames.
 
     Returns

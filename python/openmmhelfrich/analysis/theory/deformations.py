@@ -1,12 +1,16 @@
 """Energies of a sphere with one mode, r = r0 (1 + u Y_20), at given targets of the sphere."""
 
+from __future__ import annotations
+
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..._numbers import not_negative, positive
+from ..._types import Array
 from ._modes import plain
 
 
-def area_energy(amplitude, modulus, radius):
+def area_energy(amplitude: ArrayLike, modulus: ArrayLike, radius: ArrayLike) -> Array | float:
     """Energy of the area term of a sphere deformed by u_20, E_A = (2/π) kA u⁴ r0² (34).
 
     ½ kA (A − A0)² / A0 with A0 = 4π r0² and A − A0 = 4 u² r0² to leading order.
@@ -34,7 +38,7 @@ def area_energy(amplitude, modulus, radius):
     return plain(2 / np.pi * modulus * np.asarray(amplitude, dtype=float) ** 4 * radius**2)
 
 
-def volume_energy(amplitude, modulus, radius):
+def volume_energy(amplitude: ArrayLike, modulus: ArrayLike, radius: ArrayLike) -> Array | float:
     """Energy of the volume term of a sphere deformed by u_20, E_V = (3/8π) kV u⁴ r0³ (36).
 
     ½ kV (V − V0)² / V0 with V0 = 4π r0³ / 3 and V − V0 = u² r0³ to leading order.
@@ -63,7 +67,7 @@ def volume_energy(amplitude, modulus, radius):
     return plain(3 / (8 * np.pi) * modulus * u**4 * radius**3)
 
 
-def bending_energy(amplitude, rigidity):
+def bending_energy(amplitude: ArrayLike, rigidity: ArrayLike) -> Array | float:
     """Bending energy of a sphere deformed by u_20, E_b = 8πκ + 12 κ u² (38).
 
     Parameters

@@ -1,13 +1,21 @@
 """Frequencies, damping and autocorrelations of the modes of a vesicle."""
 
+from __future__ import annotations
+
+from typing import Any
+
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..._numbers import not_negative, positive
+from ..._types import Array
 from ._modes import check_modes, plain
 from .spectra import stiffness
 
 
-def mode_frequency(l, rigidity, mass, num_vertices, radius):
+def mode_frequency(
+    l: ArrayLike, rigidity: ArrayLike, mass: ArrayLike, num_vertices: ArrayLike, radius: ArrayLike
+) -> Array | float:
     """Angular frequency of an undamped mode, ω_l = √[(4πκ / M r0²) (l+2)(l+1) l (l−1)] (A30).
 
     Parameters
@@ -39,7 +47,9 @@ def mode_frequency(l, rigidity, mass, num_vertices, radius):
     return plain(np.sqrt(4 * np.pi * rigidity / (total * radius**2) * stiffness(l)))
 
 
-def mode_period(l, rigidity, mass, num_vertices, radius):
+def mode_period(
+    l: ArrayLike, rigidity: Any, mass: Any, num_vertices: Any, radius: Any
+) -> Array | float:
     """Period of an undamped mode, τ_l = 2π / ω_l with ω_l of `mode_frequency`.
 
     The slowest is τ_2, about 11 460 ps for the vesicle of the paper.
@@ -62,7 +72,7 @@ def mode_period(l, rigidity, mass, num_vertices, radius):
     return 2 * np.pi / mode_frequency(l, rigidity, mass, num_vertices, radius)
 
 
-def overdamped_time(frequency, friction):
+def overdamped_time(frequency: ArrayLike, friction: ArrayLike) -> Array | float:
     """Relaxation time of an overdamped mode, γ / ω², as in exp(−t ω²/γ) (A39).
 
     Parameters
@@ -86,7 +96,7 @@ def overdamped_time(frequency, friction):
     return plain(positive("friction", friction) / positive("frequency", frequency) ** 2)
 
 
-def internal_friction(frequency, ratio=0.15):
+def internal_friction(frequency: ArrayLike, ratio: ArrayLike = 0.15) -> Array | float:
     """Damping of a mode by the mesh itself, without any thermostat: γ_l ≈ 0.15 ω_l.
 
     What the paper finds at softness Ξ = 0.037 under Newton's equations (SM 9): undulations lose
@@ -112,7 +122,7 @@ def internal_friction(frequency, ratio=0.15):
     return plain(not_negative("ratio", ratio) * not_negative("frequency", frequency))
 
 
-def newtonian_autocorrelation(time, frequency):
+def newtonian_autocorrelation(time: ArrayLike, frequency: ArrayLike) -> Array | float:
     """⟨u(t) u(0)⟩ / ⟨u²⟩ of an undamped mode, cos ω t (A30).
 
     Parameters
@@ -135,7 +145,9 @@ def newtonian_autocorrelation(time, frequency):
     return plain(np.cos(not_negative("frequency", frequency) * np.asarray(time, dtype=float)))
 
 
-def langevin_autocorrelation(time, frequency, friction):
+def langevin_autocorrelation(
+    time: ArrayLike, frequency: ArrayLike, friction: ArrayLike
+) -> Array | float:
     """⟨u(t) u(0)⟩ / ⟨u²⟩ of a mode under Langevin dynamics (A35–A37).
 
     ü = −ω² u − γ u̇ + noise gives, with ω' = √(ω² − γ²/4),
@@ -186,7 +198,9 @@ def langevin_autocorrelation(time, frequency, friction):
     return plain(np.where(square >= 0, under, over)[()])
 
 
-def brownian_autocorrelation(time, frequency, friction):
+def brownian_autocorrelation(
+    time: ArrayLike, frequency: ArrayLike, friction: ArrayLike
+) -> Array | float:
     """⟨u(t) u(0)⟩ / ⟨u²⟩ of a mode under Brownian dynamics, exp(−t ω²/γ) (A39).
 
     Also the limit of `langevin_autocorrelation` for γ ≫ 2ω.

@@ -1,12 +1,16 @@
 """Fluctuation spectra of nearly spherical vesicles, and what follows from them."""
 
+from __future__ import annotations
+
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..._numbers import not_negative, positive, whole_number
+from ..._types import Array
 from ._modes import check_modes, plain
 
 
-def stiffness(l):
+def stiffness(l: ArrayLike) -> Array | float:
     """The factor (l+2)(l+1) l (l−1) by which bending grows with the mode number (A16).
 
     Parameters
@@ -24,7 +28,7 @@ def stiffness(l):
     return plain((l + 2) * (l + 1) * l * (l - 1))
 
 
-def fluid_spectrum(l, kappa_over_kT):
+def fluid_spectrum(l: ArrayLike, kappa_over_kT: ArrayLike) -> Array | float:
     """Mean square amplitude of a mode of a fluid vesicle without tension (A17).
 
     ⟨|u_lm|²⟩ = (kBT/κ) / [(l+2)(l+1) l (l−1)]
@@ -50,7 +54,13 @@ def fluid_spectrum(l, kappa_over_kT):
     return plain(1 / (positive("kappa_over_kT", kappa_over_kT) * stiffness(l)))
 
 
-def elastic_spectrum(l, kappa_over_kT, young_over_kT, radius, pressure_over_kT=0.0):
+def elastic_spectrum(
+    l: ArrayLike,
+    kappa_over_kT: ArrayLike,
+    young_over_kT: ArrayLike,
+    radius: ArrayLike,
+    pressure_over_kT: ArrayLike = 0.0,
+) -> Array | float:
     """Mean square amplitude of a mode of a vesicle with a shear modulus (A18).
 
     kBT/⟨|u_lm|²⟩ = κ (l+2)(l+1) l (l−1) + Y r0² · 3 (l² + l − 2) / (3 (l² + l) − 2)
@@ -100,7 +110,7 @@ def elastic_spectrum(l, kappa_over_kT, young_over_kT, radius, pressure_over_kT=0
     return plain(1 / total)
 
 
-def young_modulus(softness):
+def young_modulus(softness: ArrayLike) -> Array | float:
     """Effective Young modulus of a mesh, Y = (Ξ / 0.59)² · 1.8e-3 kBT/nm² (45).
 
     Parameters
@@ -121,7 +131,9 @@ def young_modulus(softness):
     return plain(1.8e-3 * (not_negative("softness", softness) / 0.59) ** 2)
 
 
-def tense_spectrum(l, kappa_over_kT, tension_over_kT, radius):
+def tense_spectrum(
+    l: ArrayLike, kappa_over_kT: ArrayLike, tension_over_kT: ArrayLike, radius: ArrayLike
+) -> Array | float:
     """Mean square amplitude of a mode of a fluid vesicle under a tension σ.
 
     kBT/⟨|u_lm|²⟩ = κ (l+2)(l+1) l (l−1) + σ r0² (l+2)(l−1)
@@ -170,7 +182,7 @@ def tense_spectrum(l, kappa_over_kT, tension_over_kT, radius):
     return plain(1 / (kappa_over_kT * (n - 2) * (n + reduced)))
 
 
-def area_excess(kappa_over_kT, lmax):
+def area_excess(kappa_over_kT: ArrayLike, lmax: int) -> Array | float:
     """Mean area that undulations hide, ⟨A⟩ / 4πR_V² − 1, R_V being the radius of equal volume.
 
     ⟨A⟩/4πR_V² − 1 = Σ_lm (l+2)(l−1) ⟨|u_lm|²⟩ / 8π = (kBT / 8πκ) Σ_{l=2}^{lmax} (2l+1) / (l (l+1))

@@ -6,6 +6,7 @@ from collections import defaultdict
 
 import numpy as np
 
+from ..._types import Array
 from .fit import Scalar, resolve
 from .rings import ODD, SCHEMES, RingReading
 from .surface import Component, NotClosed, Surfaces, parity
@@ -147,7 +148,7 @@ def _orientation(component: Component, vertex: int, ring: list[int]) -> int:
     return signs.pop()
 
 
-def _scheme(totals: np.ndarray) -> tuple[str, bool, np.ndarray, np.ndarray]:
+def _scheme(totals: Array) -> tuple[str, bool, Array, Array]:
     """The scheme of which the vertices' energies are made, κ and C0 of each.
 
     Parameters

@@ -12,6 +12,7 @@ import heapq
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import islice
+from typing import Any
 
 import numpy as np
 
@@ -65,7 +66,7 @@ class Search:
         Raises Refused if they lose a derivative.
     """
 
-    def __init__(self, reader: Reader, frozen: list[str], lost: Check, derivatives: Check):
+    def __init__(self, reader: Reader, frozen: list[str], lost: Check, derivatives: Check) -> None:
         self._reader = reader
         self._frozen = frozen
         self._lost = lost
@@ -153,7 +154,7 @@ class Search:
         return Condition(tuple(sources), " and ".join(classes), fixed, words, obstacle)
 
 
-def plan_of(force, fixed: Mapping[str, Fixed]) -> dict[str, Fixed]:
+def plan_of(force: Any, fixed: Mapping[str, Fixed]) -> dict[str, Fixed]:
     """What of all that is fixed concerns one force."""
     return {name: fixed[name] for name in all_parameters(force) if name in fixed}
 

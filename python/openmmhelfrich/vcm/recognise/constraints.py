@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 import openmm as mm
 
+from ..._types import Array
 from ..expressions import Expression, ExpressionError
 from .fit import resolve, solve, spread
 from .fixed import Fixed, formulas, remaining
@@ -42,7 +43,7 @@ def _quadratic_term(
     sources: list[int],
     kind: str,
     components: list[Component],
-    form: tuple[np.ndarray, np.ndarray, np.ndarray],
+    form: tuple[Array, Array, Array],
     trials: list[dict[str, float]],
     known: list[float],
 ) -> Term:
@@ -112,7 +113,7 @@ def _pair_term(pairs, singles, surfaces: Surfaces, trials) -> Term:
                     sorted(component.triangles)])  # fmt: skip
     volume = reading.kind == "volume"
 
-    def look_up(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def look_up(rows: Array) -> tuple[Array, Array]:
         different, which = distinct(rows)
         found = [parity(*row) for row in different.tolist()]
         numbers = np.array([number[triple] for triple, _ in found])
@@ -195,11 +196,11 @@ class CollectiveReading:
     inner: list[Bonds]
     kinds: list[str]
     components: list[list[Component]]
-    signs: list[np.ndarray]
-    form: np.ndarray
-    constant: np.ndarray
+    signs: list[Array]
+    form: Array
+    constant: Array
 
-    def forces(self, positions: np.ndarray) -> tuple[float, np.ndarray, float, np.ndarray]:
+    def forces(self, positions: Array) -> tuple[float, Array, float, Array]:
         """As `Bonds.forces`."""
         parts = [bonds.forces(positions) for bonds in self.inner]
         names = [self.force.getCollectiveVariableName(i) for i in range(len(parts))]
@@ -282,9 +283,7 @@ def read_collective(
     )
 
 
-def _sum(
-    name: str, bonds: Bonds, surfaces: Surfaces
-) -> tuple[str, list[Component], np.ndarray, float]:
+def _sum(name: str, bonds: Bonds, surfaces: Surfaces) -> tuple[str, list[Component], Array, float]:
     """What a collective variable adds up: its kind, surfaces, the sign of each, and a factor."""
     if bonds.globals:
         raise Unreadable(f"its collective variable {name} has global parameters")

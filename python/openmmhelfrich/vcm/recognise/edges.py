@@ -7,6 +7,7 @@ from itertools import combinations
 
 import numpy as np
 
+from ..._types import Array
 from .fit import fit_rows, spread
 from .source import Bonds
 
@@ -33,12 +34,12 @@ class EdgeReading:
 
     bonds: Bonds
     form: str
-    edges: np.ndarray
-    stiffness: np.ndarray
-    constant: np.ndarray
+    edges: Array
+    stiffness: Array
+    constant: Array
 
 
-def _angles(points: np.ndarray) -> np.ndarray:
+def _angles(points: Array) -> Array:
     """φ of the edge between the second and the third point, either sign."""
     u, v, w = (points[:, i + 1] - points[:, i] for i in range(3))
     first, second = np.cross(u, v), np.cross(v, w)
@@ -47,7 +48,7 @@ def _angles(points: np.ndarray) -> np.ndarray:
     return np.arctan2(-sine, -np.sum(first * second, axis=1))
 
 
-def _places(seed: int = 6) -> np.ndarray:
+def _places(seed: int = 6) -> Array:
     """Pairs of triangles at all angles but the smallest, where the energies are rounding.
 
     Returns

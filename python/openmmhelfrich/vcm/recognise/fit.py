@@ -7,6 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
+from ..._types import Array
 from .source import Bonds
 
 __all__ = ["TOLERANCE", "Scalar", "fit_rows", "resolve", "solve", "spread", "triangle_places"]
@@ -21,10 +22,10 @@ _SAME_IN_TRIALS = 1e-9
 
 
 class _Features(Protocol):
-    def __call__(self, points: np.ndarray) -> np.ndarray: ...
+    def __call__(self, points: Array) -> Array: ...
 
 
-def spread(num: int, rng: np.random.Generator, low: float = -2, high: float = 5) -> np.ndarray:
+def spread(num: int, rng: np.random.Generator, low: float = -2, high: float = 5) -> Array:
     """Lengths over many orders of magnitude, nm, so that no term hides behind another.
 
     They are in random order, because the fit sees only half of them.
@@ -32,7 +33,7 @@ def spread(num: int, rng: np.random.Generator, low: float = -2, high: float = 5)
     return rng.permutation(10 ** np.linspace(low, high, num))
 
 
-def triangle_places(num: int, num_points: int, seed: int) -> np.ndarray:
+def triangle_places(num: int, num_points: int, seed: int) -> Array:
     """Random places of a few points, of all sizes, away from the origin.
 
     Returns
@@ -45,7 +46,7 @@ def triangle_places(num: int, num_points: int, seed: int) -> np.ndarray:
     return points * spread(num, rng)[:, None, None]
 
 
-def solve(features: np.ndarray, energy: np.ndarray) -> np.ndarray | None:
+def solve(features: Array, energy: Array) -> Array | None:
     """The coefficients that make a sum of features equal to the energy, everywhere.
 
     Parameters
@@ -79,7 +80,7 @@ def solve(features: np.ndarray, energy: np.ndarray) -> np.ndarray | None:
     return result
 
 
-def _squares(features: np.ndarray, energy: np.ndarray, active: list[int]):
+def _squares(features: Array, energy: Array, active: list[int]):
     """The coefficients of some columns, how much each matters, and the largest relative error."""
     half = len(energy) // 2
     chosen = features[:, active]
@@ -101,8 +102,8 @@ def _squares(features: np.ndarray, energy: np.ndarray, active: list[int]):
 
 
 def fit_rows(
-    bonds: Bonds, points: np.ndarray, features: np.ndarray, trials: list[dict[str, float]]
-) -> np.ndarray | None:
+    bonds: Bonds, points: Array, features: Array, trials: list[dict[str, float]]
+) -> Array | None:
     """The coefficients of every row of per-bond values, in every trial.
 
     Returns
@@ -130,12 +131,12 @@ class Scalar:
     value: float
     context: str = ""
     #: One for each vertex or triangle, None if all are alike.
-    values: np.ndarray | None = None
+    values: Array | None = None
 
 
 def resolve(
     name: str,
-    found: np.ndarray,
+    found: Array,
     trials: list[dict[str, float]],
     known: list[float],
     elements: bool = False,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..._types import Array
 from .edges import EdgeReading
 from .fit import Scalar, resolve
 from .source import Bonds
@@ -37,9 +38,7 @@ def checked(scalars: dict[str, Scalar | str]) -> dict[str, Scalar]:
     return scalars
 
 
-def constant_offset(
-    found: np.ndarray, scale: np.ndarray, target: Scalar | None = None
-) -> Offset | None:
+def constant_offset(found: Array, scale: Array, target: Scalar | None = None) -> Offset | None:
     """What is constant in an energy.
 
     Parameters
@@ -65,7 +64,7 @@ def constant_offset(
     raise Refused("the constant in its energy depends on global parameters")
 
 
-def _each_once(rows: np.ndarray, what: str) -> None:
+def _each_once(rows: Array, what: str) -> None:
     seen: set[tuple[int, ...]] = set()
     for row in rows.tolist():
         key = tuple(sorted(row))
@@ -74,7 +73,7 @@ def _each_once(rows: np.ndarray, what: str) -> None:
         seen.add(key)
 
 
-def _vote(components, listed: np.ndarray) -> None:
+def _vote(components, listed: Array) -> None:
     home = {triple: c for c in components for triple in c.triangles}
     for row in listed.tolist():
         triple, sign = parity(*row)

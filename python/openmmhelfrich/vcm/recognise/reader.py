@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import openmm as mm
 
+from ..._types import Array
 from .bending import bending_terms
 from .constraints import (
     ERRORS,
@@ -59,12 +61,12 @@ class Outcome:
 class Reader:
     """The forces of one System, of which no bond is read twice, nor an expression in one way."""
 
-    def __init__(self, system: mm.System, positions: np.ndarray | None):
+    def __init__(self, system: mm.System, positions: Array | None) -> None:
         self.forces: list[mm.Force] = list(system.getForces())
         self._positions = positions
         self._trials = trials_of(system)
         self._lists: dict[int, BondList] = {}
-        self._known: dict[tuple, object] = {}
+        self._known: dict[tuple[Any, ...], object] = {}
 
     def recognise(
         self, indices: Iterable[int], plans: Plans, all_or_nothing: bool = False
@@ -174,7 +176,7 @@ class Reader:
             for index, reading in of(kind):
                 if index not in used:
                     attempt(index, lambda i=index, r=reading, m=make: m(i, r, surfaces, trials))
-        by_group: dict[int, list] = defaultdict(list)
+        by_group: dict[int, list[Any]] = defaultdict(list)
         for index, reading in of(RingReading):
             by_group[self._group(index)].append((index, reading))
         for readings in by_group.values():

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..._types import Array
 from .fit import fit_rows, spread
 from .source import Bonds
 
@@ -47,11 +48,11 @@ class RingReading:
     """
 
     bonds: Bonds
-    rings: np.ndarray
-    coefficients: np.ndarray
+    rings: Array
+    coefficients: Array
 
 
-def ring_features(points: np.ndarray) -> np.ndarray:
+def ring_features(points: Array) -> Array:
     """The columns of FEATURES.
 
     Parameters
@@ -111,7 +112,7 @@ def ring_features(points: np.ndarray) -> np.ndarray:
     return np.stack(columns, axis=1)
 
 
-def ring_places(degree: int, seed: int = 5) -> np.ndarray:
+def ring_places(degree: int, seed: int = 5) -> Array:
     """Vertices with rings: bulges, dents and saddles of all sizes, with convex and concave edges.
 
     Returns

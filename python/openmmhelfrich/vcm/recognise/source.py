@@ -9,6 +9,7 @@ import numpy as np
 import openmm as mm
 
 from ... import forces as our_forces
+from ..._types import Array
 from ..expressions import Expression, ExpressionError
 from .fixed import Fixed, formulas, remaining
 
@@ -44,10 +45,10 @@ class Bonds:
 
     force: mm.Force
     expression: Expression
-    particles: np.ndarray
+    particles: Array
     names: tuple[str, ...]
-    rows: np.ndarray
-    row_of: np.ndarray
+    rows: Array
+    row_of: Array
     globals: dict[str, float]
 
     @property
@@ -55,7 +56,7 @@ class Bonds:
         """The number of particles of a bond."""
         return self.particles.shape[1]
 
-    def energies(self, points: np.ndarray, row: int, globals_: dict[str, float]) -> np.ndarray:
+    def energies(self, points: Array, row: int, globals_: dict[str, float]) -> Array:
         """The expression's values.
 
         Parameters
@@ -71,9 +72,7 @@ class Bonds:
         variables |= _coordinates(points)
         return np.broadcast_to(self.expression.evaluate(variables), (len(points),))
 
-    def forces(
-        self, positions: np.ndarray, weight: float = 1.0
-    ) -> tuple[float, np.ndarray, float, np.ndarray]:
+    def forces(self, positions: Array, weight: float = 1.0) -> tuple[float, Array, float, Array]:
         """Energy and forces, and both once more as sums of the absolute values of all bonds.
 
         Parameters
@@ -105,7 +104,7 @@ class Bonds:
         return energy, forces, magnitude, magnitudes
 
 
-def _coordinates(points: np.ndarray) -> dict[str, np.ndarray]:
+def _coordinates(points: Array) -> dict[str, Array]:
     return {
         f"{letter}{point + 1}": points[:, point, axis]
         for point in range(points.shape[1])
@@ -188,9 +187,9 @@ class BondList:
     """
 
     force: mm.Force
-    particles: np.ndarray
+    particles: Array
     names: tuple[str, ...]
-    values: np.ndarray
+    values: Array
     points: dict[str, str]
 
 

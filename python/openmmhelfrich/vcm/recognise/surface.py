@@ -6,6 +6,8 @@ from collections import defaultdict
 
 import numpy as np
 
+from ..._types import Array
+
 __all__ = ["Component", "NotClosed", "Surfaces", "distinct", "parity"]
 
 Triple = tuple[int, int, int]
@@ -30,7 +32,7 @@ def parity(a: int, b: int, c: int) -> tuple[Triple, int]:
     return ((a, b, c), 1) if b < c else ((a, c, b), -1)
 
 
-def distinct(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def distinct(rows: Array) -> tuple[Array, Array]:
     """The different triangles of a list, as they are listed, and which one each row is.
 
     Sums over pairs list every triangle thousands of times.
@@ -81,7 +83,7 @@ class Component:
         """+1 if `triangles` is counter-clockwise seen from outside."""
         return self._certain or (-1 if self._votes < 0 else 1)
 
-    def outward(self) -> np.ndarray:
+    def outward(self) -> Array:
         """The triangles, counter-clockwise seen from outside, shape (num_triangles, 3)."""
         rows = [
             (a, b, c) if orientation * self.sign > 0 else (a, c, b)
@@ -93,11 +95,11 @@ class Component:
 class Surfaces:
     """All surfaces that forces of one System are on; equal ones are one object."""
 
-    def __init__(self, positions: np.ndarray | None = None):
+    def __init__(self, positions: Array | None = None) -> None:
         self._known: dict[frozenset[Triple], Component] = {}
         self._positions = positions
 
-    def components(self, listed: np.ndarray) -> list[Component]:
+    def components(self, listed: Array) -> list[Component]:
         """The connected parts of a set of triangles.
 
         Parameters

@@ -7,6 +7,7 @@ from itertools import combinations
 
 import numpy as np
 
+from ..._types import Array
 from .fit import TOLERANCE, fit_rows, solve, triangle_places
 from .source import Bonds
 
@@ -35,7 +36,7 @@ class TriangleReading:
 
     bonds: Bonds
     kind: str
-    coefficients: np.ndarray
+    coefficients: Array
 
 
 @dataclass
@@ -47,9 +48,9 @@ class PairReading:
 
     bonds: Bonds
     kind: str
-    first: np.ndarray
-    second: np.ndarray
-    coefficients: np.ndarray
+    first: Array
+    second: Array
+    coefficients: Array
 
 
 @dataclass
@@ -60,7 +61,7 @@ class ConeReading:
     """
 
     bonds: Bonds
-    coefficients: np.ndarray
+    coefficients: Array
 
 
 @dataclass
@@ -73,23 +74,23 @@ class RepulsionReading:
     bonds: Bonds
     kind: str
     corners: tuple[int, ...]
-    minimum: np.ndarray
-    epsilon: np.ndarray
+    minimum: Array
+    epsilon: Array
 
 
-def areas(points: np.ndarray) -> np.ndarray:
+def areas(points: Array) -> Array:
     """Of triangles of shape (…, 3, 3), nm²."""
     a, b, c = np.moveaxis(points, -2, 0)
     return 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=-1)
 
 
-def volumes(points: np.ndarray) -> np.ndarray:
+def volumes(points: Array) -> Array:
     """Between triangles of shape (…, 3, 3) and the origin, nm³."""
     a, b, c = np.moveaxis(points, -2, 0)
     return np.sum(a * np.cross(b, c), axis=-1) / 6
 
 
-def heights(points: np.ndarray) -> np.ndarray:
+def heights(points: Array) -> Array:
     """Above each corner's opposite side, of triangles of shape (…, 3, 3), nm."""
     opposite = np.roll(points, -1, axis=-2) - np.roll(points, 1, axis=-2)
     return 2 * areas(points)[..., None] / np.linalg.norm(opposite, axis=-1)
@@ -201,7 +202,7 @@ def _repulsion(bonds: Bonds, row: int, trial: dict[str, float]):
     return None
 
 
-def _by_corner(columns: np.ndarray, energy: np.ndarray) -> tuple[list[int], float, float] | None:
+def _by_corner(columns: Array, energy: Array) -> tuple[list[int], float, float] | None:
     """The corners that count, and their common coefficients of the eighth and fourth power."""
     found = solve(columns, energy)
     if found is None:
@@ -223,7 +224,7 @@ def _cutoff(bonds: Bonds, row: int, trial: dict[str, float]) -> float | None:
     """The side of the equilateral triangle from which on the energy is zero, nm."""
     upright = np.array([[0, 0, 0], [1, 0, 0], [0.5, np.sqrt(0.75), 0]])
 
-    def zero(sides: np.ndarray) -> np.ndarray:
+    def zero(sides: Array) -> Array:
         return bonds.energies(upright * sides[:, None, None], row, trial) == 0
 
     sides = 10.0 ** np.arange(-4, 7, 0.25)
