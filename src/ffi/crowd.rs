@@ -13,7 +13,7 @@ pub extern "C" fn Helfrich_Crowd_create() -> *mut Crowd {
     Box::into_raw(Box::default())
 }
 
-/// End its life; null is allowed.
+/// Destroy it; null is allowed.
 ///
 /// # Safety
 /// `crowd` must come from [`Helfrich_Crowd_create`] and not be used again.

@@ -79,7 +79,7 @@ pub unsafe extern "C" fn Helfrich_Dynamics_create(
     })
 }
 
-/// End its life; null is allowed.
+/// Destroy it; null is allowed.
 ///
 /// # Safety
 /// `dynamics` must come from [`Helfrich_Dynamics_create`] and not be used again.

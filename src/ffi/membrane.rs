@@ -33,7 +33,7 @@ pub unsafe extern "C" fn Helfrich_Membrane_create(
     })
 }
 
-/// End a membrane's life; null is allowed.
+/// Destroy a membrane; null is allowed.
 ///
 /// # Safety
 /// `membrane` must come from [`Helfrich_Membrane_create`] and not be used again.

@@ -22,7 +22,7 @@ pub unsafe extern "C" fn Helfrich_Membrane_checkFlips(
 }
 
 /// Try to flip so many edges at the present positions, with the energy of some terms. `made` gets how many
-/// flips were made; `force_change`, if it is not null, by how much that has changed the forces, or nothing if there were
+/// flips were made; `force_change`, if it is not null, the change of the forces, or nothing if there were
 /// no flips. `box_vectors` has those of the periodic box, or is null if there is none.
 ///
 /// # Safety

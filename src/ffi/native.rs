@@ -31,7 +31,7 @@ pub extern "C" fn Helfrich_Native_create(is_double: c_int) -> *mut Native {
     Box::into_raw(Box::new(Native::new(precision(is_double))))
 }
 
-/// End their life; null is allowed.
+/// Destroy them; null is allowed.
 ///
 /// # Safety
 /// `native` must come from [`Helfrich_Native_create`] and not be used again.

@@ -210,7 +210,7 @@ pub unsafe extern "C" fn Helfrich_Numbers_rearrange(
     })
 }
 
-/// End their life; null is allowed.
+/// Destroy them; null is allowed.
 ///
 /// # Safety
 /// `numbers` must come from [`Helfrich_Numbers_create`] and not be used again.

@@ -29,7 +29,7 @@ pub unsafe extern "C" fn Helfrich_VariableMasses_create(
     })
 }
 
-/// End their life; null is allowed.
+/// Destroy them; null is allowed.
 ///
 /// # Safety
 /// `masses` must come from [`Helfrich_VariableMasses_create`] and not be used again.
@@ -104,7 +104,7 @@ pub unsafe extern "C" fn Helfrich_VariableMasses_begin(
     })
 }
 
-/// Finish it with the forces at the new positions: the other half of the kick.
+/// Finish a time step with the forces at the new positions: the other half of the kick.
 ///
 /// # Safety
 /// As for [`Helfrich_VariableMasses_begin`].

@@ -29,7 +29,7 @@ pub unsafe extern "C" fn Helfrich_Viscosity_create(
     })
 }
 
-/// End its life; null is allowed.
+/// Destroy it; null is allowed.
 ///
 /// # Safety
 /// `viscosity` must come from [`Helfrich_Viscosity_create`] and not be used again.

@@ -18,7 +18,7 @@ pub struct FlipRules {
     pub demon: i32,
 }
 
-/// What a mover has come to. C++ holds it and writes it into checkpoints.
+/// The state of a mover. C++ holds it and writes it into checkpoints.
 ///
 /// A flip that is refused is counted at the first of these that it fails: a border, degrees, length, shape, energy, and
 /// whether the new edge exists.
@@ -57,7 +57,7 @@ pub struct SwapRules {
     pub demon: i32,
 }
 
-/// What a mover of this kind has come to. C++ holds it and writes it into checkpoints.
+/// The state of a mover of this kind. C++ holds it and writes it into checkpoints.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct SwapState {

@@ -68,7 +68,7 @@ fn system_xml() -> CString {
              <Forces>{forces}</Forces>
            </System>"#
     );
-    // Variants have names of their own ("scheme"), which only the classes that have variants accept.
+    // Forms have names of their own ("scheme"), which only the classes that have forms accept.
     let text = text.replace(r#"name="BendingForce">"#, r#"name="BendingForce" scheme="Julicher">"#);
     CString::new(text).unwrap()
 }

@@ -66,7 +66,7 @@ Helfrich_Status guarded(Body body) {
     return Helfrich_Failure;
 }
 
-/** A value, or if it cannot be had what says so. */
+/** A value, or `nothing` if there is an error. */
 template <class Value, class Body>
 Value valueOr(Value nothing, Body body) {
     Value value = nothing;

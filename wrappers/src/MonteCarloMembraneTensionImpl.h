@@ -11,7 +11,7 @@
 
 namespace HelfrichPlugin {
 
-/** What a MonteCarloMembraneTension has come to in a Context. Checkpoints hold it as it lies in memory. */
+/** The state of a MonteCarloMembraneTension in a Context. Checkpoints hold it as it lies in memory. */
 struct TensionState {
     /** Of moves of one kind: XYIndependent has two, x and y. */
     struct Kind {
@@ -53,7 +53,7 @@ public:
     std::map<std::string, double> getStatistics(OpenMM::ContextImpl& context) const;
     std::string saveState() const;
     void restoreState(const std::string& saved);
-    /** What all movers of a Context have come to, in their order. */
+    /** The states of all movers of a Context, in their order. */
     static std::vector<TensionState> saveAll(const OpenMM::ContextImpl& context);
     /** Let the movers of a Context go on from there; where one is missing on either side, the others do. */
     static void restoreAll(const OpenMM::ContextImpl& context, const std::vector<TensionState>& states);

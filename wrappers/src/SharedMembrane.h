@@ -128,7 +128,7 @@ public:
      * @param rules      what flips may do
      * @param attempts   how many to try
      * @param state      what has come of flips so far, and the random numbers
-     * @param forceChange  if it is not null and there are flips, gets by how much they change the forces, kJ/mol/nm
+     * @param forceChange  if it is not null and there are flips, receives the change of the forces, kJ/mol/nm
      * @return how many were made
      */
     int64_t flip(const std::string& subject, OpenMM::ContextImpl& context, int groups,

@@ -23,7 +23,8 @@ static_assert(sizeof(MoverSchedule) == 24, "the schedule of a mover has no gaps"
 
 /**
  * What the implementations of movers of a surface have in common: when they act, and that the Context's State belongs
- * to what the membrane has come to, which it does not hold. A fingerprint of that is a parameter of the Context.
+ * to the membrane's present connectivity or permutation, which it does not hold. A fingerprint of that is a parameter
+ * of the Context.
  */
 class SurfaceMoverImpl : public OpenMM::ForceImpl, public UpdatableImpl, public OnMembrane, public StatisticsImpl {
 public:
@@ -52,7 +53,7 @@ public:
     std::string getState(OpenMM::ContextImpl& context) const;
     /** Go on from there. */
     void setState(const std::string& restored);
-    /** Let the Context's parameter say what the membrane has come to. */
+    /** Set the Context's parameter to the present fingerprint. */
     void announce(OpenMM::ContextImpl& context);
     /** That parameter. */
     double getAnnounced(OpenMM::ContextImpl& context);
@@ -72,7 +73,7 @@ public:
     }
 
 protected:
-    /** Where a mover has what it has come to. */
+    /** Where a mover keeps its state. */
     struct Tally {
         void* data;
         size_t size;
@@ -85,7 +86,7 @@ protected:
      * @param owner        the force
      * @param temperature  the Context parameter of its temperature
      * @param parameter    that of the fingerprint
-     * @param tally        what it has come to
+     * @param tally        its state
      */
     SurfaceMoverImpl(const MonteCarloSurfaceMover& owner, const std::string& temperature, const std::string& parameter,
                      const Tally& tally);
@@ -100,7 +101,7 @@ protected:
      * @param groups       a bit for each force group whose energy counts
      * @param positions    of all particles, nm
      * @param attempts     how many to try
-     * @param forceChange  if it is not null and moves are made, gets by how much they change the forces, kJ/mol/nm
+     * @param forceChange  if it is not null and moves are made, receives the change of the forces, kJ/mol/nm
      * @return how many were made
      */
     virtual int64_t attempt(OpenMM::ContextImpl& context, int groups, const std::vector<OpenMM::Vec3>& positions,

@@ -119,7 +119,8 @@ struct HelfrichFlipRules {
     int demon;
 };
 
-/** What a mover has come to: the key of its random numbers, and how many flips were tried, made and refused for what.
+/** The state of a mover: the key of its random numbers, and how many flips were tried, made and refused for what
+ * reason.
  */
 struct HelfrichFlipState {
     uint32_t key[2];
@@ -136,7 +137,7 @@ struct HelfrichSwapRules {
     int demon;
 };
 
-/** What a mover of this kind has come to, as above. */
+/** The state of a mover of this kind, as above. */
 struct HelfrichSwapState {
     uint32_t key[2];
     uint64_t attempts, accepted, byKind, byEnergy;
