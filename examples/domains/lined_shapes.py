@@ -17,9 +17,10 @@ from typing import NamedTuple
 
 import numpy as np
 from axisymmetric import NODES, Shapes
+from constrained import minimum
 from numpy.polynomial.legendre import leggauss
 from scipy.interpolate import CubicSpline
-from scipy.optimize import brentq, minimize
+from scipy.optimize import brentq
 
 HIGHEST = 96
 OPENINGS = np.concatenate([np.linspace(0.99, 0.15, 43), [0.13, 0.11, 0.09, 0.075, 0.06]])
@@ -72,12 +73,12 @@ class LinedShapes(Shapes):
         """The radius of the line and its gradient."""
         length = variables[-1]
         psi, _ = self.angles(variables)
-        r, d_r, end, _ = self._radius(psi, length)
+        r, end, _, pulled = self._radius(psi, length)
         row = self.row_at(self.at_area(variables, self.share))
         # The place moves so that the share of the area up to it stays.
-        d_share = row @ (self.integral @ d_r) - self.share * (self.weights @ d_r)
+        d_share = pulled(row @ self.integral - self.share * self.weights)
         slope = length * (row @ np.cos(psi)) - end
-        return row @ r, row @ d_r - slope * d_share / (row @ r)
+        return row @ r, pulled(row) - slope * d_share / (row @ r)
 
     def lined_energy(self, variables, tension):
         """E / 8πκ and its gradient, at a tension λL/κ."""
@@ -98,23 +99,17 @@ class LinedShapes(Shapes):
         Raises
         ------
         RuntimeError
-            The constraints are not met.
+            There is none.
         """
-        found = minimize(
-            self.energy,
-            start,
-            jac=True,
-            method="SLSQP",
-            constraints={
-                "type": "eq",
-                "fun": lambda variables: self.constrained(variables, radius)[0],
-                "jac": lambda variables: self.constrained(variables, radius)[1],
-            },
-            options={"maxiter": 300, "ftol": 1e-13},
-        ).x
-        off, gradients = self.constrained(found, radius)
-        if not abs(off).max() < 1e-8:
-            raise RuntimeError(f"lined_shapes: no shape whose line has the radius {radius:g}")
+        try:
+            found = minimum(
+                self.energy, lambda each: self.constrained(each, radius), start, self.is_shape
+            )
+        except RuntimeError as error:
+            raise RuntimeError(
+                f"lined_shapes: no shape whose line has the radius {radius:g}: {error}"
+            ) from None
+        gradients = self.constrained(found, radius)[1]
         multipliers = np.linalg.lstsq(gradients.T, self.energy(found)[1], rcond=None)[0]
         return found, -4 * np.sqrt(self.share) * multipliers[1]
 

@@ -180,6 +180,11 @@ class Shapes:
         d_volume[-1] += volume / length
         return np.array([area, volume, end]), np.array([d_area, d_volume, d_end])
 
+    def is_shape(self, variables):
+        """Whether no part is beyond the axis, where areas and energies would be below zero."""
+        psi, _ = self.angles(variables)
+        return variables[-1] > 0 and self._radius(psi, variables[-1])[0].min() > 0
+
     def minimum(self, reduced_volume, start, energy=None):
         """Variables of the least energy near a start, or RuntimeError.
 
@@ -193,13 +198,8 @@ class Shapes:
             values, gradients = self.constraints(variables)
             return (values - targets)[used], gradients[used]
 
-        def allowed(variables):
-            """A contour that crosses the axis has an area, and energy, below zero there."""
-            psi, _ = self.angles(variables)
-            return variables[-1] > 0 and self._radius(psi, variables[-1])[0].min() > 0
-
         try:
-            return minimum(energy or self.energy, constraints, start, allowed)
+            return minimum(energy or self.energy, constraints, start, self.is_shape)
         except RuntimeError as error:
             raise RuntimeError(
                 f"axisymmetric: no shape at ν = {reduced_volume:g}: {error}"

@@ -12,7 +12,8 @@ A shape with the volume of the sphere has √4π u_00 = −Σ u_lm², and the ex
 
 import numpy as np
 
-from ._checks import plain, positive
+from ..._numbers import positive
+from ._modes import plain
 from .spectra import stiffness
 
 
