@@ -176,8 +176,8 @@ class MembraneForce(TriangulatedForce):
     def getEnergyParameterDerivativeName(self, index: int) -> str:
         """Get the name of a Context parameter whose derivative is asked for."""
     def updateParametersInContext(self, context: openmm.Context) -> None:
-        """Copy scalars, values of elements, variant and switches of this object to a Context. What
-        is a Context parameter stays as it is there (use Context::setParameter()); changed triangles
+        """Copy scalars, values of elements, form and switches of this object to a Context. What is
+        a Context parameter stays as it is there (use Context::setParameter()); changed triangles
         are refused (use Context::reinitialize()).
         """
     def setBackend(self, backend: str, /) -> None:
@@ -198,9 +198,9 @@ class MembraneForce(TriangulatedForce):
     def usesPeriodicBoundaryConditions(self) -> bool:
         """Get whether the surface lives in the periodic box of the Context."""
     def getForm(self) -> int:
-        """Get which variant of the potential is computed, 0 if there are none."""
+        """Get which form of the potential is computed, 0 if there are none."""
     def setForm(self, form: int, /) -> None:
-        """Choose the variant of the potential."""
+        """Choose the form of the potential."""
     def getSwitch(self, name: str) -> bool:
         """Get whether something is switched on."""
     def setSwitch(self, name: str, on: bool) -> None:

@@ -254,7 +254,7 @@ def test_distances_of_the_size_of_the_mesh_do_not_fill_the_memory(tmp_path):
     at = data.index(b"double\n") + len(b"double\n")
     broken = data[:at] + far + data[at + 24 :]
     path.write_bytes(broken.replace(np.array([3, 0], ">i4").tobytes(), b"\0\0\0\3\0\0\0\1", 1))
-    with pytest.raises(MeshError, match=r"^Mesh.read: ((?!nearly coincide).)*$"):
+    with pytest.raises(MeshError, match=r"(?s)^Mesh.read: ((?!nearly coincide).)*$"):
         Mesh.read(path)
 
 

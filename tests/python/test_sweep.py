@@ -2,6 +2,7 @@
 
 import functools
 import json
+import logging
 import os
 import signal
 import subprocess
@@ -433,7 +434,9 @@ def test_scheduler_that_is_lost(tmp_path, caplog):
         threading.Thread(target=lose, daemon=True).start()
         with pytest.raises(SweepError, match=f"lost the scheduler of {address}; run again to go"):
             quiet(slow, points, cache=cache, scheduler=address)
-    assert not [record for record in caplog.records if record.exc_info]
+    # Dask notes the closed connection below what anyone is shown.
+    shown = [record for record in caplog.records if record.levelno >= logging.WARNING]
+    assert not [record for record in shown if record.exc_info]
     stored, before = len(list(cache.rglob("*.npz"))), len(computed(log))
     assert 5 <= stored < 40
     results = quiet(slow, points, cache=cache, workers=0)
