@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 import openmm as mm
 import openmmhelfrich as helfrich
-from openmm import unit
+from openmm import app, unit
 from platforms import REFERENCE, Target
 
 #: Of the thermostats and the flips, K.
@@ -89,3 +89,19 @@ def measure(context: mm.Context, groups=-1) -> tuple[float, np.ndarray]:
     state = context.getState(getEnergy=True, getForces=True, groups=groups)
     forces = state.getForces(asNumpy=True).value_in_unit_system(unit.md_unit_system)
     return state.getPotentialEnergy().value_in_unit(unit.kilojoule_per_mole), forces
+
+
+def simulation_of(mesh: helfrich.Mesh, offset: int = 0, flips: float = 0.1):
+    """A fluid vesicle behind so many other particles, each of another mass, and its Simulation."""
+    system = mm.System()
+    for number in range(offset):
+        system.addParticle(10 + number)
+    placement = helfrich.Vesicle(mesh, flips=flips).add_to(system)
+    integrator = mm.LangevinMiddleIntegrator(TEMPERATURE, 0.01, 0.4)
+    integrator.setRandomNumberSeed(7)
+    platform = mm.Platform.getPlatformByName("Helfrich")
+    made = app.Simulation(app.Topology(), system, integrator, platform)
+    others = np.random.default_rng(1).normal(size=(offset, 3))
+    made.context.setPositions(np.concatenate([others, mesh.vertices]))
+    made.context.setVelocitiesToTemperature(TEMPERATURE, 3)
+    return placement, made

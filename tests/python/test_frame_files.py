@@ -6,10 +6,9 @@ import time
 from pathlib import Path
 
 import numpy as np
-import openmm
 import openmmhelfrich as helfrich
 import pytest
-from openmm import app
+from flowing import simulation_of
 from openmmhelfrich import ExtendedXYZReporter, GSDReporter, analysis
 from openmmhelfrich.analysis.frame_files import ExtendedXYZSeries, GSDSeries
 from openmmhelfrich.analysis.surface_series import SurfaceFrame
@@ -207,23 +206,9 @@ class TestRuns:
 
 @ALL
 class TestReporters:
-    def simulation(self, offset):
-        system = openmm.System()
-        for number in range(offset):
-            system.addParticle(10 + number)
-        placement = helfrich.Vesicle(MESH, flips=0.05).add_to(system)
-        integrator = openmm.LangevinMiddleIntegrator(300, 0.01, 0.4)
-        integrator.setRandomNumberSeed(7)
-        platform = openmm.Platform.getPlatformByName("Helfrich")
-        made = app.Simulation(app.Topology(), system, integrator, platform)
-        start = np.random.default_rng(1).normal(size=(offset, 3))
-        made.context.setPositions(np.concatenate([start, MESH.vertices]))
-        made.context.setVelocitiesToTemperature(300, 3)
-        return placement, made
-
     @pytest.mark.parametrize("offset", [0, 4])
     def test_frames_have_the_triangles_of_their_moment(self, tmp_path, suffix, offset):
-        placement, simulation = self.simulation(offset)
+        placement, simulation = simulation_of(MESH, offset)
         path = tmp_path / f"a{suffix}"
         simulation.reporters.append(REPORTERS[suffix](path, 20, MESH, offset=offset))
         frames = []
@@ -240,13 +225,13 @@ class TestReporters:
 
     def test_it_goes_on_from_the_step_of_the_simulation(self, tmp_path, suffix):
         path = tmp_path / f"a{suffix}"
-        _, simulation = self.simulation(0)
+        _, simulation = simulation_of(MESH)
         simulation.reporters.append(REPORTERS[suffix](path, 10, MESH))
         simulation.step(20)
         simulation.saveCheckpoint(str(tmp_path / "state"))
         simulation.step(20)
         whole = contents(path)
-        _, again = self.simulation(0)
+        _, again = simulation_of(MESH)
         again.loadCheckpoint(str(tmp_path / "state"))
         again.reporters.append(REPORTERS[suffix](path, 10, MESH, append=True))
         again.step(1)

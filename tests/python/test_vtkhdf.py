@@ -10,6 +10,7 @@ import numpy as np
 import openmm
 import openmmhelfrich as helfrich
 import pytest
+from flowing import simulation_of
 from kills import Killed, killed_at
 from openmm import app
 from openmmhelfrich import VTKHDFReporter, analysis
@@ -333,23 +334,9 @@ class TestRun:
 
 
 class TestReporter:
-    def simulation(self, offset=0, flips=0.1):
-        system = openmm.System()
-        for _ in range(offset):
-            system.addParticle(1)
-        placement = helfrich.Vesicle(MESH, flips=flips).add_to(system)
-        integrator = openmm.LangevinMiddleIntegrator(300, 0.01, 0.4)
-        integrator.setRandomNumberSeed(7)
-        platform = openmm.Platform.getPlatformByName("Helfrich")
-        made = app.Simulation(app.Topology(), system, integrator, platform)
-        start = np.random.default_rng(1).normal(size=(offset, 3))
-        made.context.setPositions(np.concatenate([start, MESH.vertices]))
-        made.context.setVelocitiesToTemperature(300, 3)
-        return placement, made
-
     @pytest.mark.parametrize("offset", [0, 4])
     def test_frames_have_the_triangles_of_their_moment(self, tmp_path, offset):
-        placement, simulation = self.simulation(offset)
+        placement, simulation = simulation_of(MESH, offset)
         path = tmp_path / "a.vtkhdf"
         simulation.reporters.append(VTKHDFReporter(path, 20, MESH, offset=offset))
         expected = []
@@ -363,7 +350,7 @@ class TestReporter:
 
     def test_a_file_that_was_taken_away_is_missed(self, tmp_path):
         path = tmp_path / "a.vtkhdf"
-        _, simulation = self.simulation()
+        _, simulation = simulation_of(MESH)
         simulation.reporters.append(VTKHDFReporter(path, 10, MESH))
         simulation.step(20)
         path.rename(tmp_path / "elsewhere")
@@ -374,7 +361,7 @@ class TestReporter:
 
     def test_a_file_that_was_cut_is_refused(self, tmp_path):
         path = tmp_path / "a.vtkhdf"
-        _, simulation = self.simulation()
+        _, simulation = simulation_of(MESH)
         simulation.reporters.append(VTKHDFReporter(path, 10, MESH))
         simulation.step(20)
         path.write_bytes(path.read_bytes()[:5000])
@@ -384,13 +371,13 @@ class TestReporter:
 
     def test_it_goes_on_from_the_step_of_the_simulation(self, tmp_path):
         path = tmp_path / "a.vtkhdf"
-        _, simulation = self.simulation()
+        _, simulation = simulation_of(MESH)
         simulation.reporters.append(VTKHDFReporter(path, 10, MESH))
         simulation.step(30)
         simulation.saveCheckpoint(str(tmp_path / "state"))
         simulation.step(30)
         whole = read(path)
-        _, again = self.simulation()
+        _, again = simulation_of(MESH)
         again.loadCheckpoint(str(tmp_path / "state"))
         again.reporters.append(VTKHDFReporter(path, 10, MESH, append=True))
         again.step(1)
@@ -400,7 +387,7 @@ class TestReporter:
             assert one.time == two.time
             assert np.array_equal(one.points, two.points)
             assert np.array_equal(one.triangles, two.triangles)
-        _, other = self.simulation()
+        _, other = simulation_of(MESH)
         other.reporters.append(VTKHDFReporter(path, 10, MESH))
         other.step(10)
         assert SurfaceSeries(path).steps().tolist() == [10]
@@ -409,7 +396,7 @@ class TestReporter:
         with pytest.raises(ValueError, match=r"VTKHDFReporter: a.h5: the suffix must be .vtkhdf"):
             VTKHDFReporter("a.h5", 10, MESH)
         path = tmp_path / "a.vtkhdf"
-        _, simulation = self.simulation()
+        _, simulation = simulation_of(MESH)
         other = helfrich.Mesh.random_sphere(92, 400)
         SurfaceSeries(path).add(frames_of(1, other))
         simulation.reporters.append(VTKHDFReporter(path, 10, MESH, append=True))

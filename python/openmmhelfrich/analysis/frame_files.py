@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import contextlib
 import os
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
 
 from .._writing import naming
+from ._growing import GrowingFile
 from ._gsd import import_gsd
 from ._surface_frames import Types, fresh_file
 from .extended_xyz import text_of
@@ -20,17 +21,14 @@ from .surface_series import SurfaceFrame
 __all__ = ["ExtendedXYZSeries", "FrameFile", "GSDSeries"]
 
 
-class FrameFile(ABC):
-    """A file that grows by frames, closed between additions; see also `SurfaceSeries`.
+class FrameFile(GrowingFile):
+    """A file whose frames are added and counted by its subclasses, of one format each.
 
     Parameters
     ----------
     path : str or Path
         Of the file; it is made with the first frame.
     """
-
-    def __init__(self, path):
-        self.path = Path(path)
 
     def add(self, frames: Iterable[SurfaceFrame]) -> None:
         """Add frames; they are on the disk when this returns.
@@ -66,54 +64,6 @@ class FrameFile(ABC):
     @abstractmethod
     def _steps(self) -> list[int]:
         """Those of a file that is there."""
-
-    @abstractmethod
-    def _shorten(self, num_frames: int) -> None:
-        """Keep the first frames of more, one at least."""
-
-    def remove(self) -> None:
-        """Remove what is there, so that `add` begins a new file."""
-        with naming(self.path):
-            self.path.unlink(missing_ok=True)
-
-    def require(self) -> None:
-        """Check that the file is there, so that `add` does not begin a new one.
-
-        Raises
-        ------
-        FileNotFoundError
-            It has been taken away.
-        """
-        with naming(self.path):
-            self.path.stat()
-
-    def check(self, num_frames: int) -> int:
-        """Check that there are so many frames, or more; returns how many.
-
-        Raises
-        ------
-        ValueError
-            If there are fewer.
-        """
-        found = len(self.steps())
-        if num_frames > found:
-            raise ValueError(f"{self.path} has {found} frames, not {num_frames}")
-        return found
-
-    def cut(self, num_frames: int) -> None:
-        """Keep the first frames only.
-
-        Raises
-        ------
-        ValueError
-            If there are fewer.
-        """
-        if self.check(num_frames) == num_frames:
-            return
-        if num_frames == 0:
-            self.remove()
-        else:
-            self._shorten(num_frames)
 
 
 @contextlib.contextmanager

@@ -8,7 +8,6 @@ VTK 9.3, ParaView 5.12 or newer ones to read it.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -16,8 +15,8 @@ import numpy as np
 from .._journal import JournaledFile
 from .._mesh.periodic import cut_images
 from .._types import Array, File
-from .._writing import naming
 from ._arrays import triangles_of
+from ._growing import GrowingFile
 from .curvature import vertex_quantities
 from .elements import edges_of, triangle_areas
 from .tables import import_h5py
@@ -51,7 +50,7 @@ class SurfaceFrame(NamedTuple):
     """The periodic box, shape (3, 3), nm, if the surface lives in one."""
 
 
-class SurfaceSeries:
+class SurfaceSeries(GrowingFile):
     """A VTKHDF file to which frames are added, each with positions and triangles of its own.
 
     Vertices carry ``mean_curvature``, H = C1 + C2 by Jülicher's scheme (B13), 1/nm; ``area``, a
@@ -78,7 +77,7 @@ class SurfaceSeries:
     """
 
     def __init__(self, path: File) -> None:
-        self.path = Path(path)
+        super().__init__(path)
         self._h5py = import_h5py("or write PLY, OBJ or VTK")
         self._file = JournaledFile(self.path)
 
@@ -95,8 +94,7 @@ class SurfaceSeries:
             It has been taken away.
         """
         self._file.recover()
-        with naming(self.path):
-            self.path.stat()
+        super().require()
 
     def add(self, frames: Iterable[SurfaceFrame]) -> None:
         """Add frames; they are on the disk when this returns.
@@ -120,35 +118,6 @@ class SurfaceSeries:
             for frame in frames:
                 self._append(file, frame)
 
-    def cut(self, num_frames: int) -> None:
-        """Keep the first frames only.
-
-        Raises
-        ------
-        ValueError
-            If there are fewer.
-        """
-        if self.check(num_frames) == num_frames:
-            return
-        if num_frames == 0:
-            self.remove()
-            return
-        with self._file.change() as raw, self._open(raw, "r+") as file:
-            self._resize(file, num_frames)
-
-    def check(self, num_frames: int) -> int:
-        """Check that there are so many frames, or more; returns how many.
-
-        Raises
-        ------
-        ValueError
-            If there are fewer.
-        """
-        found = len(self.steps())
-        if num_frames > found:
-            raise ValueError(f"{self.path} has {found} frames, not {num_frames}")
-        return found
-
     def steps(self) -> Array:
         """The step of the simulation of each frame, shape (num_frames,).
 
@@ -167,6 +136,10 @@ class SurfaceSeries:
             raise ValueError(
                 f"{self.path} is no VTKHDF file of this package, or is damaged ({reason})"
             ) from None
+
+    def _shorten(self, num_frames: int) -> None:
+        with self._file.change() as raw, self._open(raw, "r+") as file:
+            self._resize(file, num_frames)
 
     def _open(self, raw, mode: str):
         return self._h5py.File(raw, mode)
