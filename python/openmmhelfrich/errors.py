@@ -9,7 +9,9 @@ FAQ = "docs/troubleshooting.md"
 
 
 class Explained:
-    """An exception of which a page of the documentation says more; tracebacks name it.
+    """An exception of which a page of the documentation says more.
+
+    Tracebacks name it from Python 3.11 on, commands always.
 
     Attributes
     ----------
@@ -21,7 +23,7 @@ class Explained:
 
     def __init__(self, *arguments: object) -> None:
         super().__init__(*arguments)
-        # Python 3.10 has no notes.
+        # Python 3.10 has no place for it.
         if hasattr(self, "add_note"):
             self.add_note(f"See {self.page}")
 

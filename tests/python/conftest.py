@@ -1,6 +1,7 @@
 """Fixtures for all Python tests."""
 
 import os
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -61,3 +62,13 @@ def backend_as_it_was():
     yield
     kind, _, precision = before.partition(":")
     helfrich.set_backend(kind, precision=precision or "auto")
+
+
+@pytest.fixture
+def paper_scripts(monkeypatch):
+    """The scripts of examples/paper can be imported, for the length of a test."""
+    folder = Path(__file__).resolve().parents[2] / "examples" / "paper"
+    monkeypatch.syspath_prepend(str(folder))
+    yield
+    for script in folder.glob("*.py"):
+        sys.modules.pop(script.stem, None)

@@ -6,6 +6,7 @@ import re
 
 from click.testing import CliRunner
 from openmmhelfrich.cli import main
+from openmmhelfrich.simulation.runner import Run
 
 GENERAL = """ProjectName cell
 SimulationTimeInPs 4
@@ -88,3 +89,15 @@ def results(folder):
         for name, data in found.items()
         if name != "checkpoint-previous.bin" and not name.endswith(".new")
     }
+
+
+def killed_after(config, out, end: int) -> None:
+    """A run as after kill -9: checkpoints of steps 10 and 17, and frames of all up to `end`."""
+    for number, step in enumerate((10, 17)):
+        job = Run(config, out, resume=number > 0)
+        assert job.advance(step)
+        job.close()
+    job = Run(config, out, resume=True, checkpoint_seconds=1e9)
+    job.save = lambda: None
+    assert job.advance(end)
+    job.close()

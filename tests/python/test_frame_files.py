@@ -13,7 +13,7 @@ from openmmhelfrich import ExtendedXYZReporter, GSDReporter, analysis
 from openmmhelfrich.analysis.frame_files import ExtendedXYZSeries, GSDSeries
 from openmmhelfrich.analysis.surface_series import SurfaceFrame
 from openmmhelfrich.simulation.runner import Run
-from run_files import fluid_and_solid, invoke
+from run_files import fluid_and_solid, invoke, killed_after
 
 pytest.importorskip("gsd")
 
@@ -189,15 +189,7 @@ class TestRuns:
         assert job.advance(40)
         job.close()
         out = tmp_path / "out"
-        for number, end in enumerate((10, 17)):
-            job = Run(config, out, resume=number > 0)
-            assert job.advance(end)
-            job.close()
-        # As after kill -9: frames of later steps than the checkpoint.
-        job = Run(config, out, resume=True, checkpoint_seconds=1e9)
-        job.save = lambda: None
-        assert job.advance(40)
-        job.close()
+        killed_after(config, out, 40)
         result = invoke("run", config, "--out", out, "--resume")
         assert result.exit_code == 0, result.output
         one, two = tmp_path / f"whole/run{suffix}", out / f"run{suffix}"

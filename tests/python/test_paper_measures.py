@@ -1,6 +1,5 @@
 """What the scripts in examples/paper decide verdicts with, on made-up data of known answers."""
 
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -11,12 +10,7 @@ from scipy.linalg import expm
 PAPER = Path(__file__).parents[2] / "examples" / "paper"
 
 
-@pytest.fixture(autouse=True)
-def scripts_importable(monkeypatch):
-    monkeypatch.syspath_prepend(str(PAPER))
-    yield
-    for script in PAPER.glob("*.py"):
-        sys.modules.pop(script.stem, None)
+pytestmark = pytest.mark.usefixtures("paper_scripts")
 
 
 def relaxations(time, count=10):

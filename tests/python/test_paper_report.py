@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import sys
 from pathlib import Path
 
 import pytest
@@ -27,12 +26,7 @@ PARTS = {
 }
 
 
-@pytest.fixture(autouse=True)
-def scripts_importable(monkeypatch):
-    monkeypatch.syspath_prepend(str(PAPER))
-    yield
-    for script in PAPER.glob("*.py"):
-        sys.modules.pop(script.stem, None)
+pytestmark = pytest.mark.usefixtures("paper_scripts")
 
 
 def parts_of(item: str) -> set[str]:

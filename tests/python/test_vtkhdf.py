@@ -17,7 +17,7 @@ from openmmhelfrich import VTKHDFReporter, analysis
 from openmmhelfrich._journal import JournaledFile
 from openmmhelfrich.analysis.surface_series import SurfaceFrame, SurfaceSeries
 from openmmhelfrich.simulation.runner import Run, RunError
-from run_files import fluid_and_solid, invoke
+from run_files import fluid_and_solid, invoke, killed_after
 from vtkhdf_files import check_layout, read
 
 h5py = pytest.importorskip("h5py")
@@ -236,14 +236,7 @@ class TestRun:
     def test_frames_after_the_checkpoint_are_written_again(self, config, tmp_path, meshes, option):
         """As after kill -9: checkpoints of steps 10 and 17, and frames of all steps."""
         out = tmp_path / "out"
-        for number, end in enumerate((10, 17)):
-            job = Run(config, out, resume=number > 0)
-            assert job.advance(end)
-            job.close()
-        job = Run(config, out, resume=True, checkpoint_seconds=1e9)
-        job.save = lambda: None
-        assert job.advance(END)
-        job.close()
+        killed_after(config, out, END)
         result = invoke("run", config, "--out", out, option)
         assert result.exit_code == 0, result.output
         self.check(out / "run.vtkhdf", meshes)
