@@ -9,7 +9,9 @@ doi:10.1140/epje/e2004-00044-y).
 h_q = ∫ h(r) exp(−i q·r) d²r / A_p is taken over the triangles, by the middles of their sides. A
 regular triangular lattice of edge l has, instead of q², Λ(q) = (2/3l²) Σ (1 − cos q·a) over its six
 neighbours a, in both of its terms (Jülicher's curvature of nearly flat equilateral triangles is
-this Laplacian), and of a wave the integral sees F(q) = ⟨cos q·a/2⟩, the mean over a. Undulations of
+this Laplacian), and of a wave the integral sees F(q) = ⟨cos q·a/2⟩, the mean over a. Waves are
+waves in the frame, q = 2π (m/Lx, n/Ly), and the frame is smaller than the surface by the area that
+undulations take up, 1.2 to 1.7 %; so l is that of a lattice that fills the mean frame. Undulations of
 shorter wavelength soften longer ones, κ(q) = κ − (3 kBT/4π) ln(q_m/q), q_m² = 4π N / A (Peliti and
 Leibler, doi:10.1103/PhysRevLett.54.1690). So
 
@@ -161,21 +163,27 @@ def amplitudes(mesh):
     return (along * weights[:, np.newaxis]).T @ across / (width * depth)
 
 
-def dispersion(size):
-    """q, Λ, nm⁻², and F of each mode of the undistorted sheet, shape (MODES + 1, 2 MODES + 1)."""
+def dispersion(size, frame=None):
+    """q, Λ, nm⁻², and F of each mode of a lattice, shape (MODES + 1, 2 MODES + 1).
+
+    It fills a frame of some area, nm²; by default that of the undistorted sheet.
+    """
     mesh = Mesh.sheet(size, size, SPACING, periodic=True)
+    if frame is not None:
+        mesh = mesh.scaled((frame / mesh.area) ** 0.5)
+    spacing = mesh.box[0, 0] / size
     qx = 2 * np.pi / mesh.box[0, 0] * np.arange(MODES + 1)[:, np.newaxis]
     qy = 2 * np.pi / mesh.box[1, 1] * np.arange(-MODES, MODES + 1)
     angles = np.arange(6) * np.pi / 3
-    phases = SPACING * (qx[..., None] * np.cos(angles) + qy[..., None] * np.sin(angles))
-    laplacian = 2 / (3 * SPACING**2) * (1 - np.cos(phases)).sum(axis=-1)
+    phases = spacing * (qx[..., None] * np.cos(angles) + qy[..., None] * np.sin(angles))
+    laplacian = 2 / (3 * spacing**2) * (1 - np.cos(phases)).sum(axis=-1)
     response = np.cos(phases / 2).mean(axis=-1)
     return np.sqrt(qx**2 + qy**2), laplacian, response
 
 
 def fitted(run, size):
     """κ with and without the logarithm, kBT, their error, and χ² per mode."""
-    q, laplacian, response = dispersion(size)
+    q, laplacian, response = dispersion(size, run["frame"].mean())
     m, n = np.indices(q.shape)
     # Of q and −q, which are one wave, one; and no q = 0.
     kept = (q * SPACING < 0.5) & ((m > 0) | (n > MODES))
@@ -241,13 +249,13 @@ def main():
 
 def spectrum_rows(run, size, tension, flips):
     """⟨|h_q|²⟩ over kBT F² / A_p (κ(q) Λ² + σ Λ) with the κ of the input, in shells of q."""
-    q, laplacian, response = dispersion(size)
+    q, laplacian, response = dispersion(size, run["frame"].mean())
     m, n = np.indices(q.shape)
     half = (m > 0) | (n > MODES)
     softened = RIGIDITY - softening(run, q)
     theory = response**2 / np.where(q > 0, softened * laplacian**2 + run["sigma"] * laplacian, 1)
     ratio = run["square"] / theory
-    shells = np.round(q * size * SPACING / (2 * np.pi)).astype(int)
+    shells = np.round(q / q[1, MODES]).astype(int)
     rows = []
     for shell in range(1, MODES + 1):
         some = ratio[:, half & (shells == shell)].mean(axis=1)
