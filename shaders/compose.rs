@@ -26,10 +26,10 @@ const AFTER: &str = "passes.wgsl";
 
 /// A kind of element, its struct, and the type of the derivatives with respect to it.
 const KINDS: [(&str, &str, &str); 4] = [
-    ("totals", "", "TotalSlopes"),
-    ("triangle", "TriangleGeometry", "TriangleSlopes"),
+    ("totals", "", "TotalPartials"),
+    ("triangle", "TriangleGeometry", "TrianglePartials"),
     ("edge", "EdgeGeometry", "real"),
-    ("vertex", "VertexGeometry", "VertexSlopes"),
+    ("vertex", "VertexGeometry", "VertexPartials"),
 ];
 
 /// A module with the file and line that each of its parts came from.
@@ -139,7 +139,7 @@ fn compose(folder: &Path, precision: &str, stems: &[String]) -> Result<Module, S
 
 /// The function that calls the potential of a term for an element of one kind.
 fn choice(
-    (kind, geometry, slopes): (&str, &str, &str),
+    (kind, geometry, partials): (&str, &str, &str),
     numbers: &[usize],
     stems: &[String],
 ) -> String {
@@ -149,13 +149,13 @@ fn choice(
         (format!("element: u32, geometry: {geometry}, "), "element, geometry, ")
     };
     let mut text = format!(
-        "fn energy_of_{kind}(term: u32, {parameters}slopes: ptr<function, {slopes}>) -> Contribution {{\n\
+        "fn energy_of_{kind}(term: u32, {parameters}partials: ptr<function, {partials}>) -> Contribution {{\n\
          \x20   switch frame.terms[term].potential {{\n"
     );
     for &number in numbers {
         let stem = &stems[number];
         text += &format!(
-            "        case {number}u: {{ return {stem}_{kind}(term, {arguments}slopes); }}\n"
+            "        case {number}u: {{ return {stem}_{kind}(term, {arguments}partials); }}\n"
         );
     }
     text + "        default: { return nothing(); }\n    }\n}\n"

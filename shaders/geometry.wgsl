@@ -27,18 +27,18 @@ struct VertexGeometry {
 }
 
 // Derivatives of the energy.
-struct TotalSlopes {
+struct TotalPartials {
     area: real,
     volume: real,
     mean_curvature: real,
 }
 
-struct TriangleSlopes {
+struct TrianglePartials {
     area: real,
     length_squared: array<real, 3>,
 }
 
-struct VertexSlopes {
+struct VertexPartials {
     area: real,
     voronoi_area: real,
     curvature: real,
@@ -124,18 +124,18 @@ fn new_edge(edge: u32) -> EdgeGeometry {
 // The forces on the corners of a triangle: T_ab (b − a) + T_ca (c − a) − p_a N.
 fn forces_on_corners(
     triangle: TriangleGeometry,
-    area_slope: real,
-    length_slopes: array<real, 3>,
+    by_area: real,
+    length_partials: array<real, 3>,
     half_tensions: vec3r,
     moments: vec3r,
-    volume_slope: real,
+    by_volume: real,
 ) -> array<vec3r, 3> {
     let inverse = real(1.0) / triangle.twice_area;
-    let stress = real(0.5) * area_slope * inverse;
+    let stress = real(0.5) * by_area * inverse;
     var pulls: array<vec3r, 3>;
     for (var k = 0u; k < 3u; k++) {
         let tension = stress * triangle.dots[(k + 2u) % 3u]
-            + real(2.0) * length_slopes[k] + half_tensions[k];
+            + real(2.0) * length_partials[k] + half_tensions[k];
         pulls[k] = triangle.sides[k] * tension;
     }
     var forces: array<vec3r, 3>;
@@ -145,7 +145,7 @@ fn forces_on_corners(
         let opposite = moments[next];
         let bending = triangle.dots[next] * (moments[k] - opposite)
             + triangle.dots[last] * (moments[last] - opposite);
-        let pressure = bending * inverse * inverse + volume_slope / real(6.0);
+        let pressure = bending * inverse * inverse + by_volume / real(6.0);
         forces[k] = pulls[k] - pulls[last] - triangle.normal * pressure;
     }
     return forces;

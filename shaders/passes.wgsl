@@ -67,12 +67,12 @@ fn totals_forward(@builtin(local_invocation_index) lane: u32) {
     if lane != 0u {
         return;
     }
-    var slopes = TotalSlopes(real(0.0), real(0.0), real(0.0));
+    var partials = TotalPartials(real(0.0), real(0.0), real(0.0));
     for (var term = 0u; term < frame.num_terms; term++) {
         if (frame.terms[term].needs & TOTALS) == 0u {
             continue;
         }
-        let contribution = energy_of_totals(term, &slopes);
+        let contribution = energy_of_totals(term, &partials);
         let first = frame.terms[term].sums[SUMS_OF_TOTALS];
         results[first] = contribution.energy;
         if (frame.terms[term].needs & DERIVATIVES) != 0u {
@@ -81,7 +81,7 @@ fn totals_forward(@builtin(local_invocation_index) lane: u32) {
             }
         }
     }
-    store_total_slopes(slopes);
+    store_total_partials(partials);
 }
 
 // Lengths, dihedral angles and moments.
@@ -92,13 +92,13 @@ fn edges_forward(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_invocation
         return;
     }
     let edge = new_edge(index);
-    var slope = real(0.0);
+    var partial = real(0.0);
     for (var term = 0u; term < frame.num_terms; term++) {
         if (frame.terms[term].needs & EDGES) != 0u {
-            energy_of_edge(term, index, edge, &slope);
+            energy_of_edge(term, index, edge, &partial);
         }
     }
-    store_edge(index, edge, slope);
+    store_edge(index, edge, partial);
 }
 
 // The same, and the energies.
@@ -111,24 +111,24 @@ fn edges_forward_summed(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_inv
     if exists {
         edge = new_edge(index);
     }
-    var slope = real(0.0);
+    var partial = real(0.0);
     for (var term = 0u; term < frame.num_terms; term++) {
         if (frame.terms[term].needs & EDGES) == 0u {
             continue;
         }
         var contribution = nothing();
         if exists {
-            contribution = energy_of_edge(term, index, edge, &slope);
+            contribution = energy_of_edge(term, index, edge, &partial);
         }
         store_sums(term, frame.terms[term].sums[SUMS_OF_EDGES], contribution, lane, group, groups_for(frame.num_edges));
     }
     if exists {
-        store_edge(index, edge, slope);
+        store_edge(index, edge, partial);
     }
 }
 
-fn store_edge(index: u32, edge: EdgeGeometry, slope: real) {
-    let moment = select(real(0.0), slope / root(edge.length_squared), slope != real(0.0));
+fn store_edge(index: u32, edge: EdgeGeometry, partial: real) {
+    let moment = select(real(0.0), partial / root(edge.length_squared), partial != real(0.0));
     edge_geometry[index] = vec4r(edge.length_squared, edge.bend, moment, real(0.0));
 }
 
@@ -141,13 +141,13 @@ fn vertices_forward(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_invocat
     }
     let vertex = new_vertex(index);
     let inner = !is_on_border(index);
-    var slopes: VertexSlopes;
+    var partials: VertexPartials;
     for (var term = 0u; term < frame.num_terms; term++) {
         if acts_on_vertex(term, inner) {
-            energy_of_vertex(term, index, vertex, &slopes);
+            energy_of_vertex(term, index, vertex, &partials);
         }
     }
-    store_vertex(index, slopes);
+    store_vertex(index, partials);
 }
 
 // The same, and the energies.
@@ -162,19 +162,19 @@ fn vertices_forward_summed(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_
         vertex = new_vertex(index);
         inner = !is_on_border(index);
     }
-    var slopes: VertexSlopes;
+    var partials: VertexPartials;
     for (var term = 0u; term < frame.num_terms; term++) {
         if (frame.terms[term].needs & VERTICES) == 0u {
             continue;
         }
         var contribution = nothing();
         if exists && acts_on_vertex(term, inner) {
-            contribution = energy_of_vertex(term, index, vertex, &slopes);
+            contribution = energy_of_vertex(term, index, vertex, &partials);
         }
         store_sums(term, frame.terms[term].sums[SUMS_OF_VERTICES], contribution, lane, group, groups_for(frame.num_vertices));
     }
     if exists {
-        store_vertex(index, slopes);
+        store_vertex(index, partials);
     }
 }
 
@@ -183,12 +183,12 @@ fn acts_on_vertex(term: u32, inner: bool) -> bool {
     return (needs & VERTICES) != 0u && (inner || (needs & INNER) == 0u);
 }
 
-fn store_vertex(index: u32, slopes: VertexSlopes) {
-    vertex_slopes[index] = vec4r(slopes.area, slopes.voronoi_area, slopes.curvature, real(0.0));
+fn store_vertex(index: u32, partials: VertexPartials) {
+    vertex_partials[index] = vec4r(partials.area, partials.voronoi_area, partials.curvature, real(0.0));
     if is_needed(VECTORS) {
-        store_vector_slope(index, 0u, slopes.cotangent);
-        store_vector_slope(index, 1u, slopes.umbrella);
-        store_vector_slope(index, 2u, slopes.normal_sum);
+        store_vector_partial(index, 0u, partials.cotangent);
+        store_vector_partial(index, 1u, partials.umbrella);
+        store_vector_partial(index, 2u, partials.normal_sum);
     }
 }
 
@@ -241,13 +241,13 @@ fn triangles_backward(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_invoc
         return;
     }
     let triangle = load_triangle(index);
-    var slopes: TriangleSlopes;
+    var partials: TrianglePartials;
     for (var term = 0u; term < frame.num_terms; term++) {
         if (frame.terms[term].needs & TRIANGLES) != 0u {
-            energy_of_triangle(term, index, triangle, &slopes);
+            energy_of_triangle(term, index, triangle, &partials);
         }
     }
-    store_corner_forces(index, triangle, slopes);
+    store_corner_forces(index, triangle, partials);
 }
 
 // The same, and the energies of triangles.
@@ -260,38 +260,38 @@ fn triangles_backward_summed(@builtin(workgroup_id) id: vec3<u32>, @builtin(loca
     if exists {
         triangle = load_triangle(index);
     }
-    var slopes: TriangleSlopes;
+    var partials: TrianglePartials;
     for (var term = 0u; term < frame.num_terms; term++) {
         if (frame.terms[term].needs & TRIANGLES) == 0u {
             continue;
         }
         var contribution = nothing();
         if exists {
-            contribution = energy_of_triangle(term, index, triangle, &slopes);
+            contribution = energy_of_triangle(term, index, triangle, &partials);
         }
         store_sums(term, frame.terms[term].sums[SUMS_OF_TRIANGLES], contribution, lane, group, triangle_groups());
     }
     if exists && is_needed(FORCES) {
-        store_corner_forces(index, triangle, slopes);
+        store_corner_forces(index, triangle, partials);
     }
 }
 
-fn store_corner_forces(index: u32, triangle: TriangleGeometry, of_terms: TriangleSlopes) {
-    var slopes = of_terms;
-    var totals = TotalSlopes(real(0.0), real(0.0), real(0.0));
+fn store_corner_forces(index: u32, triangle: TriangleGeometry, of_terms: TrianglePartials) {
+    var partials = of_terms;
+    var totals = TotalPartials(real(0.0), real(0.0), real(0.0));
     if is_needed(TOTALS) {
-        totals = total_slopes();
-        slopes.area += totals.area;
+        totals = total_partials();
+        partials.area += totals.area;
     }
-    var curvature_slopes = vec3r();
+    var curvature_partials = vec3r();
     if is_needed(VERTICES) {
         var sum = real(0.0);
         for (var k = 0u; k < 3u; k++) {
-            let stored = vertex_slopes[corner_vertex(index, k)];
+            let stored = vertex_partials[corner_vertex(index, k)];
             sum += stored.x;
-            curvature_slopes[k] = stored.z;
+            curvature_partials[k] = stored.z;
         }
-        slopes.area += sum / real(3.0);
+        partials.area += sum / real(3.0);
     }
     var half_tensions = vec3r();
     var moments = vec3r();
@@ -299,7 +299,7 @@ fn store_corner_forces(index: u32, triangle: TriangleGeometry, of_terms: Triangl
         for (var k = 0u; k < 3u; k++) {
             let edge = edge_geometry[corner_edges[3u * index + k]];
             // Jülicher's curvature adds m d(l φ), with m the mean of ∂E/∂J at the two ends.
-            let mean = real(0.5) * (curvature_slopes[k] + curvature_slopes[(k + 1u) % 3u]);
+            let mean = real(0.5) * (curvature_partials[k] + curvature_partials[(k + 1u) % 3u]);
             half_tensions[k] = real(0.5) * mean * edge.y;
             moments[k] = mean + edge.z;
             if is_needed(MEAN_CURVATURE) {
@@ -312,7 +312,7 @@ fn store_corner_forces(index: u32, triangle: TriangleGeometry, of_terms: Triangl
         }
     }
     var forces = forces_on_corners(
-        triangle, slopes.area, slopes.length_squared, half_tensions, moments, totals.volume);
+        triangle, partials.area, partials.length_squared, half_tensions, moments, totals.volume);
     if is_needed(VECTORS) {
         let more = forces_of_vectors(index, triangle, is_needed(NORMALS));
         for (var k = 0u; k < 3u; k++) {

@@ -36,12 +36,12 @@ fn elastic(
     by_moduli: vec2<real>,
     by_trace: real,
     by_determinant: real,
-    slopes: ptr<function, TriangleSlopes>,
+    partials: ptr<function, TrianglePartials>,
 ) -> Contribution {
     let scale = strain.area * strain.inverse;
     for (var k = 0u; k < 3u; k++) {
         let opposite = (k + 2u) % 3u;
-        (*slopes).length_squared[k] += scale
+        (*partials).length_squared[k] += scale
             * (by_trace * strain.rest[opposite] + real(0.5) * by_determinant * strain.excess[opposite]);
     }
     let by_parameter = by_moduli * strain.area;

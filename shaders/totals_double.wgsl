@@ -78,14 +78,14 @@ fn excess_of_mean_curvature(term: u32, origin: real) -> real {
     return totals[triangle_groups() + 2u].x - origin;
 }
 
-fn store_total_slopes(slopes: TotalSlopes) {
-    totals[triangle_groups()] = vec2<f64>(slopes.area, slopes.volume);
-    totals[triangle_groups() + 1u] = vec2<f64>(slopes.mean_curvature, real(0.0));
+fn store_total_partials(partials: TotalPartials) {
+    totals[triangle_groups()] = vec2<f64>(partials.area, partials.volume);
+    totals[triangle_groups() + 1u] = vec2<f64>(partials.mean_curvature, real(0.0));
 }
 
-fn total_slopes() -> TotalSlopes {
+fn total_partials() -> TotalPartials {
     let stored = totals[triangle_groups()];
-    return TotalSlopes(stored.x, stored.y, totals[triangle_groups() + 1u].x);
+    return TotalPartials(stored.x, stored.y, totals[triangle_groups() + 1u].x);
 }
 
 fn constant_of(term: u32, triangle: u32, k: u32) -> real {

@@ -241,15 +241,15 @@ fn excess_of_mean_curvature(term: u32, origin: real) -> real {
     return float128(add128(sum, negative128(frame.terms[term].reference))) / 4294967296.0;
 }
 
-fn store_total_slopes(slopes: TotalSlopes) {
-    let mean_curvature = bitcast<u32>(slopes.mean_curvature);
+fn store_total_partials(partials: TotalPartials) {
+    let mean_curvature = bitcast<u32>(partials.mean_curvature);
     totals[2u * triangle_groups()] =
-        vec4<u32>(bitcast<u32>(slopes.area), bitcast<u32>(slopes.volume), mean_curvature, 0u);
+        vec4<u32>(bitcast<u32>(partials.area), bitcast<u32>(partials.volume), mean_curvature, 0u);
 }
 
-fn total_slopes() -> TotalSlopes {
+fn total_partials() -> TotalPartials {
     let stored = totals[2u * triangle_groups()];
-    return TotalSlopes(bitcast<f32>(stored.x), bitcast<f32>(stored.y), bitcast<f32>(stored.z));
+    return TotalPartials(bitcast<f32>(stored.x), bitcast<f32>(stored.y), bitcast<f32>(stored.z));
 }
 
 fn constant_of(term: u32, triangle: u32, k: u32) -> real {

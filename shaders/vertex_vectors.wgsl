@@ -19,16 +19,16 @@ fn add_corner(vertex: ptr<function, VertexGeometry>, triangle: TriangleGeometry,
     }
 }
 
-fn vector_slope(vertex: u32, which: u32) -> vec3r {
-    let first = SLOPES_PER_VERTEX * vertex + 3u * which;
-    return vec3r(vector_slopes[first], vector_slopes[first + 1u], vector_slopes[first + 2u]);
+fn vector_partial(vertex: u32, which: u32) -> vec3r {
+    let first = PARTIALS_PER_VERTEX * vertex + 3u * which;
+    return vec3r(vector_partials[first], vector_partials[first + 1u], vector_partials[first + 2u]);
 }
 
-fn store_vector_slope(vertex: u32, which: u32, slope: vec3r) {
-    let first = SLOPES_PER_VERTEX * vertex + 3u * which;
-    vector_slopes[first] = slope.x;
-    vector_slopes[first + 1u] = slope.y;
-    vector_slopes[first + 2u] = slope.z;
+fn store_vector_partial(vertex: u32, which: u32, partial: vec3r) {
+    let first = PARTIALS_PER_VERTEX * vertex + 3u * which;
+    vector_partials[first] = partial.x;
+    vector_partials[first + 1u] = partial.y;
+    vector_partials[first + 2u] = partial.z;
 }
 
 // What the derivatives with respect to Voronoi areas and vectors of its three vertices do to a triangle.
@@ -42,9 +42,9 @@ fn forces_of_vectors(index: u32, triangle: TriangleGeometry, normals: bool) -> a
     let inverse = real(1.0) / triangle.twice_area;
     for (var k = 0u; k < 3u; k++) {
         let vertex = corner_vertex(index, k);
-        voronoi[k] = vertex_slopes[vertex].y;
-        cotangents[k] = vector_slope(vertex, 0u);
-        umbrellas[k] = vector_slope(vertex, 1u);
+        voronoi[k] = vertex_partials[vertex].y;
+        cotangents[k] = vector_partial(vertex, 0u);
+        umbrellas[k] = vector_partial(vertex, 1u);
     }
     for (var k = 0u; k < 3u; k++) {
         let next = (k + 1u) % 3u;
@@ -76,10 +76,10 @@ fn forces_of_vectors(index: u32, triangle: TriangleGeometry, normals: bool) -> a
         for (var k = 0u; k < 3u; k++) {
             let next = (k + 1u) % 3u;
             let last = (k + 2u) % 3u;
-            let slope = vector_slope(corner_vertex(index, k), 2u);
-            weighted += slope * angle_of(triangle.twice_area, triangle.dots[k]);
+            let partial = vector_partial(corner_vertex(index, k), 2u);
+            weighted += partial * angle_of(triangle.twice_area, triangle.dots[k]);
             let product = triangle.length_squared[k] * triangle.length_squared[last];
-            let by_angle = dot(slope, triangle.normal) * inverse / product;
+            let by_angle = dot(partial, triangle.normal) * inverse / product;
             area += real(2.0) * by_angle * triangle.dots[k];
             let by_length = real(0.5) * by_angle * triangle.twice_area;
             lengths[k] -= by_length;

@@ -5,7 +5,7 @@ fn bending_vertex(
     term: u32,
     element: u32,
     vertex: VertexGeometry,
-    slopes: ptr<function, VertexSlopes>,
+    partials: ptr<function, VertexPartials>,
 ) -> Contribution {
     let scheme = frame.terms[term].form;
     let is_unsigned = (frame.terms[term].switches & UNSIGNED) != 0u;
@@ -48,25 +48,25 @@ fn bending_vertex(
 
     let by_area = real(0.5) * rigidity * (spontaneous * spontaneous - density / area);
     if voronoi {
-        (*slopes).voronoi_area += by_area;
+        (*partials).voronoi_area += by_area;
     } else {
-        (*slopes).area += by_area;
+        (*partials).area += by_area;
     }
     let by_square = real(0.5) * rigidity / area;
     let by_linear = -rigidity * spontaneous;
     if is_vector {
-        let slope = vector * (real(2.0) * by_square) + direction * by_linear;
+        let partial = vector * (real(2.0) * by_square) + direction * by_linear;
         if umbrella {
-            (*slopes).umbrella += slope;
+            (*partials).umbrella += partial;
         } else {
-            (*slopes).cotangent += slope;
+            (*partials).cotangent += partial;
         }
         if !is_unsigned && by_linear != real(0.0) && length > real(0.0) {
             let across = vector - direction * linear;
-            (*slopes).normal_sum += across * (by_linear / length);
+            (*partials).normal_sum += across * (by_linear / length);
         }
     } else {
-        (*slopes).curvature += real(2.0) * vertex.curvature * by_square + sign_of_linear * by_linear;
+        (*partials).curvature += real(2.0) * vertex.curvature * by_square + sign_of_linear * by_linear;
     }
     return Contribution(
         rigidity * by_rigidity,

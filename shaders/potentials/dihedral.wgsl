@@ -1,6 +1,6 @@
 // Dihedral angles φ: K f(x), f by the form, x = φ − φ₀ in (−π, π] and c = 1 − cos x.
 
-fn dihedral_edge(term: u32, element: u32, edge: EdgeGeometry, slope: ptr<function, real>) -> Contribution {
+fn dihedral_edge(term: u32, element: u32, edge: EdgeGeometry, partial: ptr<function, real>) -> Contribution {
     if edge_corners[element].y == NO_CORNER {
         // A border has no angle.
         return nothing();
@@ -42,7 +42,7 @@ fn dihedral_edge(term: u32, element: u32, edge: EdgeGeometry, slope: ptr<functio
         }
         default: {}
     }
-    *slope += stiffness * by_angle;
+    *partial += stiffness * by_angle;
     let by_stiffness = f * is_scalar(term, 0u);
     let by_rest = -stiffness * by_angle * is_scalar(term, 1u);
     return Contribution(stiffness * f, vec4r(by_stiffness, by_rest, real(0.0), real(0.0)));

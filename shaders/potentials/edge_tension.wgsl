@@ -4,7 +4,7 @@ fn edge_tension_triangle(
     term: u32,
     element: u32,
     triangle: TriangleGeometry,
-    slopes: ptr<function, TriangleSlopes>,
+    partials: ptr<function, TrianglePartials>,
 ) -> Contribution {
     let tension = value(term, 0u, element);
     var sum = real(0.0);
@@ -12,7 +12,7 @@ fn edge_tension_triangle(
         if is_border_side(element, side) {
             let length = root(triangle.length_squared[side]);
             sum += length;
-            (*slopes).length_squared[side] += real(0.5) * tension / length;
+            (*partials).length_squared[side] += real(0.5) * tension / length;
         }
     }
     return Contribution(tension * sum, vec4r(sum, real(0.0), real(0.0), real(0.0)));

@@ -8,7 +8,7 @@ fn lim_triangle(
     term: u32,
     element: u32,
     triangle: TriangleGeometry,
-    slopes: ptr<function, TriangleSlopes>,
+    partials: ptr<function, TrianglePartials>,
 ) -> Contribution {
     let shear = value(term, 0u, element);
     let area = value(term, 1u, element);
@@ -31,5 +31,5 @@ fn lim_triangle(
     let cube = inverse * inverse * inverse;
     let by_trace = by_alpha * inverse + by_beta * (trace + real(4.0) * strain.determinant) * cube;
     let by_determinant = real(2.0) * (by_alpha * inverse - by_beta * (one + trace) * cube);
-    return elastic(term, element, strain, by_moduli, by_trace, by_determinant, slopes);
+    return elastic(term, element, strain, by_moduli, by_trace, by_determinant, partials);
 }

@@ -4,7 +4,7 @@ fn line_tension_triangle(
     term: u32,
     element: u32,
     triangle: TriangleGeometry,
-    slopes: ptr<function, TriangleSlopes>,
+    partials: ptr<function, TrianglePartials>,
 ) -> Contribution {
     let tension = value(term, 0u, element);
     let of_medians = constant_of(term, element, 3u);
@@ -16,16 +16,16 @@ fn line_tension_triangle(
         if share != real(0.0) {
             let length = root(triangle.length_squared[k]);
             sum += share * length;
-            (*slopes).length_squared[k] += real(0.5) * tension * share / length;
+            (*partials).length_squared[k] += real(0.5) * tension * share / length;
         }
         if of_medians != real(0.0) {
             let squared = triangle.length_squared[k] + triangle.length_squared[last] + real(2.0) * triangle.dots[k];
             let median = root(real(0.25) * squared);
             sum += of_medians * median;
             let by_median = real(0.125) * tension * of_medians / median;
-            (*slopes).length_squared[k] += real(2.0) * by_median;
-            (*slopes).length_squared[last] += real(2.0) * by_median;
-            (*slopes).length_squared[next] -= by_median;
+            (*partials).length_squared[k] += real(2.0) * by_median;
+            (*partials).length_squared[last] += real(2.0) * by_median;
+            (*partials).length_squared[next] -= by_median;
         }
     }
     return Contribution(tension * sum, vec4r(sum, real(0.0), real(0.0), real(0.0)));

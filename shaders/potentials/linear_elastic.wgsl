@@ -4,7 +4,7 @@ fn linear_elastic_triangle(
     term: u32,
     element: u32,
     triangle: TriangleGeometry,
-    slopes: ptr<function, TriangleSlopes>,
+    partials: ptr<function, TrianglePartials>,
 ) -> Contribution {
     let shear = value(term, 0u, element);
     let area = value(term, 1u, element);
@@ -12,5 +12,5 @@ fn linear_elastic_triangle(
     let half_square = real(0.5) * strain.trace * strain.trace;
     let by_moduli = vec2<real>(half_square - real(2.0) * strain.determinant, half_square);
     let by_trace = (shear + area) * strain.trace;
-    return elastic(term, element, strain, by_moduli, by_trace, real(-2.0) * shear, slopes);
+    return elastic(term, element, strain, by_moduli, by_trace, real(-2.0) * shear, partials);
 }

@@ -4,7 +4,7 @@ fn neo_hookean_triangle(
     term: u32,
     element: u32,
     triangle: TriangleGeometry,
-    slopes: ptr<function, TriangleSlopes>,
+    partials: ptr<function, TrianglePartials>,
 ) -> Contribution {
     let shear = value(term, 0u, element);
     let area = value(term, 1u, element);
@@ -20,5 +20,5 @@ fn neo_hookean_triangle(
     let cube = shear * inverse * inverse * inverse;
     let by_trace = by_stretch + cube * (trace + real(4.0) * determinant);
     let by_determinant = real(2.0) * (by_stretch - cube * (trace + real(1.0)));
-    return elastic(term, element, strain, by_moduli, by_trace, by_determinant, slopes);
+    return elastic(term, element, strain, by_moduli, by_trace, by_determinant, partials);
 }

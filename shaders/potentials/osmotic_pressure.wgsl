@@ -39,7 +39,7 @@ fn less_logarithm(d: real) -> real {
     return s * (d - real(2.0) * s * s * artanh_rest(s));
 }
 
-fn osmotic_pressure_totals(term: u32, slopes: ptr<function, TotalSlopes>) -> Contribution {
+fn osmotic_pressure_totals(term: u32, partials: ptr<function, TotalPartials>) -> Contribution {
     let solutes = value(term, 0u, 0u);
     let concentration = value(term, 1u, 0u);
     let thermal_energy = value(term, 2u, 0u);
@@ -47,7 +47,7 @@ fn osmotic_pressure_totals(term: u32, slopes: ptr<function, TotalSlopes>) -> Con
     // x − 1.
     let excess = excess_of_volume(term, reference) / reference;
     let by_thermal_energy = solutes * less_logarithm(excess);
-    (*slopes).volume += thermal_energy * concentration * excess / max(real(1.0) + excess, real(0.0));
+    (*partials).volume += thermal_energy * concentration * excess / max(real(1.0) + excess, real(0.0));
     return Contribution(
         thermal_energy * by_thermal_energy,
         vec4r(

@@ -1,8 +1,8 @@
 // A pressure difference: −p V.
 
-fn pressure_totals(term: u32, slopes: ptr<function, TotalSlopes>) -> Contribution {
+fn pressure_totals(term: u32, partials: ptr<function, TotalPartials>) -> Contribution {
     let pressure = value(term, 0u, 0u);
     let volume = excess_of_volume(term, real(0.0));
-    (*slopes).volume -= pressure;
+    (*partials).volume -= pressure;
     return Contribution(-pressure * volume, vec4r(-volume, real(0.0), real(0.0), real(0.0)));
 }

@@ -4,7 +4,7 @@ fn skalak_triangle(
     term: u32,
     element: u32,
     triangle: TriangleGeometry,
-    slopes: ptr<function, TriangleSlopes>,
+    partials: ptr<function, TrianglePartials>,
 ) -> Contribution {
     let shear = value(term, 0u, element);
     let area = value(term, 1u, element);
@@ -17,5 +17,5 @@ fn skalak_triangle(
     );
     let by_trace = shear * trace + area * growth;
     let by_determinant = real(2.0) * area * growth - shear;
-    return elastic(term, element, strain, by_moduli, by_trace, by_determinant, slopes);
+    return elastic(term, element, strain, by_moduli, by_trace, by_determinant, partials);
 }

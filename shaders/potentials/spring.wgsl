@@ -23,7 +23,7 @@ fn spring_triangle(
     term: u32,
     element: u32,
     triangle: TriangleGeometry,
-    slopes: ptr<function, TriangleSlopes>,
+    partials: ptr<function, TrianglePartials>,
 ) -> Contribution {
     let stiffness = value(term, 0u, element);
     let ratio = value(term, 1u, element);
@@ -48,7 +48,7 @@ fn spring_triangle(
         contribution.energy += stiffness * squared * factors.x;
         contribution.by_parameter.x += squared * factors.x;
         contribution.by_parameter.y += stiffness * squared * factors.z;
-        (*slopes).length_squared[k] += real(0.5) * stiffness * share * stretch * factors.y / length;
+        (*partials).length_squared[k] += real(0.5) * stiffness * share * stretch * factors.y / length;
     }
     return contribution;
 }

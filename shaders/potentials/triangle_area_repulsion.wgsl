@@ -4,7 +4,7 @@ fn triangle_area_repulsion_triangle(
     term: u32,
     element: u32,
     triangle: TriangleGeometry,
-    slopes: ptr<function, TriangleSlopes>,
+    partials: ptr<function, TrianglePartials>,
 ) -> Contribution {
     let min_area = value(term, 0u, element);
     let epsilon = value(term, 1u, element);
@@ -16,6 +16,6 @@ fn triangle_area_repulsion_triangle(
         return nothing();
     }
     let slope = real(4.0) * epsilon * energy.y * x;
-    (*slopes).area -= slope / area;
+    (*partials).area -= slope / area;
     return Contribution(epsilon * energy.x, vec4r(slope / min_area, energy.x, real(0.0), real(0.0)));
 }

@@ -4,7 +4,7 @@ fn triangle_height_triangle(
     term: u32,
     element: u32,
     triangle: TriangleGeometry,
-    slopes: ptr<function, TriangleSlopes>,
+    partials: ptr<function, TrianglePartials>,
 ) -> Contribution {
     let min_height = value(term, 0u, element);
     let epsilon = value(term, 1u, element);
@@ -21,8 +21,8 @@ fn triangle_height_triangle(
         contribution.energy += epsilon * energy.x;
         contribution.by_parameter.x += real(4.0) * epsilon * slope / min_height;
         contribution.by_parameter.y += energy.x;
-        (*slopes).area -= real(8.0) * epsilon * slope / triangle.twice_area;
-        (*slopes).length_squared[side] += real(2.0) * epsilon * slope / triangle.length_squared[side];
+        (*partials).area -= real(8.0) * epsilon * slope / triangle.twice_area;
+        (*partials).length_squared[side] += real(2.0) * epsilon * slope / triangle.length_squared[side];
     }
     return contribution;
 }

@@ -19,9 +19,9 @@ pub fn check_energies(terms: &[Term], contributions: &[Contribution]) -> Result<
 pub fn check_totals(
     term: &Term,
     contribution: &Contribution,
-    slopes: &TotalPartials,
+    partials: &TotalPartials,
 ) -> Result<()> {
-    if slopes.are_finite() {
+    if partials.are_finite() {
         return Ok(());
     }
     let (force, energy) = (term.potential.name(), contribution.energy);

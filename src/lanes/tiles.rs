@@ -100,7 +100,7 @@ impl Energies {
 pub struct VertexTile {
     pub energies: Energies,
     pub known: VertexColumns,
-    pub slopes: VertexColumns,
+    pub partials: VertexColumns,
     /// tan(φ/2) / l and l² of the edges of a block, step by step.
     pub ring: Vec<[[f64; BLOCK]; 2]>,
 }
@@ -146,8 +146,8 @@ impl VertexColumns {
 impl VertexTile {
     /// For rings of so many steps.
     pub fn new(steps: usize) -> Self {
-        let (known, slopes) = (VertexColumns::ZERO, VertexColumns::ZERO);
+        let (known, partials) = (VertexColumns::ZERO, VertexColumns::ZERO);
         let energies = Energies::UNWANTED;
-        Self { energies, known, slopes, ring: vec![[[0.0; BLOCK]; 2]; steps] }
+        Self { energies, known, partials, ring: vec![[[0.0; BLOCK]; 2]; steps] }
     }
 }

@@ -212,11 +212,11 @@ pub struct VertexPartials {
 
 /// Derivatives of the energy with respect to area and sides of one triangle.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct TrianglePartials {
+pub struct TrianglePartials<R = f64> {
     /// ∂E/∂a, kJ/mol/nm².
-    pub area: f64,
+    pub area: R,
     /// ∂E/∂l² of each side at fixed area, kJ/mol/nm².
-    pub length_squared: [f64; 3],
+    pub length_squared: [R; 3],
 }
 
 /// Derivative of the energy with respect to the dihedral angle of an edge.

@@ -155,7 +155,12 @@ impl<const NUMERATOR: u8, const VORONOI: bool> VertexFormula for Curvature<NUMER
     };
 
     #[inline(always)]
-    fn apply<R: Real>(&self, place: Place, vertex: &Vertex<R>, slopes: &mut Vertex<R>) -> Sums<R> {
+    fn apply<R: Real>(
+        &self,
+        place: Place,
+        vertex: &Vertex<R>,
+        partials: &mut Vertex<R>,
+    ) -> Sums<R> {
         let area = if VORONOI { vertex.voronoi_area } else { vertex.area };
         let (rigidity, spontaneous) = (place.value(RIGIDITY, area), place.value(SPONTANEOUS, area));
         let (square, linear) = self.measure(vertex);
@@ -165,10 +170,10 @@ impl<const NUMERATOR: u8, const VORONOI: bool> VertexFormula for Curvature<NUMER
         let by_spontaneous = rigidity * (spontaneous * area - linear);
         let half = rigidity * 0.5;
         let by_area = half * (spontaneous * spontaneous - density * per_area);
-        let slot = if VORONOI { &mut slopes.voronoi_area } else { &mut slopes.area };
+        let slot = if VORONOI { &mut partials.voronoi_area } else { &mut partials.area };
         *slot = *slot + by_area;
         let by_linear = area.zero() - rigidity * spontaneous;
-        self.spread(vertex, slopes, half * per_area, by_linear);
+        self.spread(vertex, partials, half * per_area, by_linear);
         Sums { energy: rigidity * by_rigidity, by_parameter: [by_rigidity, by_spontaneous] }
     }
 }
@@ -207,7 +212,7 @@ impl<const NUMERATOR: u8, const VORONOI: bool> Curvature<NUMERATOR, VORONOI> {
     fn spread<R: Real>(
         &self,
         vertex: &Vertex<R>,
-        slopes: &mut Vertex<R>,
+        partials: &mut Vertex<R>,
         by_square: R,
         by_linear: R,
     ) {
@@ -221,11 +226,11 @@ impl<const NUMERATOR: u8, const VORONOI: bool> Curvature<NUMERATOR, VORONOI> {
             } else {
                 zero.of(1.0)
             };
-            slopes.curvature = slopes.curvature + (c + c) * by_square + sign * by_linear;
+            partials.curvature = partials.curvature + (c + c) * by_square + sign * by_linear;
             return;
         }
         let vector = Self::vector(vertex);
-        let mut slope = plus_scaled([zero; 3], by_square + by_square, vector);
+        let mut partial = plus_scaled([zero; 3], by_square + by_square, vector);
         if self.linear {
             // |c| has no derivative at 0, where the mean over all directions is 0; and a vertex whose normals
             // cancel has no normal.
@@ -233,15 +238,15 @@ impl<const NUMERATOR: u8, const VORONOI: bool> Curvature<NUMERATOR, VORONOI> {
             let length = dot(direction, direction).sqrt();
             let inverse = (zero.of(1.0) / length).or_else(length.above(zero), zero);
             let unit = scaled(direction, inverse);
-            slope = plus_scaled(slope, by_linear, unit);
+            partial = plus_scaled(partial, by_linear, unit);
             if !self.unsigned {
                 let across = plus_scaled(vector, zero - dot(unit, vector), unit);
-                slopes.normal_sum = plus_scaled(slopes.normal_sum, by_linear * inverse, across);
+                partials.normal_sum = plus_scaled(partials.normal_sum, by_linear * inverse, across);
             }
         }
         let cotangent = NUMERATOR == Numerator::Cotangent as u8;
-        let slot = if cotangent { &mut slopes.cotangent } else { &mut slopes.umbrella };
-        *slot = plus(*slot, slope);
+        let slot = if cotangent { &mut partials.cotangent } else { &mut partials.umbrella };
+        *slot = plus(*slot, partial);
     }
 }
 
@@ -253,29 +258,29 @@ mod tests {
     use crate::test_meshes::noise;
 
     type State = (VertexGeometry, VertexVectors);
-    type Slopes = (VertexPartials, VertexVectors);
+    type Partials = (VertexPartials, VertexVectors);
 
     fn evaluate(
         state: &State,
         form: usize,
         switches: u32,
         values: [f64; 2],
-    ) -> (Contribution, Slopes) {
+    ) -> (Contribution, Partials) {
         let mut term = Term::new("BendingForce", form, &values).unwrap();
         term.switches = switches;
         let (scalars, vectors) = ([state.0], [state.1]);
-        let mut slopes = ([VertexPartials::default()], [VertexVectors::default()]);
+        let mut partials = ([VertexPartials::default()], [VertexVectors::default()]);
         let run = Vertices::Plain {
             first: 0,
             total: 1,
             left_out: &[],
             scalars: &scalars,
             vectors: &vectors,
-            scalar_partials: &mut slopes.0,
-            vector_partials: &mut slopes.1,
+            scalar_partials: &mut partials.0,
+            vector_partials: &mut partials.1,
         };
         let sum = Bending.vertices(&term, run);
-        (sum, (slopes.0[0], slopes.1[0]))
+        (sum, (partials.0[0], partials.1[0]))
     }
 
     fn state() -> State {
@@ -365,14 +370,14 @@ mod tests {
         let (rigidities, spontaneous) = ([7.0, 2.0, 3.0], [9.0, 0.1, -0.2]);
         term.fields[..2].copy_from_slice(&[&rigidities, &spontaneous]);
         let scalars = [state().0; 2];
-        let mut slopes = [VertexPartials::default(); 2];
+        let mut partials = [VertexPartials::default(); 2];
         let run = Vertices::Plain {
             first: 1,
             total: 3,
             left_out: &[],
             scalars: &scalars,
             vectors: &[],
-            scalar_partials: &mut slopes,
+            scalar_partials: &mut partials,
             vector_partials: &mut [],
         };
         let sum = Bending.vertices(&term, run);

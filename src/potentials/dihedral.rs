@@ -146,7 +146,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn forms_have_their_energies_and_slopes() {
+    fn forms_have_their_energies_and_partials() {
         let expected: [fn(f64) -> f64; 5] = [
             |x| (1.0 - x.cos()).powi(2),
             |x| 1.0 - x.cos(),

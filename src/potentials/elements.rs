@@ -4,7 +4,7 @@
 //! with their sines and exponentials, take one number at a time.
 
 use super::{CONSTANTS, Constants, Needs, Term};
-use crate::mesh::geometry::VertexGeometry;
+use crate::mesh::geometry::{TrianglePartials, VertexGeometry};
 use crate::mesh::vertex_vectors::VertexVectors;
 use crate::real::Real;
 
@@ -32,15 +32,6 @@ impl<R: Real> Triangle<R> {
     pub fn length_squared(&self, k: usize) -> R {
         self.dots[k] + self.dots[(k + 1) % 3]
     }
-}
-
-/// Derivatives of the energy with respect to a triangle's area and, at fixed area, squared sides.
-#[derive(Clone, Copy)]
-pub struct TriangleSlopes<R> {
-    /// ∂E/∂a, kJ/mol/nm².
-    pub area: R,
-    /// ∂E/∂l², kJ/mol/nm².
-    pub length_squared: [R; 3],
 }
 
 /// What potentials may know of a vertex; fields are as in [`VertexGeometry`] and [`VertexVectors`]. The
@@ -119,7 +110,7 @@ impl<'a> Place<'a> {
     }
 }
 
-/// A formula for the energy of a triangle; adds to the slopes.
+/// A formula for the energy of a triangle; adds to the partials.
 pub trait TriangleFormula {
     /// Whether the energy and its derivatives vanish, in all lanes: the formula is not applied then.
     #[inline(always)]
@@ -132,7 +123,7 @@ pub trait TriangleFormula {
         &self,
         place: Place,
         triangle: &Triangle<R>,
-        slopes: &mut TriangleSlopes<R>,
+        partials: &mut TrianglePartials<R>,
     ) -> Sums<R>;
 }
 
@@ -143,13 +134,14 @@ pub trait EdgeFormula {
     fn apply(&self, edge: u32, angle: f64) -> (Sums<f64>, f64);
 }
 
-/// A formula for the energy of a vertex; adds to the slopes.
+/// A formula for the energy of a vertex; adds to the partials.
 pub trait VertexFormula {
     /// What it uses beyond the area: curvatures, vectors (which brings the Voronoi area), normals.
     const USES: Needs;
 
     /// Apply it.
-    fn apply<R: Real>(&self, place: Place, vertex: &Vertex<R>, slopes: &mut Vertex<R>) -> Sums<R>;
+    fn apply<R: Real>(&self, place: Place, vertex: &Vertex<R>, partials: &mut Vertex<R>)
+    -> Sums<R>;
 }
 
 impl Vertex<f64> {

@@ -10,10 +10,10 @@
 
 use super::{
     Constants, Contribution, Domain, Element, MadeOf, Needs, Parameter, Place, Potential, Sums,
-    Term, Triangle, TriangleFormula, TriangleSlopes, Triangles,
+    Term, Triangle, TriangleFormula, Triangles,
 };
 use crate::mesh::borders::{BorderPartials, BorderTotals};
-use crate::mesh::geometry::corner_angle;
+use crate::mesh::geometry::{TrianglePartials, corner_angle};
 use crate::real::Real;
 use std::f64::consts::TAU;
 
@@ -67,7 +67,7 @@ impl TriangleFormula for Angles {
         &self,
         place: Place,
         triangle: &Triangle<R>,
-        slopes: &mut TriangleSlopes<R>,
+        partials: &mut TrianglePartials<R>,
     ) -> Sums<R> {
         let [k0, k1, k2, share, ..] = place.constants(triangle.twice_area);
         let moduli = [k0, k1, k2];
@@ -77,12 +77,12 @@ impl TriangleFormula for Angles {
             energy = energy - moduli[k] * corner_angle(triangle.twice_area, triangle.dots[k]);
             let product = triangle.length_squared(k) * triangle.length_squared(last);
             let by_angle = moduli[k] / product;
-            slopes.area = slopes.area - by_angle * triangle.dots[k] * 2.0;
+            partials.area = partials.area - by_angle * triangle.dots[k] * 2.0;
             let by_length = by_angle * triangle.twice_area * 0.5;
-            let slopes = &mut slopes.length_squared;
-            slopes[k] = slopes[k] + by_length;
-            slopes[last] = slopes[last] + by_length;
-            slopes[next] = slopes[next] - by_length;
+            let partials = &mut partials.length_squared;
+            partials[k] = partials[k] + by_length;
+            partials[last] = partials[last] + by_length;
+            partials[next] = partials[next] - by_length;
         }
         Sums { energy, by_parameter: [energy.zero(); 2] }
     }

@@ -1,11 +1,11 @@
 //! Formulas over the tiles of the fast evaluator, in the lanes of the instruction set that the processor has.
 
 use super::{
-    Contribution, Needs, Place, Sums, Term, Triangle, TriangleFormula, TriangleSlopes, Vertex,
-    VertexFormula,
+    Contribution, Needs, Place, Sums, Term, Triangle, TriangleFormula, Vertex, VertexFormula,
 };
 use crate::lanes::tiles::{COUNTS, Column, TriangleTile, VertexColumns, VertexTile, load3};
 use crate::lanes::{BLOCK, Lane, Level, Records, WithLanes, dispatch};
+use crate::mesh::geometry::TrianglePartials;
 use crate::real::Real;
 
 impl TriangleTile {
@@ -100,7 +100,7 @@ impl VertexColumns {
     }
 }
 
-/// The slopes of the lanes that count, and others for the rest.
+/// The partials of the lanes that count, and others for the rest.
 #[inline(always)]
 fn chosen<S: Records>(
     counts: <Lane<S> as Real>::Mask,
@@ -182,17 +182,17 @@ impl<F: TriangleFormula> WithLanes for InLanes<'_, TriangleTile, F> {
                 continue;
             }
             tile.silent = false;
-            let mut slopes = TriangleSlopes {
+            let mut partials = TrianglePartials {
                 area: tile.by_area.load(simd, index),
                 length_squared: load3(simd, &tile.by_length_squared, index),
             };
             let place = Place::new(term, &ids[index..]);
-            let sums = formula.apply(place, &triangle, &mut slopes);
+            let sums = formula.apply(place, &triangle, &mut partials);
             tile.energies.add(simd, index, sums.energy);
             sum.add(sums, ids.len() - index);
-            tile.by_area.store(index, slopes.area);
+            tile.by_area.store(index, partials.area);
             for k in 0..3 {
-                tile.by_length_squared[k].store(index, slopes.length_squared[k]);
+                tile.by_length_squared[k].store(index, partials.length_squared[k]);
             }
         }
         sum.total()
@@ -208,10 +208,10 @@ impl<F: VertexFormula> WithLanes for InLanes<'_, VertexTile, F> {
         let mut sum = Accumulated::new(simd);
         for index in (0..ids.len()).step_by(Lane::<S>::COUNT) {
             let vertex = tile.known.load::<S, F>(simd, index);
-            let before = tile.slopes.load::<S, F>(simd, index);
-            let mut slopes = before;
+            let before = tile.partials.load::<S, F>(simd, index);
+            let mut partials = before;
             let place = Place::new(term, &ids[index..]);
-            let mut sums = formula.apply(place, &vertex, &mut slopes);
+            let mut sums = formula.apply(place, &vertex, &mut partials);
             let count = ids.len() - index;
             sum.add(sums, count);
             if count < Lane::<S>::COUNT {
@@ -221,10 +221,10 @@ impl<F: VertexFormula> WithLanes for InLanes<'_, VertexTile, F> {
                 let counts = unsafe { Lane::load(simd, COUNTS.as_ptr().add(BLOCK - count)) };
                 let counts = counts.above(zero);
                 sums.energy = sums.energy.or_else(counts, zero);
-                slopes = chosen(counts, slopes, before);
+                partials = chosen(counts, partials, before);
             }
             tile.energies.add(simd, index, sums.energy);
-            tile.slopes.store::<S, F>(index, slopes);
+            tile.partials.store::<S, F>(index, partials);
         }
         sum.total()
     }

@@ -10,8 +10,9 @@
 
 use super::{
     CONSTANTS, Constants, Contribution, Domain, MadeOf, Needs, Parameter, Place, Potential, Sums,
-    Term, Triangle, TriangleFormula, TriangleSlopes, Triangles,
+    Term, Triangle, TriangleFormula, Triangles,
 };
+use crate::mesh::geometry::TrianglePartials;
 use crate::real::Real;
 
 /// Tension of the line between domains.
@@ -62,7 +63,7 @@ impl TriangleFormula for Line {
         &self,
         place: Place,
         triangle: &Triangle<R>,
-        slopes: &mut TriangleSlopes<R>,
+        partials: &mut TrianglePartials<R>,
     ) -> Sums<R> {
         let [s0, s1, s2, of_medians, ..] = place.constants(triangle.twice_area);
         let shares = [s0, s1, s2];
@@ -78,10 +79,10 @@ impl TriangleFormula for Line {
             let median = (median * 0.25).sqrt();
             sum = of_medians.mul_add(median, sum);
             let by_median = of_medians * (0.125 * self.tension) / median;
-            let slopes = &mut slopes.length_squared;
-            slopes[k] = slopes[k] + by_length + by_median * 2.0;
-            slopes[last] = slopes[last] + by_median * 2.0;
-            slopes[next] = slopes[next] - by_median;
+            let partials = &mut partials.length_squared;
+            partials[k] = partials[k] + by_length + by_median * 2.0;
+            partials[last] = partials[last] + by_median * 2.0;
+            partials[next] = partials[next] - by_median;
         }
         Sums { energy: sum * self.tension, by_parameter: [sum, sum.zero()] }
     }

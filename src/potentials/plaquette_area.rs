@@ -51,9 +51,9 @@ impl VertexFormula for Plaquette {
     const USES: Needs = Needs::empty();
 
     #[inline(always)]
-    fn apply<R: Real>(&self, _: Place, vertex: &Vertex<R>, slopes: &mut Vertex<R>) -> Sums<R> {
+    fn apply<R: Real>(&self, _: Place, vertex: &Vertex<R>, partials: &mut Vertex<R>) -> Sums<R> {
         let strain = vertex.area * self.scale - 1.0;
-        slopes.area = slopes.area + strain * (self.stiffness * self.scale);
+        partials.area = partials.area + strain * (self.stiffness * self.scale);
         let half_square = strain * strain * 0.5;
         let by_target = strain * (strain + 1.0) * (-self.stiffness / self.target);
         Sums { energy: half_square * self.stiffness, by_parameter: [half_square, by_target] }

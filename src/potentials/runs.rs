@@ -1,8 +1,8 @@
 //! Runs of elements that formulas are applied to, each in three forms: the reference's, the lanes', and energies alone.
 
 use super::{
-    Constants, Contribution, EdgeFormula, Place, Sums, Term, Triangle, TriangleFormula,
-    TriangleSlopes, Vertex, VertexFormula,
+    Constants, Contribution, EdgeFormula, Place, Sums, Term, Triangle, TriangleFormula, Vertex,
+    VertexFormula,
 };
 use crate::lanes::tiles::{EdgeBlock, TriangleTile, VertexTile};
 use crate::lanes::{BLOCK, Level};
@@ -43,7 +43,7 @@ pub enum Triangles<'a> {
         level: Level,
         /// Indices in the mesh of the triangles that the tile starts with.
         ids: &'a [u32],
-        /// The triangles, and the slopes to be added to.
+        /// The triangles, and the partials to be added to.
         tile: &'a mut TriangleTile,
     },
 }
@@ -112,7 +112,7 @@ pub enum Vertices<'a> {
         total: usize,
         /// Indices in the mesh of the vertices that the tile starts with.
         ids: &'a [u32],
-        /// The vertices, and the slopes to be added to.
+        /// The vertices, and the partials to be added to.
         tile: &'a mut VertexTile,
     },
 }
@@ -154,7 +154,7 @@ impl Triangles<'_> {
                 {
                     let triangle = Triangle { twice_area: known.twice_area, dots: known.dots };
                     if !formula.vanishes(&triangle) {
-                        let mut unused = TriangleSlopes { area: 0.0, length_squared: [0.0; 3] };
+                        let mut unused = TrianglePartials { area: 0.0, length_squared: [0.0; 3] };
                         let place = Place::alone(term, id, constants.get(n));
                         *energy += formula.apply(place, &triangle, &mut unused).energy;
                     }
@@ -169,11 +169,7 @@ impl Triangles<'_> {
                     if formula.vanishes(&triangle) {
                         continue;
                     }
-                    let TrianglePartials { area, length_squared } = *partial;
-                    let mut slopes = TriangleSlopes { area, length_squared };
-                    sum.add(formula.apply(Place::new(term, ids), &triangle, &mut slopes));
-                    let TriangleSlopes { area, length_squared } = slopes;
-                    *partial = TrianglePartials { area, length_squared };
+                    sum.add(formula.apply(Place::new(term, ids), &triangle, partial));
                 }
                 sum
             }
@@ -290,7 +286,7 @@ impl Vertices<'_> {
                     }
                     let ids = &[(first + index) as u32];
                     let vertex = Vertex::plain(*known, vectors.get(index));
-                    let mut slopes = Vertex::plain(
+                    let mut partials = Vertex::plain(
                         VertexGeometry {
                             area: partial.area,
                             voronoi_area: partial.voronoi_area,
@@ -298,17 +294,17 @@ impl Vertices<'_> {
                         },
                         vector_partials.get(index),
                     );
-                    sum.add(formula.apply(Place::new(term, ids), &vertex, &mut slopes));
+                    sum.add(formula.apply(Place::new(term, ids), &vertex, &mut partials));
                     *partial = VertexPartials {
-                        area: slopes.area,
-                        voronoi_area: slopes.voronoi_area,
-                        curvature: slopes.curvature,
+                        area: partials.area,
+                        voronoi_area: partials.voronoi_area,
+                        curvature: partials.curvature,
                     };
                     if let Some(partial) = vector_partials.get_mut(index) {
                         *partial = VertexVectors {
-                            cotangent: slopes.cotangent.into(),
-                            umbrella: slopes.umbrella.into(),
-                            normal_sum: slopes.normal_sum.into(),
+                            cotangent: partials.cotangent.into(),
+                            umbrella: partials.umbrella.into(),
+                            normal_sum: partials.normal_sum.into(),
                         };
                     }
                 }

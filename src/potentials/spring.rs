@@ -21,9 +21,9 @@ use super::codes::SpringForm;
 use super::strain::excess;
 use super::{
     CONSTANTS, Constants, Contribution, Domain, MadeOf, Needs, Parameter, Place, Potential, Sums,
-    Term, Triangle, TriangleFormula, TriangleSlopes, Triangles,
+    Term, Triangle, TriangleFormula, Triangles,
 };
-use crate::mesh::geometry::TriangleGeometry;
+use crate::mesh::geometry::{TriangleGeometry, TrianglePartials};
 use crate::real::Real;
 use std::ffi::CStr;
 
@@ -166,7 +166,7 @@ impl<L: Law> TriangleFormula for Sides<L> {
         &self,
         place: Place,
         triangle: &Triangle<R>,
-        slopes: &mut TriangleSlopes<R>,
+        partials: &mut TrianglePartials<R>,
     ) -> Sums<R> {
         let [d0, d1, d2, w0, w1, w2, ..] = place.constants(triangle.twice_area);
         let (rest, shares) = ([d0, d1, d2], [w0, w1, w2]);
@@ -184,7 +184,7 @@ impl<L: Law> TriangleFormula for Sides<L> {
             by_stiffness = squared.mul_add(energy, by_stiffness);
             by_ratio = squared.mul_add(ratio, by_ratio);
             let by_length = slope * stretch * shares[k] * (0.5 * self.stiffness) / length;
-            slopes.length_squared[k] = slopes.length_squared[k] + by_length;
+            partials.length_squared[k] = partials.length_squared[k] + by_length;
         }
         let by_parameter = [by_stiffness, by_ratio * self.stiffness];
         Sums { energy: by_stiffness * self.stiffness, by_parameter }

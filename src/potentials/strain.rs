@@ -11,9 +11,8 @@
 
 use super::{
     CONSTANTS, Constants, Domain, MadeOf, Parameter, Place, Sums, Triangle, TriangleFormula,
-    TriangleSlopes,
 };
-use crate::mesh::geometry::TriangleGeometry;
+use crate::mesh::geometry::{TriangleGeometry, TrianglePartials};
 use crate::real::Real;
 
 /// Constants of a triangle: d⁰₀, d⁰₁, d⁰₂, its area at rest a⁰ and 1 / 2|N⁰|².
@@ -71,7 +70,7 @@ impl<L: Law> TriangleFormula for Elastic<L> {
         &self,
         place: Place,
         triangle: &Triangle<R>,
-        slopes: &mut TriangleSlopes<R>,
+        partials: &mut TrianglePartials<R>,
     ) -> Sums<R> {
         let [r0, r1, r2, area, inverse, ..] = place.constants(triangle.twice_area);
         let rest = [r0, r1, r2];
@@ -91,7 +90,7 @@ impl<L: Law> TriangleFormula for Elastic<L> {
         for k in 0..3 {
             let opposite = (k + 2) % 3;
             let slope = by_trace.mul_add(rest[opposite], by_determinant * excess[opposite]);
-            slopes.length_squared[k] = slopes.length_squared[k] + slope;
+            partials.length_squared[k] = partials.length_squared[k] + slope;
         }
         let [by_shear, by_area] = density.by_modulus;
         let by_parameter = [by_shear * area, by_area * area];

@@ -87,9 +87,9 @@ mod tests {
     fn the_weight_of_edges_has_exact_derivatives() {
         for tilt in [0.02, 0.07, 0.3] {
             let arms = [Vec3::new(1.0, 0.2, 0.1), Vec3::new(1.5, 0.3 + tilt, 0.15 - tilt)];
-            let (weight, slopes) = edge_weight(&arms[0], &arms[1]);
+            let (weight, partials) = edge_weight(&arms[0], &arms[1]);
             assert_eq!(weight == 1.0, tilt == 0.3);
-            for (place, slope) in slopes.iter().enumerate() {
+            for (place, slope) in partials.iter().enumerate() {
                 for axis in 0..3 {
                     let at = |h: f64| {
                         let mut moved = arms;

@@ -3,8 +3,9 @@
 
 use super::{
     Contribution, Domain, Element, Needs, Parameter, Place, Potential, Sums, Term, Triangle,
-    TriangleFormula, TriangleSlopes, Triangles, relative_spring,
+    TriangleFormula, Triangles, relative_spring,
 };
+use crate::mesh::geometry::TrianglePartials;
 use crate::real::Real;
 
 /// A spring on each triangle's area.
@@ -41,12 +42,12 @@ impl TriangleFormula for Spring {
         &self,
         place: Place,
         triangle: &Triangle<R>,
-        slopes: &mut TriangleSlopes<R>,
+        partials: &mut TrianglePartials<R>,
     ) -> Sums<R> {
         let area = triangle.area();
         let (modulus, target) = (place.value(0, area), place.value(1, area));
         let (sums, slope) = relative_spring(modulus, target, area);
-        slopes.area = slopes.area + slope;
+        partials.area = partials.area + slope;
         sums
     }
 }

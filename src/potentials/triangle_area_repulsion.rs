@@ -4,8 +4,9 @@
 
 use super::{
     Contribution, Domain, Needs, Parameter, Place, Potential, Sums, Term, Triangle,
-    TriangleFormula, TriangleSlopes, Triangles, repulsion,
+    TriangleFormula, Triangles, repulsion,
 };
+use crate::mesh::geometry::TrianglePartials;
 use crate::real::Real;
 
 /// A repulsion between the sides of a triangle that shrinks.
@@ -46,14 +47,14 @@ impl TriangleFormula for Repulsion {
         &self,
         _: Place,
         triangle: &Triangle<R>,
-        slopes: &mut TriangleSlopes<R>,
+        partials: &mut TrianglePartials<R>,
     ) -> Sums<R> {
         let area = triangle.area();
         let ratio = area.of(self.min_area) / area;
         let x = (ratio * ratio) * (ratio * ratio);
         let (square, by_x) = repulsion(x);
         let slope = by_x * x * (4.0 * self.epsilon);
-        slopes.area = slopes.area - slope / area;
+        partials.area = partials.area - slope / area;
         // With a_m = 0 there is no repulsion, and x is 0.
         let by_min_area = if self.min_area > 0.0 { slope * (1.0 / self.min_area) } else { x };
         Sums { energy: square * self.epsilon, by_parameter: [by_min_area, square] }

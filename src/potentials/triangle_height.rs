@@ -4,8 +4,9 @@
 
 use super::{
     Contribution, Domain, Needs, Parameter, Place, Potential, Sums, Term, Triangle,
-    TriangleFormula, TriangleSlopes, Triangles, repulsion,
+    TriangleFormula, Triangles, repulsion,
 };
+use crate::mesh::geometry::TrianglePartials;
 use crate::real::Real;
 
 /// A purely repulsive potential on the heights of triangles, of Weeks, Chandler and Andersen's kind.
@@ -56,7 +57,7 @@ impl TriangleFormula for Heights {
         &self,
         _: Place,
         triangle: &Triangle<R>,
-        slopes: &mut TriangleSlopes<R>,
+        partials: &mut TrianglePartials<R>,
     ) -> Sums<R> {
         let &Self { min_height, epsilon } = self;
         let four_areas = triangle.twice_area * triangle.twice_area;
@@ -74,9 +75,9 @@ impl TriangleFormula for Heights {
             squares = squares + square;
             slope_sum = slope_sum + slope;
             let by_length = slope * (2.0 * epsilon) / length_squared;
-            slopes.length_squared[side] = slopes.length_squared[side] + by_length;
+            partials.length_squared[side] = partials.length_squared[side] + by_length;
         }
-        slopes.area = slopes.area - slope_sum * (8.0 * epsilon) / triangle.twice_area;
+        partials.area = partials.area - slope_sum * (8.0 * epsilon) / triangle.twice_area;
         let by_height = slope_sum * (4.0 * epsilon / min_height);
         Sums { energy: squares * epsilon, by_parameter: [by_height, squares] }
     }

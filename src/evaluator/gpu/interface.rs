@@ -50,8 +50,8 @@ numbers! {
     PARAMETERS = MAX_PARAMETERS as u32;
     /// Constants that a triangle has in [`Binding::Constants`] for a term.
     CONSTANTS = crate::potentials::CONSTANTS as u32;
-    /// Numbers that a vertex has in [`Binding::VectorSlopes`].
-    SLOPES_PER_VERTEX = 9;
+    /// Numbers that a vertex has in [`Binding::VectorPartials`].
+    PARTIALS_PER_VERTEX = 9;
     /// Numbers that a triangle has in [`Binding::CornerForces`].
     FORCES_PER_TRIANGLE = 9;
     /// Half of the steps of the lattice across the widest part are 2 to this power: the sides of triangles stay below 2³⁰
@@ -290,9 +290,9 @@ bindings! {
     /// l², φ / l, and the bending moment per length of potentials of the angle.
     EdgeGeometry: "read_write" RealQuad;
     /// ∂E/∂ barycentric area, Voronoi area and curvature of each vertex.
-    VertexSlopes: "read_write" RealQuad;
+    VertexPartials: "read_write" RealQuad;
     /// ∂E/∂ cotangent vector, umbrella vector and normal sum.
-    VectorSlopes: "read_write" Real;
+    VectorPartials: "read_write" Real;
     CornerForces: "read_write" Real;
     /// `shaders/totals_*.wgsl` say what.
     Totals: "read_write" Total;

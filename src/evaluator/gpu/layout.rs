@@ -2,7 +2,7 @@
 
 use super::Precision;
 use super::frame::groups;
-use super::interface::{Binding, FORCES_PER_TRIANGLE, NO_CORNER, SLOPES_PER_VERTEX};
+use super::interface::{Binding, FORCES_PER_TRIANGLE, NO_CORNER, PARTIALS_PER_VERTEX};
 use crate::mesh::{NONE, Topology};
 use crate::potentials::Needs;
 use smallvec::SmallVec;
@@ -52,8 +52,8 @@ pub fn items(
             Precision::Double => (groups(t) + 3 + groups(e), always),
         },
         Binding::EdgeGeometry => (e, Needs::EDGES.union(Needs::CURVATURES)),
-        Binding::VertexSlopes => (v, Needs::VERTICES),
-        Binding::VectorSlopes => (SLOPES_PER_VERTEX as usize * v, Needs::VECTORS),
+        Binding::VertexPartials => (v, Needs::VERTICES),
+        Binding::VectorPartials => (PARTIALS_PER_VERTEX as usize * v, Needs::VECTORS),
         Binding::ThinTriangles => (1, always),
         Binding::Frame | Binding::Fields | Binding::Constants | Binding::Results => return None,
     })

@@ -64,13 +64,13 @@ pub struct Arrays {
     /// Bending moments per length for each step and lane, from potentials of angles; empty until needed.
     pub moments: Numbers,
     /// ½ ∂E/∂J and ⅙ ∂E/∂a_B of each vertex, so that the last pass need not multiply.
-    pub slopes: Numbers,
+    pub partials: Numbers,
     /// ∂E/∂S and ∂E/∂a_V of each vertex; empty until needed.
-    pub vector_slopes: Numbers,
+    pub vector_partials: Numbers,
     /// ∂E/∂U, with Espriu's vector U, and nothing; empty until needed.
-    pub umbrella_slopes: Numbers,
+    pub umbrella_partials: Numbers,
     /// ∂E/∂(sum of normals), and nothing; empty until needed.
-    pub normal_slopes: Numbers,
+    pub normal_partials: Numbers,
 }
 
 impl Arrays {
@@ -85,10 +85,10 @@ impl Arrays {
             bends: Numbers::new(0),
             lengths_squared: Numbers::new(0),
             moments: Numbers::new(0),
-            slopes: Numbers::new(2 * layout.places_of_vertices()),
-            vector_slopes: Numbers::new(0),
-            umbrella_slopes: Numbers::new(0),
-            normal_slopes: Numbers::new(0),
+            partials: Numbers::new(2 * layout.places_of_vertices()),
+            vector_partials: Numbers::new(0),
+            umbrella_partials: Numbers::new(0),
+            normal_partials: Numbers::new(0),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The last pass: round the rings again, from slopes to forces.
+//! The last pass: round the rings again, from partials to forces.
 
 use super::arrays::Arrays;
 use super::forward::{CONSECUTIVE, NORMALS, VECTORS, VORONOI};
@@ -63,7 +63,7 @@ struct Arm<S: Records> {
 /// What all arms of a vertex start from.
 struct Centre<S: Records> {
     position: [Lane<S>; 3],
-    slopes: [Lane<S>; 2],
+    partials: [Lane<S>; 2],
     vector: [Lane<S>; 4],
     umbrella: [Lane<S>; 3],
     normal: [Lane<S>; 3],
@@ -78,24 +78,24 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: 
     unsafe fn centre<S: Records>(&self, simd: S, first: usize) -> Centre<S> {
         let (arrays, zero) = (self.arrays, Lane::splat(simd, 0.0));
         let offsets = CONSECUTIVE.as_ptr();
-        // SAFETY: positions and slopes have whole blocks; the vectors' slopes exist if they are wanted.
+        // SAFETY: positions and partials have whole blocks; the vectors' partials exist if they are wanted.
         unsafe {
             let mut centre = Centre {
                 position: Lane::gather3(simd, arrays.positions.at(4 * first), offsets),
-                slopes: Lane::gather2::<2>(simd, arrays.slopes.at(2 * first), offsets),
+                partials: Lane::gather2::<2>(simd, arrays.partials.at(2 * first), offsets),
                 vector: [zero; 4],
                 umbrella: [zero; 3],
                 normal: [zero; 3],
             };
             if LEVEL >= VORONOI {
-                centre.vector = Lane::gather4(simd, arrays.vector_slopes.at(4 * first), offsets);
+                centre.vector = Lane::gather4(simd, arrays.vector_partials.at(4 * first), offsets);
             }
             if LEVEL >= VECTORS {
                 centre.umbrella =
-                    Lane::gather3(simd, arrays.umbrella_slopes.at(4 * first), offsets);
+                    Lane::gather3(simd, arrays.umbrella_partials.at(4 * first), offsets);
             }
             if LEVEL >= NORMALS {
-                centre.normal = Lane::gather3(simd, arrays.normal_slopes.at(4 * first), offsets);
+                centre.normal = Lane::gather3(simd, arrays.normal_partials.at(4 * first), offsets);
             }
             centre
         }
@@ -110,7 +110,7 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: 
         unsafe {
             let e = minus(Lane::gather3(simd, arrays.positions.at(0), offsets), centre.position);
             let length_squared = dot(e, e);
-            let [by_curvature, by_area] = Lane::gather2::<2>(simd, arrays.slopes.at(0), offsets);
+            let [by_curvature, by_area] = Lane::gather2::<2>(simd, arrays.partials.at(0), offsets);
             let mut arm = Arm {
                 e,
                 length_squared,
@@ -123,18 +123,18 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: 
                 by_cotangent: zero,
             };
             if LEVEL >= VORONOI {
-                let [x, y, z, voronoi] = Lane::gather4(simd, arrays.vector_slopes.at(0), offsets);
+                let [x, y, z, voronoi] = Lane::gather4(simd, arrays.vector_partials.at(0), offsets);
                 let [gx, gy, gz, own] = centre.vector;
                 arm.voronoi = own + voronoi;
                 arm.by_cotangent = (arm.voronoi * length_squared) * 0.125;
                 if LEVEL >= VECTORS {
                     arm.g = minus([gx, gy, gz], [x, y, z]);
-                    arm.umbrella = Lane::gather3(simd, arrays.umbrella_slopes.at(0), offsets);
+                    arm.umbrella = Lane::gather3(simd, arrays.umbrella_partials.at(0), offsets);
                     arm.by_cotangent = dot(arm.g, e).neg_mul_add(zero.of(0.5), arm.by_cotangent);
                 }
             }
             if LEVEL >= NORMALS {
-                arm.normal = Lane::gather3(simd, arrays.normal_slopes.at(0), offsets);
+                arm.normal = Lane::gather3(simd, arrays.normal_partials.at(0), offsets);
             }
             arm
         }
@@ -148,7 +148,7 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: 
     unsafe fn moment<S: Records>(&self, centre: &Centre<S>, arm: &Arm<S>, index: usize) -> Lane<S> {
         // SAFETY: there are moments for each step and lane.
         let own = unsafe { Lane::load(centre.position[0].simd(), self.arrays.moments.at(index)) };
-        centre.slopes[0] + arm.by_curvature + own
+        centre.partials[0] + arm.by_curvature + own
     }
 }
 
@@ -172,7 +172,7 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: 
             let centre = unsafe { self.centre(simd, first) };
             let neighbours = layout.neighbours.as_ptr().cast::<u32>().wrapping_add(lane);
             let places = layout.places.as_ptr().cast::<u32>().wrapping_add(lane);
-            let [own_curvature, own_area] = centre.slopes;
+            let [own_curvature, own_area] = centre.partials;
             let constant_area = own_area + by_total_area;
             let mut force = [zero; 3];
             // The tension along the present arm from the triangle before it.

@@ -85,11 +85,11 @@ impl<const BENDS: bool, const LEVEL: u8> WithLanes for Forward<'_, BENDS, LEVEL>
                     // from this vertex to the neighbour before; both sides are divided by |N||M| here.
                     let cosine = dot(n, last_normal);
                     let depth = dot(n, last_arm);
-                    let slope = (zero - depth) / last_twice.mul_add(cosine, last_twice);
+                    let tangent = (zero - depth) / last_twice.mul_add(cosine, last_twice);
                     flattest = flattest.min(cosine.or_else(exists, zero.of(1.0)));
                     unsafe {
-                        let [slopes, lengths] = &mut *ring.add(step - steps.start);
-                        slope.store(slopes.as_mut_ptr());
+                        let [tangents, lengths] = &mut *ring.add(step - steps.start);
+                        tangent.store(tangents.as_mut_ptr());
                         length_squared.store(lengths.as_mut_ptr());
                     }
                     last_normal = n;
@@ -131,14 +131,14 @@ impl<const BENDS: bool, const LEVEL: u8> WithLanes for Forward<'_, BENDS, LEVEL>
                 for step in steps.clone() {
                     let at = step * BLOCK + lane;
                     unsafe {
-                        let [slopes, lengths] = &*ring.add(step - steps.start);
-                        let slope = Lane::load(simd, slopes.as_ptr());
+                        let [tangents, lengths] = &*ring.add(step - steps.start);
+                        let tangent = Lane::load(simd, tangents.as_ptr());
                         let length_squared = Lane::load(simd, lengths.as_ptr());
                         if lengths_wanted {
                             length_squared.store(arrays.lengths_squared.at(at));
                         }
-                        let angle_part = arctan_over_argument(length_squared * (slope * slope));
-                        let bend = (slope + slope) * angle_part;
+                        let angle_part = arctan_over_argument(length_squared * (tangent * tangent));
+                        let bend = (tangent + tangent) * angle_part;
                         bend.store(arrays.bends.at(at));
                         curvature = length_squared.mul_add(bend, curvature);
                     }
@@ -215,43 +215,43 @@ impl Ring<'_> {
     }
 }
 
-/// The slopes of a tile of vertices, from its columns to records that the neighbours will gather.
+/// The partials of a tile of vertices, from its columns to records that the neighbours will gather.
 ///
 /// Writes the records of the tile, as the only one, while nobody reads them.
-pub struct Slopes<'a, const LEVEL: u8> {
+pub struct Partials<'a, const LEVEL: u8> {
     pub layout: &'a Layout,
     pub arrays: &'a Arrays,
     pub index: usize,
     pub tile: &'a VertexTile,
 }
 
-impl<const LEVEL: u8> WithLanes for Slopes<'_, LEVEL> {
+impl<const LEVEL: u8> WithLanes for Partials<'_, LEVEL> {
     type Output = ();
 
     #[inline(always)]
     fn with_lanes<S: Records>(self, simd: S) {
-        let slopes = &self.tile.slopes;
+        let partials = &self.tile.partials;
         for first in self.layout.vertex_tile(self.index).step_by(Lane::<S>::COUNT) {
             let index = first % TILE;
             // SAFETY: the records of vertices have whole blocks.
             unsafe {
-                let curvature = slopes.curvature.load(simd, index) * 0.5;
-                let pair = [curvature, slopes.area.load(simd, index) * (1.0 / 6.0)];
-                Lane::store2(self.arrays.slopes.at(2 * first), pair);
+                let curvature = partials.curvature.load(simd, index) * 0.5;
+                let pair = [curvature, partials.area.load(simd, index) * (1.0 / 6.0)];
+                Lane::store2(self.arrays.partials.at(2 * first), pair);
                 if LEVEL >= VORONOI {
-                    let voronoi = slopes.voronoi_area.load(simd, index);
+                    let voronoi = partials.voronoi_area.load(simd, index);
                     let mut vector = [Lane::splat(simd, 0.0); 3];
                     if LEVEL >= VECTORS {
-                        vector = load3(simd, &slopes.cotangent, index);
-                        let [x, y, z] = load3(simd, &slopes.umbrella, index);
-                        Lane::store4(self.arrays.umbrella_slopes.at(4 * first), [x, y, z, z]);
+                        vector = load3(simd, &partials.cotangent, index);
+                        let [x, y, z] = load3(simd, &partials.umbrella, index);
+                        Lane::store4(self.arrays.umbrella_partials.at(4 * first), [x, y, z, z]);
                     }
                     let [x, y, z] = vector;
-                    Lane::store4(self.arrays.vector_slopes.at(4 * first), [x, y, z, voronoi]);
+                    Lane::store4(self.arrays.vector_partials.at(4 * first), [x, y, z, voronoi]);
                 }
                 if LEVEL >= NORMALS {
-                    let [x, y, z] = load3(simd, &slopes.normal_sum, index);
-                    Lane::store4(self.arrays.normal_slopes.at(4 * first), [x, y, z, z]);
+                    let [x, y, z] = load3(simd, &partials.normal_sum, index);
+                    Lane::store4(self.arrays.normal_partials.at(4 * first), [x, y, z, z]);
                 }
             }
         }

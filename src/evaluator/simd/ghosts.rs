@@ -53,8 +53,8 @@ impl Ghosts {
         4 * (behind + place)
     }
 
-    /// Give the ghosts what neighbours gather: the slopes of their vertices.
-    pub fn copy_slopes(&self, arrays: &Arrays, needs: Needs, behind: usize) {
+    /// Give the ghosts what neighbours gather: the partials of their vertices.
+    pub fn copy_partials(&self, arrays: &Arrays, needs: Needs, behind: usize) {
         let copy = |numbers: &Numbers, width: usize| {
             for (place, &(vertex, _)) in self.ghosts.iter().enumerate() {
                 let (from, to) = (width * vertex as usize, width * (behind + place));
@@ -62,15 +62,15 @@ impl Ghosts {
                 unsafe { numbers.at(from).copy_to_nonoverlapping(numbers.at(to), width) };
             }
         };
-        copy(&arrays.slopes, 2);
+        copy(&arrays.partials, 2);
         if needs.contains(Needs::VECTORS) {
-            copy(&arrays.vector_slopes, 4);
+            copy(&arrays.vector_partials, 4);
         }
         if needs.contains(Needs::CURVATURE_VECTORS) {
-            copy(&arrays.umbrella_slopes, 4);
+            copy(&arrays.umbrella_partials, 4);
         }
         if needs.contains(Needs::NORMALS) {
-            copy(&arrays.normal_slopes, 4);
+            copy(&arrays.normal_partials, 4);
         }
     }
 }

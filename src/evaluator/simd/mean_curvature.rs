@@ -1,6 +1,6 @@
 //! What an energy of the total mean curvature does, between and after the passes.
 //!
-//! The total is half the sum of the vertices' curvatures, so that its slope is a part of theirs. Along the edges that is
+//! The total is half the sum of the vertices' curvatures, so that its derivative is a part of theirs. Along the edges that is
 //! all: moments that are the same at all sides of a triangle have no force (L. Schläfli's formula, Σ l dφ = 0).
 
 use super::arrays::Arrays;
@@ -9,16 +9,16 @@ use crate::lanes::BLOCK;
 use crate::mesh::geometry::{EdgeTension, TotalPartials, TriangleGeometry, Vec3, corner_forces};
 use std::ops::Range;
 
-/// Add it to the slopes of some vertices and ghosts.
+/// Add it to the partials of some vertices and ghosts.
 ///
 /// # Safety
-/// Nobody else reads or writes these slopes meanwhile.
+/// Nobody else reads or writes these partials meanwhile.
 pub unsafe fn add_mean_curvature(arrays: &Arrays, places: Range<usize>, totals: &TotalPartials) {
-    // Slopes are kept as ½ ∂E/∂J, and ∂M/∂J = ½.
+    // Partials are kept as ½ ∂E/∂J, and ∂M/∂J = ½.
     let part = 0.25 * totals.mean_curvature;
     for place in places {
-        // SAFETY: there are slopes for all places; the rest the caller promises.
-        unsafe { *arrays.slopes.at(2 * place) += part };
+        // SAFETY: there are partials for all places; the rest the caller promises.
+        unsafe { *arrays.partials.at(2 * place) += part };
     }
 }
 

@@ -56,8 +56,8 @@ pub struct SimdEvaluator {
     curvature_sums: Vec<f64>,
     /// For each tile of triangles, then of vertices, a contribution for each term.
     contributions: Vec<Contribution>,
-    /// Whether there are slopes of vertices from an earlier evaluation.
-    has_slopes: bool,
+    /// Whether there are partials of vertices from an earlier evaluation.
+    has_partials: bool,
     /// How many particles there must be at least.
     particles: usize,
 }
@@ -79,7 +79,7 @@ impl SimdEvaluator {
             team: None,
             sharing: Sharing::new(),
             scratch: Vec::new(),
-            has_slopes: false,
+            has_partials: false,
         };
         evaluator.set_threads(1);
         evaluator
@@ -196,7 +196,7 @@ impl SimdEvaluator {
         }
         if let Some(forces) = forces {
             let (layout, arrays, level) = (&self.layout, &self.arrays, self.level);
-            layout.ghosts.copy_slopes(arrays, needs, layout.vertex_ids.len());
+            layout.ghosts.copy_partials(arrays, needs, layout.vertex_ids.len());
             let needs = if silent { needs - Needs::TRIANGLES } else { needs };
             let (totals, into) = (&total_partials, Forces(forces.as_mut_ptr()));
             team.run(|member| {
@@ -228,7 +228,7 @@ impl SimdEvaluator {
         let (vertices, triangles) = (layout.places_of_vertices(), layout.triangle_ids.len());
         let steps = BLOCK * layout.neighbours.len();
         arrays.positions.require(4 * vertices, 0.0);
-        arrays.slopes.require(2 * vertices, 0.0);
+        arrays.partials.require(2 * vertices, 0.0);
         if needs.intersects(Needs::EDGES | Needs::CURVATURES) {
             arrays.bends.require(steps, 0.0);
         }
@@ -241,23 +241,23 @@ impl SimdEvaluator {
             arrays.tensions.require(4 * (triangles + 1), 0.0);
         }
         if needs.contains(Needs::VECTORS) {
-            arrays.vector_slopes.require(4 * vertices, 0.0);
+            arrays.vector_partials.require(4 * vertices, 0.0);
         }
         if needs.contains(Needs::CURVATURE_VECTORS) {
-            arrays.umbrella_slopes.require(4 * vertices, 0.0);
+            arrays.umbrella_partials.require(4 * vertices, 0.0);
         }
         if needs.contains(Needs::NORMALS) {
-            arrays.normal_slopes.require(4 * vertices, 0.0);
+            arrays.normal_partials.require(4 * vertices, 0.0);
             arrays.angles.require(4 * (triangles + 1), 0.0);
             arrays.next_angles.require(4 * (triangles + 1), 0.0);
         }
-        if self.has_slopes && !needs.contains(Needs::VERTICES) {
+        if self.has_partials && !needs.contains(Needs::VERTICES) {
             for index in 0..2 * vertices {
                 // SAFETY: `&mut self`, and the index is within.
-                unsafe { *arrays.slopes.at(index) = 0.0 };
+                unsafe { *arrays.partials.at(index) = 0.0 };
             }
         }
-        self.has_slopes = needs.intersects(Needs::VERTICES | Needs::MEAN_CURVATURE);
+        self.has_partials = needs.intersects(Needs::VERTICES | Needs::MEAN_CURVATURE);
         let tiles = layout.triangle_tiles() + layout.vertex_tiles();
         self.contributions.resize(tiles * terms, Contribution::default());
     }

@@ -191,7 +191,7 @@ impl Sweep<'_, '_> {
         let potentials = needs.contains(Needs::VERTICES);
         let range = layout.vertex_tile(index);
         if potentials {
-            tile.slopes.clear(needs, range.len());
+            tile.partials.clear(needs, range.len());
         }
         let ids = &layout.vertex_ids[range];
         let inner = &ids[..layout.inner[index] as usize];
@@ -208,17 +208,17 @@ impl Sweep<'_, '_> {
         if !potentials {
             return;
         }
-        macro_rules! slopes {
+        macro_rules! partials {
             ($vectors:expr) => {{
-                type Pass<'a> = forward::Slopes<'a, { $vectors }>;
+                type Pass<'a> = forward::Partials<'a, { $vectors }>;
                 dispatch(level, Pass { layout, arrays, index, tile })
             }};
         }
         match vector_level(needs) {
-            0 => slopes!(0),
-            VORONOI => slopes!(VORONOI),
-            VECTORS => slopes!(VECTORS),
-            _ => slopes!(NORMALS),
+            0 => partials!(0),
+            VORONOI => partials!(VORONOI),
+            VECTORS => partials!(VECTORS),
+            _ => partials!(NORMALS),
         }
     }
 

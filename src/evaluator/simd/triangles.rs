@@ -126,7 +126,7 @@ impl<const POTENTIALS: bool, const ANGLES: bool> WithLanes for Forward<'_, POTEN
     }
 }
 
-/// The tensions along the sides of a tile of triangles, from the slopes that its potentials found.
+/// The tensions along the sides of a tile of triangles, from the partials that its potentials found.
 ///
 /// Writes the tile's tensions, under the same condition as [`Forward`] its normals.
 pub struct Tensions<'a> {
