@@ -148,11 +148,55 @@ class TestSeries:
         with pytest.raises(ValueError, match=rf"a{suffix} is no .* file of .*, or is damaged"):
             SERIES[suffix](path).steps()
 
-    def test_another_surface_is_refused(self, tmp_path):
-        series = GSDSeries(tmp_path / "a.gsd")
+    @ALL
+    @pytest.mark.parametrize("again", [False, True])
+    def test_another_surface_is_refused(self, tmp_path, suffix, again):
+        path = tmp_path / f"a{suffix}"
+        series = SERIES[suffix](path)
         series.add(frames_of(1))
+        if again:
+            series = SERIES[suffix](path)
+        before = path.read_bytes()
         with pytest.raises(ValueError, match="have 132 vertices, not 92; give another file"):
             series.add(frames_of(1, helfrich.Mesh.random_sphere(92, 400)))
+        assert path.read_bytes() == before
+
+    @pytest.mark.parametrize(
+        "text",
+        [
+            b"my notes",
+            b"my notes\nof today",
+            b"12\nof today",
+            b"0\nstep=3\n",
+            b"-5\nstep=3\n",
+            b"900\nstep=3\nX 0 0 0\n",
+            b'900\nProperties=species:S:1:pos:R:3 step=3 pbc="F F F"\nX 0 0 0\n',
+        ],
+    )
+    def test_text_of_something_else_is_left_as_it_is(self, tmp_path, text):
+        path = tmp_path / "a.xyz"
+        path.write_bytes(text)
+        with pytest.raises(ValueError, match=r"a\.xyz is no extended XYZ file of this package"):
+            ExtendedXYZSeries(path).add(frames_of(1))
+        assert path.read_bytes() == text
+
+    def test_gsd_of_another_program_is_left_as_it_is(self, tmp_path):
+        import gsd.hoomd
+
+        path = tmp_path / "a.gsd"
+        with gsd.hoomd.open(path, "w") as file:
+            for step in (0, 5, 10):
+                frame = gsd.hoomd.Frame()
+                frame.configuration.step = step
+                frame.particles.N = MESH.num_vertices
+                frame.particles.position = MESH.vertices
+                file.append(frame)
+        before = path.read_bytes()
+        for act in (lambda s: s.cut(1), lambda s: s.add(frames_of(1)), lambda s: s.steps()):
+            with pytest.raises(ValueError, match="a GSD file of another program, which is left"):
+                act(GSDSeries(path))
+        assert path.read_bytes() == before
+        assert len(analysis.read_gsd(path)) == 3
 
 
 @ALL
