@@ -54,6 +54,18 @@ def table(result):
 
 
 class TestTrajectory:
+    def test_names_need_not_be_ascii(self, fluid, tmp_path):
+        folder = tmp_path / "zellen ü 細胞"
+        folder.mkdir()
+        for suffix in (".xtc", ".triangles"):
+            (folder / f"läuft{suffix}").write_bytes((fluid / f"run{suffix}").read_bytes())
+        found, known = (
+            analysis.Trajectory(path) for path in (folder / "läuft.xtc", fluid / "run.xtc")
+        )
+        assert np.array_equal(found.read(), known.read())
+        assert np.array_equal(found.steps(), known.steps())
+        assert np.array_equal(found.triangles(), known.triangles())
+
     def test_has_the_triangles_of_its_frames(self, fluid):
         _, expected = meshes(fluid, "fluid")
         found = analysis.Trajectory(fluid / "run.xtc").triangles()
