@@ -14,7 +14,7 @@ from ._mesh.periodic import unfolded
 from ._numbers import whole_number
 from ._present import present_box, present_triangles
 from ._types import File
-from .analysis._arrays import triangles_of
+from ._values import triangles as indices_of
 from .analysis.tables import open_table
 
 __all__ = ["NextReport", "SurfaceReporter", "TableReporter"]
@@ -58,9 +58,14 @@ class SurfaceReporter:
         self._interval = whole_number(reportInterval, name, "reportInterval", 1)
         offset = whole_number(offset, name, "offset", 0)
         self._file, self._append, self._begun = file, append, False
-        corners = np.asarray(getattr(triangles, "triangles", triangles))
-        highest = corners.max(initial=0) if corners.dtype.kind in "iu" else 0
-        self._corners = triangles_of(corners, int(highest) + 1) + offset
+        corners = indices_of(name, triangles).astype(np.intp)
+        if len(corners) == 0 or corners.min() < 0:
+            wrong = f"one has the index {corners.min()}" if len(corners) else "there are none"
+            raise ValueError(
+                f"{name}: triangles: {wrong}; give the Mesh, or particle indices of shape "
+                "(num_triangles, 3)"
+            )
+        self._corners = corners + offset
         # Vertices in ascending order of particle index, as in the forces.
         self._particles = np.unique(self._corners)
 

@@ -275,6 +275,26 @@ class TestReporters:
                 r"offset .*1\.5",
             ),
             (lambda m, p: MembraneReporter(p / "m.csv", 1, [[0, 1]]), ValueError, "shape"),
+            (
+                lambda m, p: MembraneReporter(p / "m.csv", 1, Vesicle(m)),
+                ValueError,
+                "^MembraneReporter: triangles must have shape",
+            ),
+            (
+                lambda m, p: MembraneReporter(p / "m.csv", 1, [[0, 1], [0, 1, 2]]),
+                ValueError,
+                "^MembraneReporter: triangles .*unequal length",
+            ),
+            (
+                lambda m, p: MembraneReporter(p / "m.csv", 1, []),
+                ValueError,
+                "^MembraneReporter: triangles: there are none; give the Mesh",
+            ),
+            (
+                lambda m, p: MembraneReporter(p / "m.csv", 1, m.triangles - 1, offset=1),
+                ValueError,
+                "^MembraneReporter: triangles: one has the index -1",
+            ),
             (lambda m, p: ModeReporter(p / "m.txt", 1, m, 2), ValueError, "suffix"),
             (lambda m, p: ModeReporter(p / "m.csv", 1, m, 2, offset=1), ValueError, "particle 92"),
             (lambda m, p: ModeReporter(p / "m.csv", 1, m, 2, "sum"), ValueError, "quadrature"),
