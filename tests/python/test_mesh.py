@@ -424,7 +424,7 @@ def test_the_reduced_volume_that_a_mesh_has_leaves_its_shape(shape):
         for target in (mesh.reduced_volume, np.nextafter(mesh.reduced_volume, 2)):
             assert np.array_equal(getattr(mesh, shape)(target).vertices, mesh.vertices)
     above = mesh.reduced_volume * (1 + 1e-9)
-    with pytest.raises(MeshError, match="at most ([0-9.]+), that of the mesh") as refused:
+    with pytest.raises(MeshError, match=r"at most .*, that of the mesh") as refused:
         getattr(mesh, shape)(above)
     # The limit that the message names will do.
     limit = float(str(refused.value).split("at most ")[1].split(",")[0])
