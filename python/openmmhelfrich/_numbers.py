@@ -26,6 +26,7 @@ __all__ = [
     "not_negative",
     "positive",
     "positive_number",
+    "values_in",
     "whole_number",
 ]
 
@@ -90,6 +91,26 @@ def finite_array(values, where: str, name: str) -> Array:
         index = f"[{', '.join(map(str, place))}]" if place else ""
         raise ValueError(f"{where}: {name}{index} is {array[place]}; leave out what is not finite")
     return array
+
+
+def values_in(dimension, values, where: str, name: str) -> Array:
+    """Numbers, or a Quantity of them, as an array of floats in a unit.
+
+    Raises
+    ------
+    TypeError
+        Something else than numbers, or a Quantity of another dimension.
+    """
+    if _is_quantity(values):
+        if not values.unit.is_compatible(dimension):
+            raise TypeError(f"{where}: {name} needs the unit {dimension}, got {values.unit}")
+        values = values.value_in_unit(dimension)
+    try:
+        return np.asarray(values, dtype=float)
+    except (TypeError, ValueError):
+        raise TypeError(
+            f"{where}: {name} needs numbers, or a Quantity of them, got {values!r}"
+        ) from None
 
 
 def positive(name, value):

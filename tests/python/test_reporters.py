@@ -340,6 +340,11 @@ class TestReporters:
                 simulation.step(2)
             assert path.read_text() == text
 
+    def test_the_mark_of_programs_for_tables_is_no_part_of_a_name(self, tmp_path):
+        path = tmp_path / "saved.csv"
+        path.write_text("step,time (ps)\n1,2\n", encoding="utf-8-sig")
+        assert list(analysis.read_table(path)) == ["step", "time"]
+
     def test_bad_files_are_named(self, tmp_path):
         bad = tmp_path / "bad.csv"
         for text, culprit in (
@@ -352,6 +357,22 @@ class TestReporters:
             bad.write_text(text)
             with pytest.raises(ValueError, match=culprit):
                 analysis.read_table(bad)
+        bad.write_bytes(b"step,time (ps)\n1,\xff\n")
+        with pytest.raises(ValueError, match=r"read_table: .*bad\.csv is no text of a reporter"):
+            analysis.read_table(bad)
+        h5py = pytest.importorskip("h5py")
+        for number, shape in enumerate([(2, 3), (2,), None]):
+            path = tmp_path / f"{number}.h5"
+            with h5py.File(path, "w") as file:
+                file.attrs["columns"] = ["step", "time"]
+                if shape:
+                    file["rows"] = np.zeros(shape)
+            with pytest.raises(ValueError, match=rf"{number}\.h5 has no rows of a reporter"):
+                analysis.read_table(path)
+            path.write_bytes(b"mine")
+            with pytest.raises(ValueError, match=rf"{number}\.h5 is no HDF5 file, or is damaged"):
+                analysis.read_table(path)
+            assert path.read_bytes() == b"mine"
         bad.write_text("step,time (ps),u_0_0,u_1_0\n1,2,3,4\n")
         with pytest.raises(ValueError, match="no columns"):
             analysis.read_modes(bad)

@@ -113,11 +113,15 @@ def read_table(path: File) -> dict[str, Array]:
     if path.suffix.lower() in _HDF5:
         with _open_hdf5(path) as file:
             names = list(file.attrs.get("columns", []))
-            if not names or "rows" not in file:
+            rows = np.array(file.get("rows", 0.0))
+            if rows.ndim != 2 or rows.shape[1] != len(set(names)):
                 raise ValueError(f"read_table: {path} has no rows of a reporter")
-            rows = np.array(file["rows"])
         return dict(zip(names, rows.T, strict=True))
-    text = path.read_text(encoding="utf-8")
+    try:
+        # Programs for tables put a mark in front, which is no part of the first name.
+        text = path.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError as reason:
+        raise ValueError(f"read_table: {path} is no text of a reporter ({reason})") from None
     lines = text[: text.rfind("\n") + 1].splitlines()
     if not lines:
         raise ValueError(f"read_table: {path} has no header")
@@ -148,11 +152,15 @@ def _names(header: list[str]) -> list[str]:
 
 def _open_hdf5(path):
     """The file, of a table, made whole if a kill in the middle of a row has left it in parts."""
+    h5py = import_h5py(_INSTEAD)
     try:
-        return import_h5py(_INSTEAD).File(path, "r")
+        return h5py.File(path, "r")
     except OSError:
         JournaledFile(path).recover()
-        return import_h5py(_INSTEAD).File(path, "r")
+    try:
+        return h5py.File(path, "r")
+    except OSError as reason:
+        raise ValueError(f"read_table: {path} is no HDF5 file, or is damaged ({reason})") from None
 
 
 def open_table(path: File, columns: Any, append: bool) -> Any:
