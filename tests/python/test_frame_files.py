@@ -53,6 +53,20 @@ def contents(path):
             for frame in analysis.read_gsd(path)]  # fmt: skip
 
 
+def fail_to_write(patch, suffix):
+    """Let the disk be full."""
+
+    def full(*arguments):
+        raise OSError(28, "No space left on device")
+
+    if suffix == ".gsd":
+        import gsd.hoomd
+
+        patch.setattr(gsd.hoomd.HOOMDTrajectory, "append", full)
+    else:
+        patch.setattr("os.fsync", full)
+
+
 class TestSeries:
     @ALL
     @pytest.mark.parametrize("again", [False, True])
@@ -139,6 +153,21 @@ class TestSeries:
             for n in range(known)
         ]
         written_at_once(tmp_path / f"b{suffix}", expected)
+        assert contents(path) == contents(tmp_path / f"b{suffix}")
+
+    @ALL
+    @pytest.mark.parametrize("written", [0, 2])
+    def test_what_failed_is_written_the_next_time(self, tmp_path, suffix, written, monkeypatch):
+        path, frames = tmp_path / f"a{suffix}", frames_of(5)
+        series = SERIES[suffix](path)
+        for frame in frames[:written]:
+            series.add([frame])
+        with monkeypatch.context() as patch, pytest.raises(OSError, match="free some space"):
+            fail_to_write(patch, suffix)
+            series.add([frames[written]])
+        for frame in frames[written:]:
+            series.add([frame])
+        written_at_once(tmp_path / f"b{suffix}", frames)
         assert contents(path) == contents(tmp_path / f"b{suffix}")
 
     @ALL

@@ -44,8 +44,6 @@ class FrameFile(GrowingFile):
         """
         with naming(self.path):
             self._add(frames)
-            with self.path.open("rb") as written:
-                os.fsync(written.fileno())
 
     def steps(self) -> np.ndarray:
         """The step of the simulation of each frame, shape (num_frames,).
@@ -61,7 +59,7 @@ class FrameFile(GrowingFile):
 
     @abstractmethod
     def _add(self, frames: Iterable[SurfaceFrame]) -> None:
-        """Add frames to the file, or make it with them."""
+        """Add frames to the file, or make it with them, and bring them on the disk."""
 
     @abstractmethod
     def _steps(self) -> list[int]:
@@ -106,9 +104,16 @@ class GSDSeries(FrameFile):
         if new:
             self._frames = None
         mode = "w" if new else "r+"
-        with _readable(self.path), self._hoomd.open(name=str(self.path), mode=mode) as file:
-            for frame in frames:
-                file.append(self._next(file, frame))
+        try:
+            with _readable(self.path), self._hoomd.open(name=str(self.path), mode=mode) as file:
+                for frame in frames:
+                    file.append(self._next(file, frame))
+            with self.path.open("rb") as written:
+                os.fsync(written.fileno())
+        except BaseException:
+            # A frame that is not there has no triangles for those after it: look again.
+            self._frames = None
+            raise
 
     def _next(self, file, frame: SurfaceFrame):
         """The next frame of a file that is open."""
@@ -186,10 +191,18 @@ class ExtendedXYZSeries(FrameFile):
             count = len(frame.vertices)
             parts.append(text_of(frame, kinds.next(frame)))
         text = "".join(parts).encode("ascii")
-        with self.path.open("r+b" if self.path.exists() else "wb") as file:
-            file.truncate(last.place)
-            file.seek(last.place)
-            file.write(text)
+        try:
+            with self.path.open("r+b" if self.path.exists() else "wb") as file:
+                file.truncate(last.place)
+                file.seek(last.place)
+                file.write(text)
+                file.flush()
+                os.fsync(file.fileno())
+        except OSError:
+            # What may not be on the disk does not count, so that it can be added again.
+            with contextlib.suppress(OSError):
+                os.truncate(self.path, last.place)
+            raise
         self._last = _End(-1, last.place + len(text), count)
 
     def _steps(self) -> list[int]:
