@@ -51,8 +51,8 @@ def frames(source, output, kind, mesh_path, membrane, skip, stride, force):
     HOOMD and OVITO (needs gsd), with edges as bonds, or NAME.xyz, extended XYZ for OVITO, whose
     surfaces are not in it. PLY, OBJ, STL and VTK are files NAME_surface_000000.obj, … in the folder
     OUTPUT, or NAME_obj. Vertices get mean curvatures, areas and numbers of neighbours, but in
-    OBJ and STL. A run that is still to come writes VTKHDF and meshes itself, in double precision,
-    with 'run --frames'.
+    OBJ and STL. A run that is still to come writes all of these itself, with 'run --frames':
+    VTKHDF and meshes in double precision, GSD with its masses.
     """
     from .. import analysis
     from ..errors import MeshError
