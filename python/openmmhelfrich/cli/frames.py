@@ -30,7 +30,7 @@ _SEQUENCES = ("ply", "obj", "stl", "vtk")
     "--mesh",
     "mesh_path",
     type=click.Path(path_type=Path, exists=True, dir_okay=False),
-    help="Mesh of all membranes, for a trajectory without NAME.triangles beside it.",
+    help="Mesh of all membranes, for a trajectory without NAME.ply beside it.",
 )
 @click.option(
     "--membrane",
@@ -44,8 +44,9 @@ def frames(source, output, kind, mesh_path, membrane, skip, stride, force):
     """Write the surfaces of the trajectory SOURCE to OUTPUT, with the triangles of each frame.
 
     SOURCE is an XTC, DCD, PDB or GSD file, or the folder of a run. Where bonds flipped, the
-    triangles of each frame are those of NAME.triangles beside NAME.xtc; without that file --mesh
-    has them. A GSD file has its own.
+    triangles of each frame are those of NAME.triangles beside NAME.xtc; else those of NAME.ply,
+    the mesh at the start of a run, or of --mesh, which has the periodic box, too. A GSD file has
+    its own.
 
     OUTPUT is beside it if it is not given: NAME.vtkhdf for ParaView (needs h5py), NAME.gsd for
     HOOMD and OVITO (needs gsd), with edges as bonds, or NAME.xyz, extended XYZ for OVITO, whose
@@ -73,17 +74,17 @@ def frames(source, output, kind, mesh_path, membrane, skip, stride, force):
     if output.exists() and not force:
         raise click.ClickException(f"{output} is there already; overwrite it with --force")
     try:
-        found = open_trajectory(source, mesh_path, membrane, skip, stride, several=True)
+        *found, box = open_trajectory(source, mesh_path, membrane, skip, stride, several=True)
         if kind in _SEQUENCES:
-            count = _write_sequence(output, kind, source.stem, *found)
+            count = _write_sequence(output, kind, source.stem, *found, box)
         else:
-            count = writers[kind](output, *found)
+            count = writers[kind](output, *found, box=box)
     except (ValueError, TypeError, ImportError, MeshError) as reason:
         raise click.ClickException(str(reason)) from None
     click.echo(f"wrote {output}: {count} frames of {found[0].num_vertices} vertices")
 
 
-def _write_sequence(folder: Path, kind: str, name: str, trajectory, triangles) -> int:
+def _write_sequence(folder: Path, kind: str, name: str, trajectory, triangles, box) -> int:
     """A mesh for each frame in a folder, in place of those there; returns how many."""
     from ..analysis._surface_frames import each_surface
     from ..simulation.frames import MeshFrames
@@ -95,7 +96,7 @@ def _write_sequence(folder: Path, kind: str, name: str, trajectory, triangles) -
         surface = [(frame.vertices, frame.triangles)]
         writer.write(next(numbers), frame.step, frame.time, surface, frame.box)
 
-    return each_surface("frames", add, trajectory, triangles)
+    return each_surface("frames", add, trajectory, triangles, box=box)
 
 
 def _kind_of(output: Path | None) -> str:
