@@ -11,9 +11,9 @@ regular triangular lattice of edge l has, instead of q², Λ(q) = (2/3l²) Σ (1
 neighbours a, in both of its terms (Jülicher's curvature of nearly flat equilateral triangles is
 this Laplacian), and of a wave the integral sees F(q) = ⟨cos q·a/2⟩, the mean over a. Waves are
 waves in the frame, q = 2π (m/Lx, n/Ly), and the frame is smaller than the surface by the area that
-undulations take up, 1.2 to 1.7 %; so l is that of a lattice that fills the mean frame. Undulations of
-shorter wavelength soften longer ones, κ(q) = κ − (3 kBT/4π) ln(q_m/q), q_m² = 4π N / A (Peliti and
-Leibler, doi:10.1103/PhysRevLett.54.1690). So
+undulations take up, 1.2 to 1.7 %; so l is that of a lattice that fills the mean frame. Undulations
+of shorter wavelength soften longer ones, κ(q) = κ − (3 kBT/4π) ln(q_m/q), q_m² = 4π N / A (Peliti
+and Leibler, doi:10.1103/PhysRevLett.54.1690). So
 
     kBT F² / (A_p ⟨|h_q|²⟩) = κ(q) Λ² + σ Λ
 
