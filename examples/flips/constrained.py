@@ -88,7 +88,8 @@ def _require_minimum(hessian):
     curvatures = np.linalg.eigvalsh(hessian)
     if curvatures[0] < -1e-6 * np.abs(curvatures).max():
         raise RuntimeError(
-            f"a stationary point, but no minimum: a curvature is {curvatures[0]:.3g}; start beside it"
+            f"a stationary point, but no minimum: a curvature is {curvatures[0]:.3g}; start beside "
+            "it"
         )
 
 

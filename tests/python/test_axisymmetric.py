@@ -55,7 +55,7 @@ class TestMinimum:
 
     def test_maxima_and_saddles_are_none(self):
         for find, start in ((self.of_height, [0, 1]), (self.of_well, [0, 0.1, 0])):
-            with pytest.raises(RuntimeError, match="no minimum: a curvature is -.*start beside it"):
+            with pytest.raises(RuntimeError, match=r"no minimum: a curvature is -.*start beside"):
                 find(start)
 
 
