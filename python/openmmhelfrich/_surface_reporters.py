@@ -49,6 +49,8 @@ class SurfaceReporter:
     """
 
     _spans: bool = False
+    #: Reports of later steps that were in the file; they are written again.
+    _dropped: int = 0
     _include: tuple[str, ...] = ("positions",)
 
     def __init__(
@@ -110,6 +112,13 @@ class SurfaceReporter:
             )
         existed = self._append and Path(self._file).exists()
         last, present = self._begin(simulation), simulation.currentStep
+        if present == 0 and self._dropped:
+            warnings.warn(
+                f"{type(self).__name__}: the simulation is at step 0, so that {self._file} begins "
+                f"anew: {self._dropped} reports of later steps are gone; to go on with such a "
+                "file, load the checkpoint first, which has the step",
+                stacklevel=2,
+            )
         if existed and (last or 0) // self._interval < present // self._interval:
             has = "has no reports" if last is None else f"ends with step {int(last)}"
             warnings.warn(
@@ -131,7 +140,11 @@ class TableReporter(SurfaceReporter):
         columns = {"step": "", "time": "ps", **self._columns(simulation)}
         table = open_table(self._file, columns, self._append)
         self._table = table
-        return table.cut(simulation.currentStep) if self._append else None
+        if not self._append:
+            return None
+        last = table.cut(simulation.currentStep)
+        self._dropped = table.dropped
+        return last
 
     def _write(self, simulation, state, time, vertices, triangles, box):
         values = self._values(simulation, state, vertices, triangles, box)

@@ -305,6 +305,18 @@ class TestReporters:
         again.step(19)
         assert contents(path) == whole
 
+    def test_what_is_lost_at_step_0_is_told(self, tmp_path, suffix):
+        path = tmp_path / f"a{suffix}"
+        for number in range(2):
+            _, simulation = simulation_of(MESH)
+            simulation.reporters.append(REPORTERS[suffix](path, 10, MESH, append=True))
+            if number:
+                with pytest.warns(UserWarning, match=r"at step 0, .*: 2 reports of later steps"):
+                    simulation.step(1)
+            else:
+                simulation.step(20)
+        assert not path.exists()
+
     def test_another_suffix_is_refused(self, suffix):
         with pytest.raises(ValueError, match=r"Reporter: a\.h5: the suffix must be \."):
             REPORTERS[suffix]("a.h5", 10, MESH)

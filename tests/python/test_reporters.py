@@ -182,7 +182,12 @@ class TestFiles:
         for append, steps in ((True, [2, 4]), (True, [2]), (False, [2])):
             simulation = simulate(mesh)
             simulation.reporters.append(ModeReporter(path, 2, mesh, 1, append=append))
-            simulation.step(steps[-1])
+            with warnings.catch_warnings(record=True) as caught:
+                warnings.simplefilter("always")
+                simulation.step(steps[-1])
+            said = [str(each.message) for each in caught]
+            lost = f"{path} begins anew: 2 reports of later steps are gone; to go on"
+            assert [lost in each for each in said] == ([True] if append and len(steps) == 1 else [])
             # The second run starts at step 0 again, so that nothing of the first is left.
             assert analysis.read_modes(path).step.tolist() == steps
 
