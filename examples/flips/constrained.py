@@ -39,7 +39,7 @@ def minimum(function, constraints, start, allowed, accuracy=1e-11, flatness=1e-7
     Raises
     ------
     RuntimeError
-        No minimum was found; the message says what remained.
+        No minimum was found; the message says what remained, or that it is a saddle.
     """
     x = np.array(start, dtype=float)
     penalty = 0.0
@@ -53,14 +53,15 @@ def minimum(function, constraints, start, allowed, accuracy=1e-11, flatness=1e-7
         multipliers = np.linalg.solve(r, across.T @ gradient)
         slope = along.T @ gradient
         remains = f"constraints off by {np.abs(values).max():.1g}, slope {np.abs(slope).max():.1g}"
-        if np.abs(values).max() < accuracy and np.abs(slope).max() < flatness:
-            return x
 
         def onto(values, r=r, across=across):
             """The least step that meets the constraints where they are linear."""
             return -across @ np.linalg.solve(r.T, values)
 
         hessian = _hessian(function, constraints, x, multipliers)
+        if np.abs(values).max() < accuracy and np.abs(slope).max() < flatness:
+            _require_minimum(along.T @ hessian @ along)
+            return x
         step = onto(values)
         step = step + along @ _downhill(
             along.T @ hessian @ along, slope + along.T @ (hessian @ step)
@@ -80,6 +81,16 @@ def _hessian(function, constraints, x, multipliers):
 
     rows = [(gradient(x + each) - gradient(x - each)) for each in STEP * np.eye(len(x))]
     return (np.array(rows) + np.array(rows).T) / (4 * STEP)
+
+
+def _require_minimum(hessian):
+    """Refuse a saddle or a maximum, where a symmetric start ends."""
+    curvatures = np.linalg.eigvalsh(hessian)
+    if curvatures[0] < -1e-6 * np.abs(curvatures).max():
+        raise RuntimeError(
+            f"a stationary point, but no minimum: a curvature is {curvatures[0]:.3g}; start beside "
+            "it"
+        )
 
 
 def _downhill(hessian, slope):

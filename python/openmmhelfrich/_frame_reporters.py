@@ -46,6 +46,7 @@ class SeriesReporter(SurfaceReporter):
             raise ValueError(f"{type(self).__name__}: {reason}; do not append") from None
         kept = steps[steps <= simulation.currentStep]
         self._series.cut(len(kept))
+        self._dropped = len(steps) - len(kept)
         self._num_frames = len(kept)
         return kept[-1] if len(kept) else None
 

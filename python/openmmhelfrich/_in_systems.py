@@ -114,6 +114,7 @@ class InSystems(ABC):
         seed : int, optional
             Of the random numbers of the integrator, and of flips and viscosity unless they have a
             ``randomNumberSeed``: 1 or more; equal seeds give equal runs. Default: others each time.
+            `setVelocitiesToTemperature` of the Context takes a seed of its own.
 
         Returns
         -------
@@ -144,8 +145,12 @@ class InSystems(ABC):
 
     def _sow(self, integrator: openmm.Integrator, seed: int) -> None:
         """Give all that draws random numbers, and has no seed of its own, this one."""
-        if hasattr(integrator, "setRandomNumberSeed"):
-            integrator.setRandomNumberSeed(seed)
+        several = isinstance(integrator, openmm.CompoundIntegrator)
+        count = integrator.getNumIntegrators() if several else 1
+        for number in range(count):
+            one = integrator.getIntegrator(number) if several else integrator
+            if hasattr(one, "setRandomNumberSeed"):
+                one.setRandomNumberSeed(seed)
         placement = self.placement
         for given, mover in (
             (self._flips, placement.flips),

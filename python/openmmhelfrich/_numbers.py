@@ -1,7 +1,8 @@
 """Checks of numbers that functions take, with or without units.
 
-Errors name the function or class, the argument and the value. Everything in this package accepts a
-plain number in OpenMM's units (nm, ps, amu, kJ/mol) or an ``openmm.unit.Quantity``. OpenMM itself
+Errors name the function or class, the argument and the value. What builds and moves things accepts
+a plain number in OpenMM's units (nm, ps, amu, kJ/mol) or an ``openmm.unit.Quantity``; formulae
+(`positive`, `not_negative`), which hold in any units, accept plain numbers only. OpenMM itself
 is imported only when a Quantity has to be converted, and then it is loaded already, because the
 user's Quantity came from it. What force classes take is in ``_values``, and what a Mesh takes in
 ``_mesh/inputs``.
@@ -26,6 +27,7 @@ __all__ = [
     "not_negative",
     "positive",
     "positive_number",
+    "values_in",
     "whole_number",
 ]
 
@@ -92,16 +94,49 @@ def finite_array(values, where: str, name: str) -> Array:
     return array
 
 
+def values_in(dimension, values, where: str, name: str) -> Array:
+    """Numbers, or a Quantity of them, as an array of floats in a unit.
+
+    Raises
+    ------
+    TypeError
+        Something else than numbers, or a Quantity of another dimension.
+    """
+    if _is_quantity(values):
+        if not values.unit.is_compatible(dimension):
+            raise TypeError(f"{where}: {name} needs the unit {dimension}, got {values.unit}")
+        values = values.value_in_unit(dimension)
+    try:
+        return np.asarray(values, dtype=float)
+    except (TypeError, ValueError):
+        raise TypeError(
+            f"{where}: {name} needs numbers, or a Quantity of them, got {values!r}"
+        ) from None
+
+
 def positive(name, value):
-    """Positive numbers as an array of floats; ValueError for others and for NaN."""
-    array = np.asarray(value, dtype=float)
+    """Positive plain numbers as an array of floats; ValueError for others and for NaN."""
+    array = _plain(name, value)
     return _only(array, array > 0, f"{name}: need a positive number")
 
 
 def not_negative(name, value):
-    """Numbers of 0 or more as an array of floats; ValueError for others and for NaN."""
-    array = np.asarray(value, dtype=float)
+    """Plain numbers of 0 or more as an array of floats; ValueError for others and for NaN."""
+    array = _plain(name, value)
     return _only(array, array >= 0, f"{name}: need 0 or more")
+
+
+def _plain(name, value):
+    """Numbers without a unit as an array of floats; TypeError for what is none."""
+    if _is_quantity(value):
+        raise TypeError(
+            f"{name}: need plain numbers, got the unit {value.unit}; divide by a unit of this "
+            "dimension that the description names"
+        )
+    try:
+        return np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        raise TypeError(f"{name}: need numbers, got {value!r}") from None
 
 
 def _only(array, good, need):

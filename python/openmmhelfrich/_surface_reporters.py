@@ -14,7 +14,7 @@ from ._mesh.periodic import unfolded
 from ._numbers import whole_number
 from ._present import present_box, present_triangles
 from ._types import File
-from .analysis._arrays import triangles_of
+from ._values import triangles as indices_of
 from .analysis.tables import open_table
 
 __all__ = ["NextReport", "SurfaceReporter", "TableReporter"]
@@ -49,6 +49,8 @@ class SurfaceReporter:
     """
 
     _spans: bool = False
+    #: Reports of later steps that were in the file; they are written again.
+    _dropped: int = 0
     _include: tuple[str, ...] = ("positions",)
 
     def __init__(
@@ -58,9 +60,14 @@ class SurfaceReporter:
         self._interval = whole_number(reportInterval, name, "reportInterval", 1)
         offset = whole_number(offset, name, "offset", 0)
         self._file, self._append, self._begun = file, append, False
-        corners = np.asarray(getattr(triangles, "triangles", triangles))
-        highest = corners.max(initial=0) if corners.dtype.kind in "iu" else 0
-        self._corners = triangles_of(corners, int(highest) + 1) + offset
+        corners = indices_of(name, triangles).astype(np.intp)
+        if len(corners) == 0 or corners.min() < 0:
+            wrong = f"one has the index {corners.min()}" if len(corners) else "there are none"
+            raise ValueError(
+                f"{name}: triangles: {wrong}; give the Mesh, or particle indices of shape "
+                "(num_triangles, 3)"
+            )
+        self._corners = corners + offset
         # Vertices in ascending order of particle index, as in the forces.
         self._particles = np.unique(self._corners)
 
@@ -105,6 +112,13 @@ class SurfaceReporter:
             )
         existed = self._append and Path(self._file).exists()
         last, present = self._begin(simulation), simulation.currentStep
+        if present == 0 and self._dropped:
+            warnings.warn(
+                f"{type(self).__name__}: the simulation is at step 0, so that {self._file} begins "
+                f"anew: {self._dropped} reports of later steps are gone; to go on with such a "
+                "file, load the checkpoint first, which has the step",
+                stacklevel=2,
+            )
         if existed and (last or 0) // self._interval < present // self._interval:
             has = "has no reports" if last is None else f"ends with step {int(last)}"
             warnings.warn(
@@ -126,7 +140,11 @@ class TableReporter(SurfaceReporter):
         columns = {"step": "", "time": "ps", **self._columns(simulation)}
         table = open_table(self._file, columns, self._append)
         self._table = table
-        return table.cut(simulation.currentStep) if self._append else None
+        if not self._append:
+            return None
+        last = table.cut(simulation.currentStep)
+        self._dropped = table.dropped
+        return last
 
     def _write(self, simulation, state, time, vertices, triangles, box):
         values = self._values(simulation, state, vertices, triangles, box)

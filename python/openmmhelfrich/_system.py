@@ -7,14 +7,15 @@ docs/installation.md says what is known of them.
 from __future__ import annotations
 
 import os
+import shutil
 import sys
 import tempfile
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO
 
-__all__ = ["LIBRARY", "file_size_limit", "lock", "sync_folder", "written"]
+__all__ = ["LIBRARY", "ascii_name", "file_size_limit", "lock", "sync_folder", "written"]
 
 #: The name of the library of the plugin.
 LIBRARY = {"win32": "OpenMMHelfrich.dll", "darwin": "libOpenMMHelfrich.dylib"}.get(
@@ -73,6 +74,22 @@ def written(write: Callable[[str], object]) -> tuple[bytes, OSError | None]:
         path.touch()
         failed = _error_of(write, str(path))
         return path.read_bytes(), failed
+
+
+@contextmanager
+def ascii_name(path: Path) -> Iterator[str]:
+    """The name of a file, or another one of the same file, for libraries that take ASCII only."""
+    if str(path).isascii():
+        yield str(path)
+        return
+    with tempfile.TemporaryDirectory(prefix="openmm-helfrich") as folder:
+        name = os.path.join(folder, "file")
+        try:
+            os.symlink(os.path.abspath(path), name)
+        except OSError:
+            # Windows lets few make links.
+            shutil.copyfile(path, name)
+        yield name
 
 
 def _error_of(write: Callable[[str], object], name: str) -> OSError | None:

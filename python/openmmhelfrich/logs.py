@@ -47,6 +47,8 @@ class _OnStandardError(logging.Handler):
 
 _root = logging.getLogger(_NAME)
 _handler = _OnStandardError()
+# Names of levels that the environment variable had, and that there are not.
+_refused: set[str] = set()
 
 
 def logger(part: str | None = None) -> logging.Logger:
@@ -62,7 +64,7 @@ def level_of(name: str) -> int:
     ValueError
         No name of a level.
     """
-    if name.lower() not in LEVELS:
+    if not isinstance(name, str) or name.lower() not in LEVELS:
         raise ValueError(f"there is no level {name!r}; there are {', '.join(LEVELS)}")
     return int(getattr(logging, name.upper()))
 
@@ -113,7 +115,10 @@ def _obey_environment() -> None:
     try:
         set_level(name)
     except ValueError as reason:
-        _root.warning("%s: %s", VARIABLE, reason)
+        # A command asks twice: when the package is imported, and when it begins.
+        if name not in _refused:
+            _root.warning("%s: %s", VARIABLE, reason)
+        _refused.add(name)
 
 
 if _handler not in _root.handlers:

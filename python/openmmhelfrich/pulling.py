@@ -42,7 +42,7 @@ def pull(system: openmm.System, particles: ArrayLike, force: Values) -> openmm.C
     IndexError
         A particle that the System does not have.
     TypeError
-        A Quantity that is no force per mole.
+        No System; or a force that is no numbers, or a Quantity that is no force per mole.
     ValueError
         No particles, some twice, or a force that is not three finite numbers.
 
@@ -53,6 +53,11 @@ def pull(system: openmm.System, particles: ArrayLike, force: Values) -> openmm.C
     >>> by_x = cell.mesh.vertices[:, 0].argsort()
     >>> tweezers = pull(system, by_x[-10:], (60.2, 0, 0))
     """
+    if not isinstance(system, openmm.System):
+        raise TypeError(
+            f"pull: system needs an openmm.System, got {type(system).__name__}; that of a Vesicle "
+            "is vesicle.system(), which is to be pulled before its Context is made"
+        )
     chosen = _particles(particles, system.getNumParticles())
     components = _components(force)
     index = system.getNumForces()
@@ -73,7 +78,11 @@ def pull(system: openmm.System, particles: ArrayLike, force: Values) -> openmm.C
 
 def _particles(particles: ArrayLike, count: int) -> list[int]:
     """Checked indices."""
-    array = np.asarray(particles)
+    try:
+        array = np.asarray(particles)
+    except ValueError:
+        # Lists of unequal length.
+        array = np.empty((0, 0))
     if array.ndim != 1 or array.size == 0 or array.dtype.kind not in "iu":
         raise ValueError(f"pull: particles need indices of shape (n,), got {particles!r}")
     if len(np.unique(array)) != len(array):
@@ -93,6 +102,10 @@ def _components(force: Values) -> list[float]:
                 "unit.AVOGADRO_CONSTANT_NA to have it per mole"
             )
         force = force.value_in_unit(_FORCE)
-    if np.shape(force) != (3,):
+    try:
+        three = np.shape(force) == (3,)
+    except ValueError:
+        three = False
+    if not three:
         raise ValueError(f"pull: force needs three numbers, got {force!r}")
     return [checked_number("force", part, _FORCE, negative=True, caller="pull") for part in force]

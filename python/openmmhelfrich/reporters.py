@@ -66,7 +66,8 @@ class ModeReporter(TableReporter):
         Added to the indices of the triangles. Default 0.
     append : bool
         Go on with an existing file, from the step of the simulation: rows of later steps are
-        dropped, since they will be written again, and a warning says if some before it are missing.
+        dropped, since they will be written again, and a warning says if some before it are missing,
+        or if all are dropped because the simulation is at step 0.
         Load the checkpoint or state first, with ``simulation.currentStep``, which
         `Simulation.loadCheckpoint` restores.
 

@@ -69,7 +69,8 @@ class Vesicle(InSystems, Parameters, TimeScales):
         Default 20 kBT at 300 K.
     area_modulus, volume_modulus : float or Quantity
         kA, kJ/mol/nm², default 1.3, and kV, kJ/mol/nm³, default 0.04. Zero switches the term off:
-        with kV = 0 the membrane is permeable, as in the paper's fluctuation spectra.
+        with kV = 0 the membrane is permeable, as in the paper's fluctuation spectra. They are for
+        about 1000 nm: kA r² and kV r³ count, so 100 nm need 130 and 40 to be as stiff.
     softness : float
         Ξ, which fixes the least height d = mesh.min_height(Ξ). Default 0.037, d ≈ 20 nm for 1002
         vertices on a sphere of 1000 nm.
@@ -85,7 +86,9 @@ class Vesicle(InSystems, Parameters, TimeScales):
     area, volume : float or Quantity, optional
         Targets A0, nm², and V0, nm³. Default: the mesh's own.
     reduced_volume : float, optional
-        V0 as a multiple of the volume of the sphere of area A0, instead of `volume`.
+        V0 as a multiple of the volume of the sphere of area A0, instead of `volume`. A sphere is a
+        stationary point for any V0, where a minimiser may stop: begin with `Mesh.oblate` or
+        `Mesh.prolate`.
     unsigned_spontaneous_curvature : bool
         Take the magnitude of the curvature in the linear term of C0, as VCM does.
     dihedral_stiffness : float or Quantity
@@ -146,7 +149,7 @@ class Vesicle(InSystems, Parameters, TimeScales):
     >>> vesicle = Vesicle(mesh)
     >>> integrator = openmm.LangevinMiddleIntegrator(300, 0.01, 0.2)
     >>> simulation = vesicle.simulation(integrator)
-    >>> simulation.minimizeEnergy()
+    >>> simulation.minimizeEnergy(tolerance=0.01)  # kJ/mol/nm; OpenMM's default is for atoms
     >>> simulation.context.setVelocitiesToTemperature(300)
     >>> simulation.step(1000)
     >>> vesicle.energies(simulation.context)["bending"]

@@ -22,6 +22,43 @@ def scripts_importable(monkeypatch):
         sys.modules.pop(name, None)
 
 
+class TestMinimum:
+    """Of y on the ellipse x²/4 + y² = 1, and of a double well beside a plane."""
+
+    @staticmethod
+    def of_height(start):
+        from constrained import minimum
+
+        def constraint(x):
+            return np.array([x[0] ** 2 / 4 + x[1] ** 2 - 1]), np.array([[x[0] / 2, 2 * x[1]]])
+
+        return minimum(lambda x: (x[1], np.array([0.0, 1.0])), constraint, start, lambda x: True)
+
+    @staticmethod
+    def of_well(start):
+        from constrained import minimum
+
+        def well(x):
+            return (x[0] ** 2 - 1) ** 2 + x[1] ** 2, np.array(
+                [4 * x[0] * (x[0] ** 2 - 1), 2 * x[1], 0.0]
+            )
+
+        def plane(x):
+            return np.array([x[2] - 3]), np.array([[0, 0, 1.0]])
+
+        return minimum(well, plane, start, lambda x: True)
+
+    def test_is_the_one_beside_the_start(self):
+        assert self.of_height([0.3, 0.9]) == pytest.approx([0, -1], abs=1e-6)
+        assert self.of_well([0.2, 0.1, 0]) == pytest.approx([1, 0, 3], abs=1e-6)
+        assert self.of_well([-0.2, 0.1, 0]) == pytest.approx([-1, 0, 3], abs=1e-6)
+
+    def test_maxima_and_saddles_are_none(self):
+        for find, start in ((self.of_height, [0, 1]), (self.of_well, [0, 0.1, 0])):
+            with pytest.raises(RuntimeError, match=r"no minimum: a curvature is -.*start beside"):
+                find(start)
+
+
 class TestReference:
     def test_branches_cross_where_published(self):
         from axisymmetric import crossing

@@ -458,6 +458,15 @@ class TestKill:
         assert f"resumed at step {stopped}" in self.finish(start, path, out, steps)
         assert results(out) == self.unbroken(path, folder, steps)
 
+    def test_a_program_that_calls_it_has_its_signals_back(self, path, folder):
+        numbers = (signal.SIGINT, signal.SIGTERM)
+        before = [signal.getsignal(number) for number in numbers]
+        # The second time the folder is not empty.
+        for code in (0, 1):
+            result = invoke("run", path, "--out", folder.path / "out", "--steps", 2)
+            assert result.exit_code == code
+            assert [signal.getsignal(number) for number in numbers] == before
+
 
 class TestInfo:
     def test_paper(self, shared):

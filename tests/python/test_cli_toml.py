@@ -365,6 +365,21 @@ last = 5
 
 
 class TestRun:
+    def test_minimise_finds_a_minimum_of_a_membrane(self, write):
+        def start(text):
+            context = config.read(write(text)).simulation("Reference").context
+            state = context.getState(energy=True, forces=True)
+            return state.getPotentialEnergy()._value, state.getForces(asNumpy=True)._value
+
+        text = SMALL.replace("icosphere = 2, radius = 30", "random = 162, radius = 300")
+        (before, all_forces), (after, left) = (
+            start(text),
+            start("simulation.minimise = true\n" + text),
+        )
+        assert np.sqrt((all_forces**2).mean()) > 0.015
+        assert np.sqrt((left**2).mean()) < 0.008
+        assert after < before - 1
+
     def test_outputs(self, write, tmp_path):
         out = tmp_path / "out"
         result = invoke("run", write(TWO), "--out", out)

@@ -79,6 +79,15 @@ def test_commands_name_it(tmp_path):
     result = CliRunner().invoke(main, ["mesh", "info", str(path)])
     assert result.exit_code == 1
     assert result.stderr.splitlines()[-1] == "See docs/troubleshooting.md#meshes"
+    # A mesh that a configuration names.
+    config = tmp_path / "cell.toml"
+    config.write_text(
+        'simulation.duration = 1\n[[vesicle]]\nmesh = { file = "cut.ply" }\n', encoding="utf-8"
+    )
+    result = CliRunner().invoke(main, ["run", str(config), "--out", str(tmp_path / "out")])
+    assert result.exit_code == 1
+    assert "cell.toml:3: key vesicle[0].mesh" in result.stderr
+    assert result.stderr.splitlines()[-1] == "See docs/troubleshooting.md#meshes"
     # Other errors are explained nowhere.
     result = CliRunner().invoke(main, ["mesh", "info", "--backwards"])
     assert "troubleshooting" not in result.stderr

@@ -3,6 +3,7 @@
 import numpy as np
 import openmmhelfrich as helfrich
 import pytest
+from openmm import unit
 from openmmhelfrich import analysis
 from openmmhelfrich.viewer import sources
 from run_files import fluid_and_solid, invoke
@@ -240,6 +241,15 @@ class TestGSD:
             assert np.array_equal(step.triangles, corners)
             np.testing.assert_allclose(step.points, points, rtol=0, atol=1e-4)
 
+    def test_masses_and_times_may_have_units(self, meshes, tmp_path):
+        path = tmp_path / "a.gsd"
+        times = unit.Quantity(0.5 * np.arange(FRAMES), unit.nanosecond)
+        masses = unit.Quantity(np.linspace(1, 2, 224), unit.kilogram / unit.mole)
+        analysis.write_gsd(path, *arrays(meshes), times, masses=masses)
+        read_back = analysis.read_gsd(path)
+        assert [frame.time for frame in read_back] == [500.0 * n for n in range(FRAMES)]
+        assert read_back[3].masses == pytest.approx(1000 * np.linspace(1, 2, 224), rel=1e-6)
+
     def test_mistakes_leave_what_was_there(self, meshes, tmp_path):
         path = tmp_path / "a.gsd"
         path.write_bytes(b"mine")
@@ -251,8 +261,15 @@ class TestGSD:
             ({"types": np.zeros((2, 224), int)}, "types: there are those of 2 frames, but more"),
             ({"types": np.zeros(224)}, "types: need whole numbers from 0"),
             ({"times": np.zeros(FRAMES)}, "write_gsd: the times of the frames do not ascend"),
+            ({"times": np.full(FRAMES, np.nan)}, "write_gsd: the times of the frames do not as"),
+            ({"steps": np.arange(FRAMES) - 1}, "write_gsd: steps needs a whole number .*got -1"),
+            ({"steps": np.arange(FRAMES) + 0.5}, r"write_gsd: steps needs .*got 0\.5"),
+            ({"times": np.arange(FRAMES) * unit.nanometer}, "write_gsd: times needs the unit pico"),
+            ({"times": ["noon"] * FRAMES}, "write_gsd: times needs numbers"),
+            ({"masses": 1 * unit.nanometer}, "write_gsd: masses needs the unit dalton"),
+            ({"masses": "heavy"}, "write_gsd: masses needs numbers, .*got 'heavy'"),
         ):
-            with pytest.raises(ValueError, match=culprit):
+            with pytest.raises((TypeError, ValueError), match=culprit):
                 analysis.write_gsd(path, vertices, triangles, **given)
             assert path.read_bytes() == b"mine"
             assert [found.name for found in tmp_path.iterdir()] == ["a.gsd"]

@@ -53,6 +53,20 @@ def contents(path):
             for frame in analysis.read_gsd(path)]  # fmt: skip
 
 
+def fail_to_write(patch, suffix):
+    """Let the disk be full."""
+
+    def full(*arguments):
+        raise OSError(28, "No space left on device")
+
+    if suffix == ".gsd":
+        import gsd.hoomd
+
+        patch.setattr(gsd.hoomd.HOOMDTrajectory, "append", full)
+    else:
+        patch.setattr("os.fsync", full)
+
+
 class TestSeries:
     @ALL
     @pytest.mark.parametrize("again", [False, True])
@@ -142,17 +156,77 @@ class TestSeries:
         assert contents(path) == contents(tmp_path / f"b{suffix}")
 
     @ALL
+    @pytest.mark.parametrize("written", [0, 2])
+    def test_what_failed_is_written_the_next_time(self, tmp_path, suffix, written, monkeypatch):
+        path, frames = tmp_path / f"a{suffix}", frames_of(5)
+        series = SERIES[suffix](path)
+        for frame in frames[:written]:
+            series.add([frame])
+        with monkeypatch.context() as patch:
+            fail_to_write(patch, suffix)
+            with pytest.raises(OSError, match="free some space"):
+                series.add([frames[written]])
+        for frame in frames[written:]:
+            series.add([frame])
+        written_at_once(tmp_path / f"b{suffix}", frames)
+        assert contents(path) == contents(tmp_path / f"b{suffix}")
+
+    @ALL
     def test_other_files_are_refused(self, tmp_path, suffix):
         path = tmp_path / f"a{suffix}"
         path.write_bytes(b"1\nno frame of ours\nX 0 0 0\n" * 40)
         with pytest.raises(ValueError, match=rf"a{suffix} is no .* file of .*, or is damaged"):
             SERIES[suffix](path).steps()
 
-    def test_another_surface_is_refused(self, tmp_path):
-        series = GSDSeries(tmp_path / "a.gsd")
+    @ALL
+    @pytest.mark.parametrize("again", [False, True])
+    def test_another_surface_is_refused(self, tmp_path, suffix, again):
+        path = tmp_path / f"a{suffix}"
+        series = SERIES[suffix](path)
         series.add(frames_of(1))
+        if again:
+            series = SERIES[suffix](path)
+        before = path.read_bytes()
         with pytest.raises(ValueError, match="have 132 vertices, not 92; give another file"):
             series.add(frames_of(1, helfrich.Mesh.random_sphere(92, 400)))
+        assert path.read_bytes() == before
+
+    @pytest.mark.parametrize(
+        "text",
+        [
+            b"my notes",
+            b"my notes\nof today",
+            b"12\nof today",
+            b"0\nstep=3\n",
+            b"-5\nstep=3\n",
+            b"900\nstep=3\nX 0 0 0\n",
+            b'900\nProperties=species:S:1:pos:R:3 step=3 pbc="F F F"\nX 0 0 0\n',
+        ],
+    )
+    def test_text_of_something_else_is_left_as_it_is(self, tmp_path, text):
+        path = tmp_path / "a.xyz"
+        path.write_bytes(text)
+        with pytest.raises(ValueError, match=r"a\.xyz is no extended XYZ file of this package"):
+            ExtendedXYZSeries(path).add(frames_of(1))
+        assert path.read_bytes() == text
+
+    def test_gsd_of_another_program_is_left_as_it_is(self, tmp_path):
+        import gsd.hoomd
+
+        path = tmp_path / "a.gsd"
+        with gsd.hoomd.open(path, "w") as file:
+            for step in (0, 5, 10):
+                frame = gsd.hoomd.Frame()
+                frame.configuration.step = step
+                frame.particles.N = MESH.num_vertices
+                frame.particles.position = MESH.vertices
+                file.append(frame)
+        before = path.read_bytes()
+        for act in (lambda s: s.cut(1), lambda s: s.add(frames_of(1)), lambda s: s.steps()):
+            with pytest.raises(ValueError, match="a GSD file of another program, which is left"):
+                act(GSDSeries(path))
+        assert path.read_bytes() == before
+        assert len(analysis.read_gsd(path)) == 3
 
 
 @ALL
@@ -230,6 +304,18 @@ class TestReporters:
         assert SERIES[suffix](path).steps().tolist() == [10, 20]
         again.step(19)
         assert contents(path) == whole
+
+    def test_what_is_lost_at_step_0_is_told(self, tmp_path, suffix):
+        path = tmp_path / f"a{suffix}"
+        for number in range(2):
+            _, simulation = simulation_of(MESH)
+            simulation.reporters.append(REPORTERS[suffix](path, 10, MESH, append=True))
+            if number:
+                with pytest.warns(UserWarning, match=r"at step 0, .*: 2 reports of later steps"):
+                    simulation.step(1)
+            else:
+                simulation.step(20)
+        assert not path.exists()
 
     def test_another_suffix_is_refused(self, suffix):
         with pytest.raises(ValueError, match=r"Reporter: a\.h5: the suffix must be \."):

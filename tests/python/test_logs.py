@@ -154,6 +154,15 @@ def test_programs_without_and_with_logging(before, level, said, monkeypatch):
     assert done.stderr.splitlines() == said
 
 
-def test_set_level_refuses_what_is_none():
-    with pytest.raises(ValueError, match="no level 'loud'"):
-        logs.set_level("loud")
+@pytest.mark.parametrize("level", ["loud", "", None, logging.DEBUG])
+def test_set_level_refuses_what_is_none(level):
+    with pytest.raises(ValueError, match=f"no level {level!r}; there are debug, info"):
+        logs.set_level(level)
+
+
+def test_a_wrong_variable_is_told_once(tmp_path, monkeypatch):
+    monkeypatch.setenv(logs.VARIABLE, "loud")
+    words = ["openmmhelfrich", "mesh", "icosphere", "2", str(tmp_path / "a.ply")]
+    done = subprocess.run([sys.executable, "-m", *words], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr.count("there is no level 'loud'") == 1

@@ -417,6 +417,20 @@ def test_spheroids(shape, target):
     assert (ratio[0, 2] < 1 < ratio[0, 0]) == (shape == "oblate")
 
 
+@pytest.mark.parametrize("shape", ["oblate", "prolate"])
+def test_the_reduced_volume_that_a_mesh_has_leaves_its_shape(shape):
+    for seed in range(8):
+        mesh = Mesh.random_sphere(52 + 30 * seed, 100.0, seed).scaled((1, 1.2, 0.7))
+        for target in (mesh.reduced_volume, np.nextafter(mesh.reduced_volume, 2)):
+            assert np.array_equal(getattr(mesh, shape)(target).vertices, mesh.vertices)
+    above = mesh.reduced_volume * (1 + 1e-9)
+    with pytest.raises(MeshError, match=r"at most .*, that of the mesh") as refused:
+        getattr(mesh, shape)(above)
+    # The limit that the message names will do.
+    limit = float(str(refused.value).split("at most ")[1].split(",")[0])
+    assert np.array_equal(getattr(mesh, shape)(limit).vertices, mesh.vertices)
+
+
 def test_oblate_agrees_with_the_spheroid():
     """A disk of v = 0.6: its aspect from the closed formulae of an oblate spheroid."""
     mesh = Mesh.icosphere(20, 1.0).oblate(0.6)
@@ -449,7 +463,7 @@ BAD_ARGUMENTS = [
     (lambda m: m.translated(-m.vertices[5]).deformed(2, 0, 0.1), "vertex 5 lies at the origin"),
     (lambda m: m.oblate(0), "Mesh.oblate: reduced_volume must be above 0 and at most 0.9"),
     (lambda m: m.prolate(0.9999), "Mesh.prolate: reduced_volume .*got 0.9999"),
-    (lambda m: m.prolate(np.nan), "Mesh.prolate: reduced_volume .*got nan"),
+    (lambda m: m.prolate(np.nan), r"Mesh.prolate: reduced_volume .*at most 0\.9.*got nan"),
     (lambda m: m.oblate((0.5, 0.6)), "Mesh.oblate: reduced_volume must be one number"),
     (lambda m: m.softness(-1), "Mesh.softness: min_height must be .*0 or more, got -1"),
     (lambda m: m.softness(1 * unit.kelvin), "Mesh.softness: min_height must be a length"),

@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 import openmmhelfrich as helfrich
 import pytest
+from openmm import unit
 from openmmhelfrich.analysis import area_excess, theory
 from undulating import RADIUS, Undulating, half_second_derivative, limit
 
 KAPPA = 50.0
+KJ = unit.kilojoule_per_mole
 SCHEMES = ("Julicher", "GompperKroll", "GompperKrollBarycentric", "JulicherVoronoi")
 
 
@@ -100,6 +102,21 @@ def test_area_that_a_given_volume_has_too_much(l: int):
 )
 def test_bad_input_is_named(call, culprit):
     with pytest.raises(ValueError, match=culprit):
+        call()
+
+
+@pytest.mark.parametrize(
+    ("call", "culprit"),
+    [
+        (lambda: theory.mode_area(np.zeros(4), 9 * unit.nanometer), "radius: .*unit nanometer"),
+        (lambda: theory.mode_energy(np.zeros(4), 50 * KJ), "rigidity: .*unit kilojoule/mole"),
+        (lambda: theory.fluid_spectrum(2, 20 * KJ), "kappa_over_kT: need plain numbers, got the"),
+        (lambda: theory.elastic_spectrum(2, 20, 1 * KJ, 1), "young_over_kT: need plain numbers"),
+        (lambda: theory.fluid_spectrum(2, "stiff"), "kappa_over_kT: need numbers, got 'stiff'"),
+    ],
+)
+def test_formulae_take_plain_numbers_and_say_so(call, culprit):
+    with pytest.raises(TypeError, match=culprit):
         call()
 
 

@@ -210,6 +210,9 @@ def test_reduced_volumes_on_two_cores(folder):
     rows = eval(done.stdout, {"__builtins__": {}})
     assert len(rows) == 20
     bending = [row["bending"] for row in rows]
+    # Up to 0.95 they keep area and volume: two terms of kT/2 on average.
+    kept = [row["area"] + row["volume"] for row in rows[:16]]
+    assert max(kept) < 8 * analysis.theory.BOLTZMANN * 300
     # From an oblate to nearly a sphere, whose energy is 8 π κ, and kT/2 for each vertex.
     kappa = 20 * analysis.theory.BOLTZMANN * 300
     assert bending[-1] == pytest.approx((8 * np.pi + 252 / 40) * kappa, rel=0.1)

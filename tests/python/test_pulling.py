@@ -71,11 +71,13 @@ def test_two_of_them_are_independent_and_quantities_will_do(mesh):
         ([], (1, 0, 0), ValueError, "particles need indices"),
         ([0.5], (1, 0, 0), ValueError, "particles need indices"),
         ([[0, 1]], (1, 0, 0), ValueError, "particles need indices"),
+        ([[0], [0, 1]], (1, 0, 0), ValueError, "pull: particles need indices"),
         ([1, 1], (1, 0, 0), ValueError, "twice"),
         ([-1], (1, 0, 0), IndexError, "no particle -1"),
         ([10**6], (1, 0, 0), IndexError, "no particle 1000000"),
         ([0], (1, 0), ValueError, "three numbers"),
         ([0], 1.0, ValueError, "three numbers"),
+        ([0], (1, (0, 1), 0), ValueError, "pull: force needs three numbers"),
         ([0], (1, 0, np.nan), ValueError, "finite"),
         ([0], (1, 0, 0) * unit.newton, TypeError, "AVOGADRO"),
     ],
@@ -86,6 +88,11 @@ def test_bad_input_is_named_and_adds_nothing(mesh, particles, force, error, mess
     with pytest.raises(error, match=message):
         pull(system, particles, force)
     assert system.getNumForces() == count
+
+
+def test_something_else_than_a_system_is_named(mesh):
+    with pytest.raises(TypeError, match=r"openmm\.System, got Vesicle; .*vesicle\.system\(\)"):
+        pull(Vesicle(mesh), [0], (1, 0, 0))
 
 
 def positions(vesicle, integrator, **options):
@@ -107,6 +114,14 @@ def test_equal_seeds_give_equal_runs(mesh):
     mover = fluid.placement.flips
     assert mover.getRandomNumberSeed() == 5
     assert fluid.placement.viscosity.getRandomNumberSeed() == 5
+
+
+def test_every_integrator_of_several_has_the_seed(mesh):
+    several = openmm.CompoundIntegrator()
+    for _ in range(2):
+        several.addIntegrator(langevin())
+    Vesicle(mesh).simulation(several, seed=6)
+    assert [several.getIntegrator(i).getRandomNumberSeed() for i in range(2)] == [6, 6]
 
 
 def test_a_seed_of_their_own_stays(mesh):

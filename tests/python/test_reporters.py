@@ -182,7 +182,12 @@ class TestFiles:
         for append, steps in ((True, [2, 4]), (True, [2]), (False, [2])):
             simulation = simulate(mesh)
             simulation.reporters.append(ModeReporter(path, 2, mesh, 1, append=append))
-            simulation.step(steps[-1])
+            with warnings.catch_warnings(record=True) as caught:
+                warnings.simplefilter("always")
+                simulation.step(steps[-1])
+            said = [str(each.message) for each in caught]
+            lost = f"{path} begins anew: 2 reports of later steps are gone; to go on"
+            assert [lost in each for each in said] == ([True] if append and len(steps) == 1 else [])
             # The second run starts at step 0 again, so that nothing of the first is left.
             assert analysis.read_modes(path).step.tolist() == steps
 
@@ -275,6 +280,26 @@ class TestReporters:
                 r"offset .*1\.5",
             ),
             (lambda m, p: MembraneReporter(p / "m.csv", 1, [[0, 1]]), ValueError, "shape"),
+            (
+                lambda m, p: MembraneReporter(p / "m.csv", 1, Vesicle(m)),
+                ValueError,
+                "^MembraneReporter: triangles must have shape",
+            ),
+            (
+                lambda m, p: MembraneReporter(p / "m.csv", 1, [[0, 1], [0, 1, 2]]),
+                ValueError,
+                "^MembraneReporter: triangles .*unequal length",
+            ),
+            (
+                lambda m, p: MembraneReporter(p / "m.csv", 1, []),
+                ValueError,
+                "^MembraneReporter: triangles: there are none; give the Mesh",
+            ),
+            (
+                lambda m, p: MembraneReporter(p / "m.csv", 1, m.triangles - 1, offset=1),
+                ValueError,
+                "^MembraneReporter: triangles: one has the index -1",
+            ),
             (lambda m, p: ModeReporter(p / "m.txt", 1, m, 2), ValueError, "suffix"),
             (lambda m, p: ModeReporter(p / "m.csv", 1, m, 2, offset=1), ValueError, "particle 92"),
             (lambda m, p: ModeReporter(p / "m.csv", 1, m, 2, "sum"), ValueError, "quadrature"),
@@ -320,6 +345,11 @@ class TestReporters:
                 simulation.step(2)
             assert path.read_text() == text
 
+    def test_the_mark_of_programs_for_tables_is_no_part_of_a_name(self, tmp_path):
+        path = tmp_path / "saved.csv"
+        path.write_text("step,time (ps)\n1,2\n", encoding="utf-8-sig")
+        assert list(analysis.read_table(path)) == ["step", "time"]
+
     def test_bad_files_are_named(self, tmp_path):
         bad = tmp_path / "bad.csv"
         for text, culprit in (
@@ -332,6 +362,22 @@ class TestReporters:
             bad.write_text(text)
             with pytest.raises(ValueError, match=culprit):
                 analysis.read_table(bad)
+        bad.write_bytes(b"step,time (ps)\n1,\xff\n")
+        with pytest.raises(ValueError, match=r"read_table: .*bad\.csv is no text of a reporter"):
+            analysis.read_table(bad)
+        h5py = pytest.importorskip("h5py")
+        for number, shape in enumerate([(2, 3), (2,), None]):
+            path = tmp_path / f"{number}.h5"
+            with h5py.File(path, "w") as file:
+                file.attrs["columns"] = ["step", "time"]
+                if shape:
+                    file["rows"] = np.zeros(shape)
+            with pytest.raises(ValueError, match=rf"{number}\.h5 has no rows of a reporter"):
+                analysis.read_table(path)
+            path.write_bytes(b"mine")
+            with pytest.raises(ValueError, match=rf"{number}\.h5 is no HDF5 file, or is damaged"):
+                analysis.read_table(path)
+            assert path.read_bytes() == b"mine"
         bad.write_text("step,time (ps),u_0_0,u_1_0\n1,2,3,4\n")
         with pytest.raises(ValueError, match="no columns"):
             analysis.read_modes(bad)

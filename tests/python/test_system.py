@@ -78,3 +78,21 @@ def test_windows_has_neither_limits_nor_folders_to_open(monkeypatch, tmp_path):
 
 def test_the_library_has_the_name_of_the_system():
     assert _core.LIBRARY_PATH.name == _system.LIBRARY == "libOpenMMHelfrich.so"
+
+
+@pytest.mark.parametrize("links", [True, False])
+def test_files_of_any_name_have_one_of_ascii(links, tmp_path, monkeypatch):
+    def refuse(*names):
+        raise OSError(1314, "A required privilege is not held by the client")
+
+    if not links:
+        monkeypatch.setattr("os.symlink", refuse)
+    monkeypatch.chdir(tmp_path)
+    path = Path("ü")
+    path.write_bytes(b"a frame")
+    with _system.ascii_name(path) as name:
+        assert name.isascii() and Path(name).read_bytes() == b"a frame"
+    assert not Path(name).exists() and path.read_bytes() == b"a frame"
+    path.rename("u")
+    with _system.ascii_name(Path("u")) as name:
+        assert name == "u"

@@ -47,6 +47,13 @@ def meshes(out, label):
     return np.array([m.vertices for m in found]), np.array([m.triangles for m in found])
 
 
+def alone(out, folder):
+    """The positions of a run without the files beside them."""
+    path = folder / "alone.xtc"
+    path.write_bytes((out / "run.xtc").read_bytes())
+    return path
+
+
 def table(result):
     """The means of a spectrum."""
     assert result.exit_code == 0, result.output
@@ -54,6 +61,18 @@ def table(result):
 
 
 class TestTrajectory:
+    def test_names_need_not_be_ascii(self, fluid, tmp_path):
+        folder = tmp_path / "zellen ü 細胞"
+        folder.mkdir()
+        for suffix in (".xtc", ".triangles"):
+            (folder / f"läuft{suffix}").write_bytes((fluid / f"run{suffix}").read_bytes())
+        found, known = (
+            analysis.Trajectory(path) for path in (folder / "läuft.xtc", fluid / "run.xtc")
+        )
+        assert np.array_equal(found.read(), known.read())
+        assert np.array_equal(found.steps(), known.steps())
+        assert np.array_equal(found.triangles(), known.triangles())
+
     def test_has_the_triangles_of_its_frames(self, fluid):
         _, expected = meshes(fluid, "fluid")
         found = analysis.Trajectory(fluid / "run.xtc").triangles()
@@ -150,7 +169,7 @@ class TestSpectrum:
         for words, culprit in (
             ((both / "run.xtc",), "has 2 membranes; choose one with --membrane 0 … 1"),
             ((both / "run.xtc", "--membrane", 2), "has 2, which are counted from 0"),
-            ((solid / "run.xtc",), "there is no run.triangles beside it"),
+            ((alone(solid, tmp_path),), "there is neither alone.ply nor alone.triangles beside"),
             ((fluid / "run.xtc", "--mesh", other), "has 132 particles, and"),
             ((tmp_path / "run.xtc",), "does not match the 21 frames"),
             ((tmp_path / "modes.csv", "--membrane", 0), "--membrane is for trajectories"),
@@ -194,11 +213,48 @@ class TestFrames:
         assert invoke("frames", source, path, "--membrane", 1, "--force").exit_code == 0
         self.check(path, two, second, range(FRAMES))
 
-    def test_a_run_without_flips_by_its_mesh(self, solid):
-        mesh = solid / "frames/run_fluid_000000.ply"
-        result = invoke("frames", solid / "run.xtc", "--mesh", mesh)
+    @pytest.mark.parametrize("given", [True, False])
+    def test_a_run_without_flips_by_its_mesh(self, solid, tmp_path, given):
+        words = ["--mesh", solid / "frames/run_fluid_000000.ply"] if given else []
+        result = invoke("frames", solid, tmp_path / "a.vtkhdf", *words)
         assert result.exit_code == 0, result.output
-        self.check(solid / "run.vtkhdf", *meshes(solid, "fluid"), range(FRAMES))
+        self.check(tmp_path / "a.vtkhdf", *meshes(solid, "fluid"), range(FRAMES))
+
+    def test_a_mesh_beside_it_of_other_particles_is_none(self, solid, tmp_path):
+        helfrich.Mesh.icosphere(2, 100.0).write(tmp_path / "alone.ply")
+        result = invoke("frames", alone(solid, tmp_path))
+        assert result.exit_code != 0
+        assert "a trajectory needs --mesh" in result.output
+
+    @pytest.mark.parametrize("flips", [0, 0.05])
+    @pytest.mark.parametrize("kind", ["vtkhdf", "gsd", "ply"])
+    def test_a_surface_that_spans_its_box_stays_whole(self, tmp_path, kind, flips):
+        text = (
+            "simulation.duration = 4\n"
+            'output = { interval = 1, frames = "KIND" }\n'
+            "[[vesicle]]\n"
+            "mesh = { sheet = [8, 8], spacing = 100, periodic = true }\n"
+            "volume_modulus = 0\nsoftness = 0.33\n"
+        )
+        out = simulate(
+            tmp_path, text.replace("KIND", kind) + (f"flips = {flips}\n" if flips else "")
+        )
+        result = invoke("frames", out, tmp_path / f"again.{kind}", "--format", kind)
+        assert result.exit_code == 0, result.output
+        if kind == "ply":
+            one = helfrich.Mesh.read(out / "frames/run_0_000004.ply")
+            two = helfrich.Mesh.read(tmp_path / "again.ply/run_surface_000004.ply")
+            assert two.box == pytest.approx(one.box, rel=1e-6)
+            assert two.area == pytest.approx(one.area, rel=1e-5)
+        elif kind == "gsd":
+            pytest.importorskip("gsd")
+            one, two = (analysis.read_gsd(p)[-1] for p in (out / "run.gsd", tmp_path / "again.gsd"))
+            assert two.box == pytest.approx(one.box, rel=1e-6)
+            assert two.vertices == pytest.approx(one.vertices, abs=1e-2)
+        else:
+            one, two = (read(p)[-1] for p in (out / "run.vtkhdf", tmp_path / "again.vtkhdf"))
+            assert two.points == pytest.approx(one.points, abs=1e-2)
+            assert np.array_equal(two.triangles, one.triangles)
 
     def test_arrays(self, fluid, tmp_path):
         """More frames than are added at a time, without times and steps."""
@@ -215,8 +271,11 @@ class TestFrames:
         path.write_bytes(b"mine")
         for words, culprit in (
             ((fluid, path), "is there already; overwrite it with --force"),
-            ((tmp_path, "b.vtkhdf"), "has no XTC files, not one"),
-            ((solid, tmp_path / "b.vtkhdf"), "there is no run.triangles beside it"),
+            ((solid / "frames", "b.vtkhdf"), "has no XTC files, not one"),
+            (
+                (alone(solid, tmp_path), tmp_path / "b.vtkhdf"),
+                "there is neither alone.ply nor alone.triangles beside it",
+            ),
             ((fluid, tmp_path / "b.h5"), "the suffix must be .vtkhdf"),
         ):
             result = invoke("frames", *words)

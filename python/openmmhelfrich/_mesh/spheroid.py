@@ -12,6 +12,9 @@ from .inputs import numbers
 
 __all__ = ["spheroid"]
 
+# Sums over the triangles of one shape differ by less, in whatever order and from whatever origin.
+_ROUNDING = 1e-12
+
 
 def spheroid(vertices: Array, triangles: Array, target, prolate: bool, where: str) -> Array:
     """Vertices stretched along z, or flattened, to a reduced volume at unchanged area.
@@ -33,7 +36,8 @@ def spheroid(vertices: Array, triangles: Array, target, prolate: bool, where: st
     Returns
     -------
     ndarray
-        New vertices, shape (num_vertices, 3), nm.
+        New vertices, shape (num_vertices, 3), nm; those of the mesh if it has that reduced volume,
+        to rounding.
 
     Raises
     ------
@@ -49,19 +53,21 @@ def spheroid(vertices: Array, triangles: Array, target, prolate: bool, where: st
     def stretched(log_aspect: float) -> Array:
         return centred * np.array([1.0, 1.0, np.exp(log_aspect)])
 
-    def excess(log_aspect: float) -> float:
-        shape = stretched(log_aspect)
-        area, volume = surface_area(shape[triangles]), volume_enclosed(shape, triangles)
-        return reduced_volume(area, volume) - target
+    def reduced(shape: Array) -> float:
+        return reduced_volume(surface_area(shape[triangles]), volume_enclosed(shape, triangles))
 
-    largest = excess(0.0) + target
-    if not 0 < target <= largest:
+    def excess(log_aspect: float) -> float:
+        return reduced(stretched(log_aspect)) - target
+
+    largest = reduced(vertices)
+    if abs(target - largest) <= _ROUNDING * largest:
+        return vertices.copy()
+    if not 0 < target < largest:
+        # All digits, so that the number can be copied.
         raise MeshError(
-            f"{where}: reduced_volume must be above 0 and at most {largest:.6g}, that of the mesh "
+            f"{where}: reduced_volume must be above 0 and at most {largest}, that of the mesh "
             f"itself, got {target}; start from a mesh that is closer to a sphere"
         )
-    if target == largest:
-        return vertices.copy()
     # v falls steadily with |log t| on either side of the sphere, so doubling finds a bracket.
     bound = 0.5 if prolate else -0.5
     while excess(bound) > 0:

@@ -155,7 +155,8 @@ class Transformations:
         Parameters
         ----------
         reduced_volume : float
-            v = 6 √π V / A^{3/2}, above 0 and at most that of the mesh itself.
+            v = 6 √π V / A^{3/2}, above 0 and at most that of the mesh itself, for which the result
+            has its shape.
 
         Raises
         ------

@@ -8,7 +8,9 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
+from openmm import unit
 
+from .._numbers import values_in, whole_number
 from .._types import Array
 from .._writing import naming
 from ._arrays import box_of, in_boxes, over_frames
@@ -144,10 +146,15 @@ class _Stamps:
 
     def __init__(self, where, times, steps):
         self._where = where
-        self._times = None if times is None else np.asarray(times, dtype=float).ravel()
-        self._steps = None if steps is None else np.asarray(steps).ravel()
-        if self._times is not None and not (np.diff(self._times) > 0).all():
-            raise ValueError(f"{where}: the times of the frames do not ascend")
+        self._times = self._steps = None
+        if times is not None:
+            self._times = values_in(unit.picosecond, times, where, "times").ravel()
+            if not (np.isfinite(self._times).all() and (np.diff(self._times) > 0).all()):
+                raise ValueError(f"{where}: the times of the frames do not ascend")
+        if steps is not None:
+            self._steps = np.asarray(steps).ravel()
+            for step in self._steps.tolist():
+                whole_number(step, where, "steps", 0, 2**63 - 1)
         self._number = 0
 
     def next(self) -> tuple[int, float]:

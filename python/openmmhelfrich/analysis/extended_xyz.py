@@ -17,12 +17,14 @@ from .curvature import vertex_quantities
 from .elements import edges_of
 from .surface_series import SurfaceFrame, components
 
-__all__ = ["text_of", "write_extended_xyz"]
+__all__ = ["FORMAT", "text_of", "write_extended_xyz"]
 
 _SUFFIXES = (".xyz", ".extxyz")
 # X is an atom of no element, which ASE insists on.
-_PROPERTIES = (
-    "species:S:1:pos:R:3:mean_curvature:R:1:area:R:1:neighbours:I:1:component:I:1:kind:I:1"
+#: The columns, as the line above them says.
+FORMAT = (
+    "Properties=species:S:1:pos:R:3:mean_curvature:R:1:area:R:1:neighbours:I:1:component:I:1:"
+    "kind:I:1"
 )
 
 
@@ -91,7 +93,7 @@ def text_of(frame: SurfaceFrame, kinds: Array) -> str:
     found = vertex_quantities(frame.vertices, frame.triangles, box=frame.box)
     parts = components(frame.triangles, count)
     words = [
-        f"Properties={_PROPERTIES}",
+        FORMAT,
         f"time={frame.time:.10g}",
         f"step={frame.step}",
         "unit=nm",

@@ -10,7 +10,9 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
+from openmm import unit
 
+from .._numbers import values_in
 from .._types import Array, File
 from ._gsd import import_gsd
 from ._surface_frames import Types, each_surface, fresh_file
@@ -52,7 +54,7 @@ def write_gsd(
     types : array_like of int, optional
         Kind of each vertex from 0, such as `domains`, shape (num_vertices,), or (num_frames,
         num_vertices) if they change. Default: the number of the connected surface.
-    masses : float or array_like, optional
+    masses : float, array_like or Quantity, optional
         amu, one for all or shape (num_vertices,).
 
     Returns
@@ -64,6 +66,8 @@ def write_gsd(
     ------
     ImportError
         Without the package gsd.
+    TypeError
+        Masses or times that are no numbers, or of another dimension.
     ValueError
         Another suffix, types or masses that do not fit, or as for `write_vtkhdf`.
     OSError
@@ -89,7 +93,7 @@ def write_gsd(
 
 def masses_of(where: str, masses) -> np.ndarray:
     """Masses as they are written, of one or of each vertex; `where` is named in errors."""
-    masses = np.asarray(masses, dtype=np.float32)
+    masses = values_in(unit.dalton, masses, where, "masses").astype(np.float32)
     if masses.ndim > 1 or not (np.isfinite(masses) & (masses >= 0)).all():
         raise ValueError(f"{where}: masses: need one number or shape (num_vertices,), amu, from 0")
     return masses

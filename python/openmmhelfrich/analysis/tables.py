@@ -113,11 +113,15 @@ def read_table(path: File) -> dict[str, Array]:
     if path.suffix.lower() in _HDF5:
         with _open_hdf5(path) as file:
             names = list(file.attrs.get("columns", []))
-            if not names or "rows" not in file:
+            rows = np.array(file.get("rows", 0.0))
+            if rows.ndim != 2 or rows.shape[1] != len(set(names)):
                 raise ValueError(f"read_table: {path} has no rows of a reporter")
-            rows = np.array(file["rows"])
         return dict(zip(names, rows.T, strict=True))
-    text = path.read_text(encoding="utf-8")
+    try:
+        # Programs for tables put a mark in front, which is no part of the first name.
+        text = path.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError as reason:
+        raise ValueError(f"read_table: {path} is no text of a reporter ({reason})") from None
     lines = text[: text.rfind("\n") + 1].splitlines()
     if not lines:
         raise ValueError(f"read_table: {path} has no header")
@@ -148,11 +152,15 @@ def _names(header: list[str]) -> list[str]:
 
 def _open_hdf5(path):
     """The file, of a table, made whole if a kill in the middle of a row has left it in parts."""
+    h5py = import_h5py(_INSTEAD)
     try:
-        return import_h5py(_INSTEAD).File(path, "r")
+        return h5py.File(path, "r")
     except OSError:
         JournaledFile(path).recover()
-        return import_h5py(_INSTEAD).File(path, "r")
+    try:
+        return h5py.File(path, "r")
+    except OSError as reason:
+        raise ValueError(f"read_table: {path} is no HDF5 file, or is damaged ({reason})") from None
 
 
 def open_table(path: File, columns: Any, append: bool) -> Any:
@@ -171,7 +179,8 @@ def open_table(path: File, columns: Any, append: bool) -> Any:
     -------
     _Csv or _Hdf5
         With a method `add(values)`, after which the row is on disk, and `cut(step)`, which drops
-        the rows after a step and returns the last step that is left, None if there is no row.
+        the rows after a step, as many as `dropped` then says, and returns the last step that is
+        left, None if there is no row.
 
     Raises
     ------
@@ -191,6 +200,8 @@ def open_table(path: File, columns: Any, append: bool) -> Any:
 
 class _Csv:
     """A CSV file; every row is flushed."""
+
+    dropped = 0
 
     def __init__(self, path, columns, append):
         self.path = path
@@ -215,6 +226,7 @@ class _Csv:
         lines = text[: text.rfind(b"\n") + 1].splitlines(keepends=True)
         steps = [self._step(line, number) for number, line in enumerate(lines[1:], 2)]
         kept = [line for line, of in zip(lines[1:], steps, strict=True) if of <= step]
+        self.dropped = len(steps) - len(kept)
         if len(b"".join([lines[0], *kept])) != len(text):
             # The file is replaced as a whole, so that a kill leaves the old one or the new one.
             write_whole(self.path, b"".join([lines[0], *kept]))
@@ -250,6 +262,8 @@ class _Csv:
 class _Hdf5:
     """An HDF5 file with the rows in one dataset, closed after every row, and whole after a kill."""
 
+    dropped = 0
+
     def __init__(self, path, columns, append):
         self.path, self.h5py, self._file = path, import_h5py(_INSTEAD), JournaledFile(path)
         names = list(columns)
@@ -277,6 +291,7 @@ class _Hdf5:
     def cut(self, step):
         with self.h5py.File(self.path, "r") as file:
             kept = file["rows"][:, 0] <= step
+            self.dropped = int(len(kept) - np.count_nonzero(kept))
             last = file["rows"][np.count_nonzero(kept) - 1, 0] if kept.any() else None
         if not kept.all():
             with self._change() as rows:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 from collections.abc import Iterator
 from pathlib import Path
@@ -9,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from .. import _system
 from .._numbers import whole_number
 from .._types import Array, File
 from ._gsd import GSDFrame, frames_in
@@ -355,10 +357,12 @@ class Trajectory:
     def _chosen_gsd(self) -> Iterator[GSDFrame]:
         return itertools.islice(self._gsd(), self.start, self.stop, self.stride)
 
-    def _opened(self):
+    @contextlib.contextmanager
+    def _opened(self) -> Iterator[Any]:
         formats = _mdtraj_formats()
         kinds = {".xtc": formats.XTCTrajectoryFile, ".dcd": formats.DCDTrajectoryFile}
-        return kinds[self.suffix](str(self.path))
+        with _system.ascii_name(self.path) as name, kinds[self.suffix](name) as file:
+            yield file
 
 
 def _vectors(lengths: Array, angles: Array) -> Array:

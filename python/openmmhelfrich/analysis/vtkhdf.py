@@ -42,11 +42,11 @@ def write_vtkhdf(
         Shape (num_triangles, 3), or (num_frames, num_triangles, 3) if each frame has its own;
         counter-clockwise seen from outside, surfaces that all vertices belong to. Default: those of
         a GSD file or of ``<name>.triangles`` beside a trajectory.
-    times : array_like, optional
+    times : array_like or Quantity, optional
         ps, ascending, shape (num_frames,). Default: those of an XTC or GSD file, or else 0, 1, 2,
         …
     steps : array_like of int, optional
-        Steps of the simulation, shape (num_frames,), with defaults as for `times`.
+        Steps of the simulation, from 0, shape (num_frames,), with defaults as for `times`.
     box : array_like or Quantity, optional
         Periodic box, shape (3, 3), or (num_frames, 3, 3) if each frame has its own, nm. Default:
         that of a `Mesh` among the other arguments, if it has one; with a trajectory then the boxes
@@ -61,9 +61,11 @@ def write_vtkhdf(
     ------
     ImportError
         Without h5py.
+    TypeError
+        Times that are no numbers, or of another dimension.
     ValueError
-        Another suffix, no triangles, numbers of frames that differ, times that do not ascend, or as
-        for `mean_curvature`.
+        Another suffix, no triangles, numbers of frames that differ, times that do not ascend, steps
+        that are no whole numbers from 0, or as for `mean_curvature`.
     OSError
         If the system refuses; a file that was there is as before.
 

@@ -16,6 +16,7 @@ import click
 
 from .. import logs
 from .._writing import describe
+from ..errors import Explained
 from .log_options import add_log_options
 
 __all__ = ["main"]
@@ -74,10 +75,20 @@ class _Commands(click.Group):
             where = "standard output: " if unnamed else ""
             raise click.ClickException(where + describe(reason)) from None
         except click.ClickException as error:
-            page = getattr(error.__context__, "page", None)
-            if page is not None:
+            page = _page_of(error)
+            if page is not None and page not in error.message:
                 error.message += f"\nSee {page}"
             raise
+
+
+def _page_of(error: BaseException) -> str | None:
+    """The page that explains an error, or what was behind it, such as a mesh of a configuration."""
+    reason = error.__context__
+    while reason is not None:
+        if isinstance(reason, Explained):
+            return reason.page
+        reason = reason.__context__
+    return None
 
 
 def _give_up_output() -> None:

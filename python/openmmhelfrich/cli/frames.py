@@ -30,7 +30,7 @@ _SEQUENCES = ("ply", "obj", "stl", "vtk")
     "--mesh",
     "mesh_path",
     type=click.Path(path_type=Path, exists=True, dir_okay=False),
-    help="Mesh of all membranes, for a trajectory without NAME.triangles beside it.",
+    help="Mesh of all membranes, for a trajectory without NAME.ply beside it.",
 )
 @click.option(
     "--membrane",
@@ -44,15 +44,16 @@ def frames(source, output, kind, mesh_path, membrane, skip, stride, force):
     """Write the surfaces of the trajectory SOURCE to OUTPUT, with the triangles of each frame.
 
     SOURCE is an XTC, DCD, PDB or GSD file, or the folder of a run. Where bonds flipped, the
-    triangles of each frame are those of NAME.triangles beside NAME.xtc; without that file --mesh
-    has them. A GSD file has its own.
+    triangles of each frame are those of NAME.triangles beside NAME.xtc; else those of NAME.ply,
+    the mesh at the start of a run, or of --mesh, which has the periodic box, too. A GSD file has
+    its own.
 
     OUTPUT is beside it if it is not given: NAME.vtkhdf for ParaView (needs h5py), NAME.gsd for
     HOOMD and OVITO (needs gsd), with edges as bonds, or NAME.xyz, extended XYZ for OVITO, whose
     surfaces are not in it. PLY, OBJ, STL and VTK are files NAME_surface_000000.obj, … in the folder
     OUTPUT, or NAME_obj. Vertices get mean curvatures, areas and numbers of neighbours, but in
-    OBJ and STL. A run that is still to come writes VTKHDF and meshes itself, in double precision,
-    with 'run --frames'.
+    OBJ and STL. A run that is still to come writes all of these itself, with 'run --frames':
+    VTKHDF and meshes in double precision, GSD with its masses.
     """
     from .. import analysis
     from ..errors import MeshError
@@ -73,17 +74,17 @@ def frames(source, output, kind, mesh_path, membrane, skip, stride, force):
     if output.exists() and not force:
         raise click.ClickException(f"{output} is there already; overwrite it with --force")
     try:
-        found = open_trajectory(source, mesh_path, membrane, skip, stride, several=True)
+        *found, box = open_trajectory(source, mesh_path, membrane, skip, stride, several=True)
         if kind in _SEQUENCES:
-            count = _write_sequence(output, kind, source.stem, *found)
+            count = _write_sequence(output, kind, source.stem, *found, box)
         else:
-            count = writers[kind](output, *found)
+            count = writers[kind](output, *found, box=box)
     except (ValueError, TypeError, ImportError, MeshError) as reason:
         raise click.ClickException(str(reason)) from None
     click.echo(f"wrote {output}: {count} frames of {found[0].num_vertices} vertices")
 
 
-def _write_sequence(folder: Path, kind: str, name: str, trajectory, triangles) -> int:
+def _write_sequence(folder: Path, kind: str, name: str, trajectory, triangles, box) -> int:
     """A mesh for each frame in a folder, in place of those there; returns how many."""
     from ..analysis._surface_frames import each_surface
     from ..simulation.frames import MeshFrames
@@ -95,7 +96,7 @@ def _write_sequence(folder: Path, kind: str, name: str, trajectory, triangles) -
         surface = [(frame.vertices, frame.triangles)]
         writer.write(next(numbers), frame.step, frame.time, surface, frame.box)
 
-    return each_surface("frames", add, trajectory, triangles)
+    return each_surface("frames", add, trajectory, triangles, box=box)
 
 
 def _kind_of(output: Path | None) -> str:

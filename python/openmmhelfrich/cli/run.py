@@ -85,11 +85,10 @@ def run(config, out, steps, seed, live, live_page, **options):
         from ..viewer.views import check_replaceable
 
         check_replaceable(live_page)
-    with tidy_errors():
+    with tidy_errors(), _Stop() as stop:
         # OpenMM and the package take a second to load, which --help need not wait for.
         from ..simulation.runner import Run
 
-        stop = _Stop()
         job = Run(
             config,
             folder=out,
@@ -161,13 +160,23 @@ def _print_terms(frame) -> None:
 class _Stop:
     """Notes Ctrl-C and SIGTERM, so that the run can end with a checkpoint.
 
-    A second Ctrl-C ends at once; the last checkpoint is then where the run goes on.
+    A second Ctrl-C ends at once; the last checkpoint is then where the run goes on. What signals
+    did before comes back with the end of the run, for programs that call the command.
     """
 
     def __init__(self):
         self.signal = 0
+        self._before = {}
+
+    def __enter__(self) -> _Stop:
         for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, self._note)
+            self._before[number] = signal.signal(number, self._note)
+        return self
+
+    def __exit__(self, *reason: object) -> None:
+        for number, handler in self._before.items():
+            # What was not set by Python is None, and cannot be set by it.
+            signal.signal(number, signal.SIG_DFL if handler is None else handler)
 
     def _note(self, number: int, frame) -> None:
         self.signal = number

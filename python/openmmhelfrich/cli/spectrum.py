@@ -23,7 +23,7 @@ _COLUMNS = ("l", "mean", "error", "correlation_time_frames", "theory", "ratio")
     "--mesh",
     "mesh_path",
     type=click.Path(path_type=Path, dir_okay=False),
-    help="Mesh whose triangles a trajectory has, for one without NAME.triangles beside it. Not for "
+    help="Mesh whose triangles a trajectory has, for one without NAME.ply beside it. Not for "
     "a file of modes.",
 )
 @click.option(
@@ -75,9 +75,9 @@ def spectrum(
     """Print the fluctuation spectrum of SOURCE beside the theory.
 
     SOURCE is a trajectory (.xtc, .dcd, .pdb, .gsd) or what a ModeReporter wrote (.csv, .h5). Where
-    bonds flipped, the triangles of each frame of NAME.xtc are those in NAME.triangles beside it,
-    and a GSD file has its own; without them --mesh has them. The errors account for correlation in
-    time.
+    bonds flipped, the triangles of each frame of NAME.xtc are those in NAME.triangles beside it;
+    else those of NAME.ply, the mesh at the start of a run, or of --mesh. A GSD file has its own.
+    The errors account for correlation in time.
     """
     # The package takes a second to load, which --help need not wait for.
     from .. import analysis
@@ -124,7 +124,7 @@ def _amplitudes(source, mesh_path, membrane, lmax, skip, stride, quadrature, cen
         if lmax is not None and lmax > largest:
             raise ValueError(f"--lmax {lmax}: {source} has modes up to l = {largest} only")
         return amplitudes if lmax is None else amplitudes[:, : (lmax + 1) ** 2]
-    trajectory, triangles = open_trajectory(source, mesh_path, membrane, skip, stride)
+    trajectory, triangles, _ = open_trajectory(source, mesh_path, membrane, skip, stride)
     return analysis.mode_amplitudes(trajectory, triangles, lmax or 10, quadrature, centre)
 
 

@@ -33,6 +33,8 @@ __all__ = ["Configuration", "VesicleMembrane", "read", "read_any"]
 
 _TABLES = ("simulation", "integrator", "output", "box", "vesicle", "tension", "repulsion", "watch")
 _MAX_SEED = 2**31 - 1
+# kJ/mol/nm. OpenMM's default, 10, is for atoms: forces in a membrane are below that from the start.
+_MINIMISE_TOLERANCE = 0.01
 
 
 @dataclass(frozen=True)
@@ -261,6 +263,7 @@ def _general(simulation: Table, integrator: Table, output: Table, stem: str) -> 
         "TemperatureinKelvin": integrator["temperature"],
         "setVelocitiesToTemperature": simulation["thermal_velocities"],
         "Minimise": simulation["minimise"],
+        "MinimiseTolerance": _MINIMISE_TOLERANCE,
         "ReportIntervalInFs": Interval(fs=1000 * output["interval"]),
         "TextOutputs": output["text"],
         "BinOutputs": (),

@@ -116,7 +116,7 @@ KEYS: tuple[Key, ...] = (
     Key(GENERAL, "Seed", p.integer(), "0", "Of all random numbers; 0 draws one, which is printed."),
     Key(GENERAL, "EpsilonH", _ZERO_UP, "4", "ε of the repulsions of heights and areas, kBT."),
     Key(GENERAL, "Minimise", p.boolean, "false", "Minimise the energy before the first step."),
-    Key(GENERAL, "MinimiseTolerance", _POSITIVE, "10", "Largest force left, kJ/mol/nm."),
+    Key(GENERAL, "MinimiseTolerance", _POSITIVE, "10", "Root mean square force left, kJ/mol/nm."),
     Key(GENERAL, "MinimiseMaxIterations", p.integer(), "0", "0 for as many as it takes."),
     Key(GENERAL, "MCBarostatPressure", _ANY, "0", "Isotropic barostat, bar; 0 for none."),
     Key(GENERAL, "MCBarostatTemperature", _ZERO_UP, "0", "Its temperature, K; 0 for T."),

@@ -4,7 +4,8 @@ Farnudi, Ejtehadi and Everaers, Phys. Rev. E 108, 015301 (2023),
 doi:10.1103/PhysRevE.108.015301; the numbers in brackets are its equations. Lengths are in nm,
 times in ps, masses in amu, energies in kJ/mol; a ratio to kBT has no unit. All functions work
 element by element on arrays, which broadcast against each other; `mode_area`, `mode_volume` and
-`mode_energy` sum over modes, `area_excess` up to one lmax.
+`mode_energy` sum over modes, `area_excess` up to one lmax. They take plain numbers, and raise a
+TypeError for Quantities.
 """
 
 from .deformations import area_energy, bending_energy, volume_energy
