@@ -226,6 +226,18 @@ class TestFrames:
         assert result.exit_code != 0
         assert "a trajectory needs --mesh" in result.output
 
+    @pytest.mark.parametrize("command", ["frames", "spectrum", "view"])
+    def test_triangles_of_the_start_are_not_those_of_a_fluid(self, fluid, tmp_path, command):
+        path = alone(fluid, tmp_path)
+        path.with_suffix(".ply").write_bytes((fluid / "run.ply").read_bytes())
+        result = invoke(command, path)
+        assert result.exit_code != 0
+        assert "alone.triangles, which has the triangles of each frame, is gone" in result.output
+        # Whoever gives a mesh knows what it is of.
+        words = ["--mesh", path.with_suffix(".ply")]
+        if command == "frames":
+            assert invoke("frames", path, *words).exit_code == 0
+
     @pytest.mark.parametrize("flips", [0, 0.05])
     @pytest.mark.parametrize("kind", ["vtkhdf", "gsd", "ply"])
     def test_a_surface_that_spans_its_box_stays_whole(self, tmp_path, kind, flips):

@@ -47,6 +47,7 @@ def open_trajectory(
     import numpy as np
 
     from .. import analysis
+    from .._start_mesh import check_whole
     from ..analysis.surface_series import components
     from ..mesh import Mesh
 
@@ -63,6 +64,8 @@ def open_trajectory(
             "membrane first"
         )
     own = trajectory.triangles(None if mesh is None else mesh.num_triangles)
+    if own is None and mesh is not None and mesh_path is None:
+        check_whole(start, source)
     if own is None and mesh is None:
         raise click.UsageError(
             f"a trajectory needs --mesh, which has its triangles: there is neither {start.name} "

@@ -19,7 +19,8 @@ import openmm
 from openmm import unit
 from openmm.app.internal.xtc_utils import xtc_write_frame
 
-from .._mesh import files, geometry
+from .._mesh import geometry
+from .._start_mesh import write_start
 from .._types import Array, File
 from .._writing import in_memory, naming
 from ..analysis import mean_curvature, shape
@@ -216,8 +217,7 @@ class Outputs:
             meshes = [membrane.mesh for membrane in self._cfg.membranes]
             vertices, triangles = joined((mesh.vertices, mesh.triangles) for mesh in meshes)
             box = next((mesh.box for mesh in meshes if mesh.box is not None), None)
-            with naming(self._start):
-                files.write(self._start, vertices, triangles, binary=True, box=box)
+            write_start(self._start, vertices, triangles, box, self._cfg.flows)
 
     def write(self, frame: Frame) -> None:
         """Add one frame to every file.

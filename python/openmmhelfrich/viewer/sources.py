@@ -16,6 +16,7 @@ import openmm.app
 from .._mesh import files
 from .._numbers import whole_number
 from .._present import is_periodic, surfaces_of
+from .._start_mesh import check_whole
 from .._types import Array
 from ..analysis._arrays import frames_of, positions_in
 from ..analysis.tables import import_h5py
@@ -262,6 +263,8 @@ def _triangles_beside(path: Path, num_particles: int, num_frames: int, mesh):
             f"view: {path} has no triangles beside it, neither {start.name} nor {flowing.name}; "
             "give its mesh with --mesh, or mesh= in Python"
         )
+    if mesh is None:
+        check_whole(start, path)
     return triangles, box
 
 
