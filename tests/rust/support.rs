@@ -195,12 +195,12 @@ pub fn random(seed: u64) -> impl FnMut() -> f64 {
 fn usual_terms(potential: &'static dyn Potential) -> Vec<Term<'static>> {
     let parameters = potential.parameters().iter().enumerate();
     let values: Vec<f64> = parameters
-        .map(|(index, parameter)| match (parameter.default, parameter.domain) {
-            (Some(default), _) => default,
-            (_, Domain::Share) => 0.4,
+        .map(|(index, parameter)| match (parameter.domain, parameter.default) {
+            (Domain::Share, _) => 0.4,
+            (_, Some(default)) => default,
             // Different ones, so that none is taken for another.
             _ if parameter.energy != 0 => 2.0 + index as f64,
-            _ => 2.8f64.powi(parameter.length.into()),
+            _ => 3f64.powi(parameter.length.into()),
         })
         .collect();
     let forms = 0..potential.forms().map_or(1, |(_, names)| names.len());
