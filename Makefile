@@ -20,7 +20,7 @@ CPP := $(wildcard $(foreach any,wrappers/* wrappers/*/* wrappers/*/*/* tests/cpp
 PY := $(wildcard .ci setup.py python tests examples benches docs/conf.py docs/_site)
 
 .DEFAULT_GOAL := build
-.PHONY: build test lint format wheel demo paper bench docs docs-links fuzz sanitize clean help check-tools test-rust \
+.PHONY: build test lint derived format wheel demo paper bench docs docs-links fuzz sanitize clean help check-tools test-rust \
         test-package test-python FORCE
 
 build: $(VENV)/.installed ## build everything and install it in .venv (the default)
@@ -37,6 +37,11 @@ lint: $(VENV)/.requirements ## check formatting, lint Rust, C++ and Python, and 
 	@$(VENV)/bin/clang-format --dry-run -Werror $(CPP)
 	@$(VENV)/bin/ruff check -q $(PY)
 	@$(VENV)/bin/ruff format -q --check $(PY)
+
+derived: $(VENV)/.requirements ## write anew what follows from the potentials: their lists, the C functions, the stubs
+	@$(VENV)/bin/python .ci/potentials.py
+	@$(MAKE) -s build
+	@$(VENV)/bin/python .ci/stubs.py
 
 format: $(VENV)/.requirements ## format Rust, C++ and Python in place
 	@cargo fmt

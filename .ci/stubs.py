@@ -1,6 +1,6 @@
 """Write python/openmmhelfrich/forces.pyi, which tells type checkers what the force classes take.
 
-    .venv/bin/python .ci/stubs.py
+    .venv/bin/python .ci/stubs.py (or make derived)
 
 SWIG makes forces.py, and the package changes its classes when they are imported; so the signatures
 here are those of the live classes. The types are those of the C++ headers.

@@ -54,7 +54,7 @@ impl Module {
 }
 
 /// Compose and validate the modules, and write them to `out` as `single.wgsl`, `double.wgsl`, with a Rust file
-/// `shaders.rs` that has them and the stems of the potentials in the order of their numbers.
+/// `shaders.rs` that has them and the names of the potentials in the order of their numbers.
 pub fn write_modules(folder: &Path, out: &Path) -> Result<(), String> {
     let stems = stems(&folder.join("potentials"))?;
     let integers = read(&folder.join("openmm_integers.c"))?;
@@ -69,9 +69,10 @@ pub fn write_modules(folder: &Path, out: &Path) -> Result<(), String> {
             ["prelude", "kernels"].map(|name| read(&folder.join(format!("openmm_{name}.c"))));
         write(&out.join(format!("{precision}.c")), &format!("{}{program}{}\0", before?, after?))?;
     }
+    let classes: Vec<_> = stems.iter().map(|stem| class_of(stem)).collect();
     let mut rust = format!(
-        "/// The stems of the potentials; a term has the index of its potential.\n\
-         pub const POTENTIALS: &[&str] = &{stems:?};\n"
+        "/// The names of the potentials; a term has the index of its potential.\n\
+         pub const POTENTIALS: &[&str] = &{classes:?};\n"
     );
     for precision in ["single", "double"] {
         let name = precision.to_uppercase();
@@ -93,7 +94,13 @@ fn write(path: &Path, text: &str) -> Result<(), String> {
     fs::write(path, text).map_err(|error| format!("cannot write {}: {error}", path.display()))
 }
 
-/// The potentials' names, sorted.
+/// "TriangleHeightForce" for "triangle_height".
+fn class_of(stem: &str) -> String {
+    let words = stem.split('_').filter_map(|word| word.split_at_checked(1));
+    words.map(|(first, rest)| first.to_uppercase() + rest).collect::<String>() + "Force"
+}
+
+/// The names of the potentials' files, sorted.
 fn stems(folder: &Path) -> Result<Vec<String>, String> {
     let entries = fs::read_dir(folder)
         .map_err(|error| format!("cannot read {}: {error}", folder.display()))?;

@@ -1,7 +1,7 @@
 //! Part of build.rs: what `src/potentials/codes.rs` and `src/evaluator/gpu/interface.rs` state, as WGSL, and the check
 //! that a device lays it out as they do.
 
-use crate::codes::{Coefficients, Form, Needs, Scheme, SpringForm, UNSIGNED};
+use crate::codes::{FORMS, Needs, UNSIGNED};
 use crate::interface::{Binding, FieldInfo, FrameRecord, Item, NUMBERS, TermRecord, Wishes};
 use naga::{Module, TypeInner};
 use std::ffi::CStr;
@@ -19,12 +19,8 @@ pub fn declarations() -> String {
     wishes.iter_names().for_each(|(name, bit)| constant(name, bit.bits()));
     NUMBERS.iter().for_each(|(name, value)| constant(name, *value));
     constant("UNSIGNED", UNSIGNED);
-    for (prefix, names) in [
-        ("SCHEME", Scheme::NAMES),
-        ("FORM", Form::NAMES),
-        ("COEFFICIENTS", Coefficients::NAMES),
-        ("SPRING", SpringForm::NAMES),
-    ] {
+    for (_, _, prefix, names) in FORMS {
+        let Some(prefix) = prefix else { continue };
         for (number, name) in names.iter().enumerate() {
             let name = snake_case(name).to_uppercase();
             constant(&format!("{prefix}_{name}"), number as u32);

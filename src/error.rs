@@ -131,7 +131,7 @@ pub enum Error {
     )]
     TouchingParticle { force: &'static str, particle: u32, triangle: usize, corners: [u32; 3] },
 
-    /// What there is to be for each vertex is of more or fewer.
+    /// What must be given for each vertex has been given for more or fewer of them.
     #[error(
         "{name} is of {count} vertices, but there are {vertices}; give one row for each, in ascending order of particle index"
     )]
@@ -160,7 +160,7 @@ pub enum Error {
         "the edge ({}, {}) of triangle {triangle} is {length:.6} nm long, but its spring must be shorter than {longest:.6} nm, so that the energy of {force} is not finite; use a smaller time step, another reference, or a smaller ratio of lengths at rest to the longest", .edge[0], .edge[1]
     )]
     LongSpring { force: &'static str, triangle: usize, edge: [u32; 2], length: f64, longest: f64 },
-    /// A vertex with a momentum that no time step could go on from.
+    /// A velocity or force that is not finite where masses follow plaquettes.
     #[error(
         "the velocity of particle {particle} or the force on it is not finite: the simulation has blown up; use a smaller time step or a better relaxed start"
     )]

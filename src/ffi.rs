@@ -88,7 +88,7 @@ pub(crate) unsafe fn text<'a>(text: *const c_char) -> &'a str {
 /// # Safety
 /// `data` must point to `length` values, unless `length` is 0.
 unsafe fn slice<'a, T>(data: *const T, length: usize) -> &'a [T] {
-    // A count below zero has become one that no memory holds.
+    // A negative count has become, without its sign, one that no memory holds.
     let fits = length <= isize::MAX as usize / size_of::<T>().max(1);
     assert!(fits && (length == 0 || !data.is_null()), "there is no array of {length} values");
     if length == 0 { &[] } else { unsafe { slice::from_raw_parts(data, length) } }

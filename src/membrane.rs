@@ -151,8 +151,8 @@ impl Membrane {
         !self.surface.has_outside && terms.iter().any(|term| term.potential.needs_outside())
     }
 
-    /// Evaluate terms on the processor, whatever has been chosen, for what it says of the positions: an error names its
-    /// culprit.
+    /// Evaluate terms on the processor, whatever has been chosen, to learn what is wrong with the positions: its errors name
+    /// the culprit.
     ///
     /// # Errors
     /// Those of [`Self::evaluate`].
@@ -184,7 +184,7 @@ impl Membrane {
     /// # Errors
     /// Those of [`Self::evaluate`].
     pub fn virial(&mut self, terms: &[Term], at: Configuration) -> Result<Matrix3<f64>> {
-        // What this refuses, nothing below has to.
+        // What this refuses need not be looked for below.
         self.evaluate(Request::new(terms, at.positions), at.cell)?;
         let surface = &mut self.surface;
         let of_contacts = self.contacts.virial(&surface.mesh, at.cell, terms, at.positions)?;

@@ -1,7 +1,7 @@
 //! Part of build.rs: C++ that compares the headers with `src/potentials/codes.rs`, so that the build stops where
 //! they differ.
 
-use crate::codes::{Attraction, Coefficients, Form, MAX_PARAMETERS, Scheme, SpringForm, Status};
+use crate::codes::{FORMS, MAX_PARAMETERS, Status};
 use crate::interface::{Binding, NUMBERS};
 use std::ffi::CStr;
 
@@ -15,13 +15,7 @@ pub fn comparison() -> String {
          \"MAX_PARAMETERS is not what src/potentials/codes.rs says\");\n"
     );
     text += &enumeration("Helfrich_Status", "Helfrich_", Status::NAMES);
-    for (class, kind, names) in [
-        ("BendingForce", "Scheme", Scheme::NAMES),
-        ("DihedralForce", "Form", Form::NAMES),
-        ("SpringForce", "Form", SpringForm::NAMES),
-        ("ParticleSurfaceForce", "Attraction", Attraction::NAMES),
-        ("LimForce", "Coefficients", Coefficients::NAMES),
-    ] {
+    for (class, kind, _, names) in FORMS {
         let in_cpp = format!("HelfrichPlugin::{class}::");
         text += &enumeration(&format!("{in_cpp}{kind}"), &in_cpp, names);
         let in_c = format!("Helfrich_{class}_");

@@ -20,12 +20,15 @@ const SHIM: &str = "#include <Shim.h>\n#include <CApi.h>\n";
 
 /// The functions of the C API under the names that the shim has them by, for its compiler to check.
 pub fn shim_header(wrappers: &Path) -> String {
-    let header = fs::read_to_string(wrappers.join("include/OpenMMHelfrichCWrapper.h"))
-        .expect("the wrappers are part of the project");
-    header
+    let read = |name: &str| {
+        fs::read_to_string(wrappers.join("include").join(name))
+            .expect("the wrappers are part of the project")
+    };
+    read("OpenMMHelfrichCWrapper.h")
+        .replace("#include \"OpenMMHelfrichCForces.h\"\n", &read("OpenMMHelfrichCForces.h"))
         .replace("Helfrich_", "helfrich_shim_")
         .replace("helfrich_shim_Status", STATUS)
-        .replace("OPENMM_HELFRICH_CWRAPPER_H_", "HELFRICH_SHIM_C_API_H_")
+        .replace("OPENMM_HELFRICH_", "HELFRICH_SHIM_")
 }
 
 /// Write the files. `CApi.h` must be in one of the folders.

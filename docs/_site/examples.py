@@ -1,9 +1,16 @@
-"""An example for each class: what its page shows, with what it prints when the site is built."""
+"""An example for each class: what its page shows, with what it prints when the site is built.
+
+A force without lines here has an example of its arguments.
+"""
 
 from __future__ import annotations
 
 import contextlib
+import inspect
 import io
+
+import openmmhelfrich as helfrich
+from openmmhelfrich import _values
 
 _SPHERE = "mesh = helfrich.Mesh.random_sphere(252, radius=100, seed=1)  # nm\n"
 _STRETCHED = (
@@ -15,6 +22,25 @@ _ENERGY = 'print(f"{mesh.energy(force):.3f} kJ/mol")\n'
 
 def _on(mesh: str, force: str) -> str:
     return f"{mesh}force = helfrich.{force}\n{_ENERGY}"
+
+
+def _usual(name: str) -> str:
+    """For a class that has no lines below: all that it asks for, with lengths of 20 nm."""
+    others = {
+        "reference": "reference=at_rest",
+        "domains": "domains=(mesh.vertices[:, 2] > 0).astype(int)",
+    }
+    scalars = {scalar.name: scalar for scalar in _values.scalars_of(name)}
+    arguments = ["mesh"]
+    for parameter in inspect.signature(getattr(helfrich, name)).parameters.values():
+        if parameter.name in scalars and parameter.default is parameter.empty:
+            powers = {d.name: p for d, p in scalars[parameter.name].unit.iter_base_dimensions()}
+            value = 1 if "mass" in powers else 20 ** int(powers.get("length", 0))
+            arguments.append(f"{parameter.name}={value}")
+        elif parameter.name in others:
+            arguments.append(others[parameter.name])
+    mesh = _STRETCHED if others["reference"] in arguments else _SPHERE
+    return _on(mesh, f"{name}({', '.join(arguments)})")
 
 
 #: The lines behind the import of the package, by class.
@@ -169,7 +195,7 @@ _LINES = {
 
 def code(name: str) -> str:
     """The example of a class."""
-    lines = _LINES[name]
+    lines = _LINES.get(name) or _usual(name)
     imports = "import openmmhelfrich as helfrich\n\n"
     for other in ("import openmm\n\n", "import numpy as np\n\n"):
         if lines.startswith(other):
@@ -177,9 +203,15 @@ def code(name: str) -> str:
     return imports + lines
 
 
-def output(name: str) -> str:
-    """What the example prints."""
+def run(name: str) -> tuple[dict[str, object], str]:
+    """What the example leaves, by name, and what it prints."""
+    left: dict[str, object] = {}
     printed = io.StringIO()
     with contextlib.redirect_stdout(printed):
-        exec(compile(code(name), f"the example of {name}", "exec"), {})
-    return printed.getvalue()
+        exec(compile(code(name), f"the example of {name}", "exec"), left)
+    return left, printed.getvalue()
+
+
+def output(name: str) -> str:
+    """What the example prints."""
+    return run(name)[1]

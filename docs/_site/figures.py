@@ -1,4 +1,7 @@
-"""A figure for each energy: what it measures, and its energy as the package computes it."""
+"""A figure for each energy: what it measures, and its energy as the package computes it.
+
+A force without a figure here has the energy of its example over the size of the mesh.
+"""
 
 from __future__ import annotations
 
@@ -13,6 +16,8 @@ import numpy as np
 import openmm
 import openmmhelfrich as helfrich
 from matplotlib.patches import Circle, FancyArrowPatch, Polygon
+
+from . import examples
 
 _GREY, _FILL, _MARK = "#9aa5b1", "#e8eef5", "#c2410c"
 _STYLE = {
@@ -486,6 +491,16 @@ def _adhesion(ax):
     ax.legend(frameon=False)
 
 
+def _usual(name):
+    def draw(ax):
+        left, _ = examples.run(name)
+        x = np.linspace(0.8, 1.2, 25)
+        _energies(ax, lambda _: left["force"], [left["mesh"].scaled(v) for v in x], x)
+        ax.set(xlabel="scale of the mesh", ylabel="E (kJ/mol)")
+
+    return draw
+
+
 #: For each class what draws what it measures, with a letter, and what draws its energy.
 _FIGURES = {
     "SurfaceAreaForce": (_whole, "A", _area),
@@ -515,7 +530,7 @@ _FIGURES = {
 
 def draw(name: str, path: Path) -> None:
     """Draw the figure of a class of force."""
-    sketch, letter, curve = _FIGURES[name]
+    sketch, letter, curve = _FIGURES.get(name) or (_whole, "", _usual(name))
     with mpl.rc_context(_STYLE):
         figure, (left, right) = plt.subplots(
             1, 2, figsize=(6.4, 2.5), width_ratios=(1, 1.4), layout="constrained"

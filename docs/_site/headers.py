@@ -10,6 +10,7 @@ from pathlib import Path
 INCLUDE = Path(__file__).parents[2] / "wrappers" / "include"
 HEADERS = INCLUDE / "openmm-helfrich"
 C_HEADER = INCLUDE / "OpenMMHelfrichCWrapper.h"
+C_FORCES = INCLUDE / "OpenMMHelfrichCForces.h"
 C_STATUS = HEADERS / "internal" / "Status.h"
 
 _COMMENT = re.compile(r"[ \t]*/\*\*\s*\n?(.*?)\*/\s*\n", re.DOTALL)
@@ -104,9 +105,10 @@ def _members(body: str) -> list[Member]:
 
 @cache
 def c_functions() -> list[Member]:
-    """All functions and enumerations for C, in the order of its header."""
+    """All functions and enumerations for C, in the order of its headers."""
     text = C_STATUS.read_text(encoding="utf-8")
-    text += C_HEADER.read_text(encoding="utf-8").partition('extern "C" {')[2]
+    for header in (C_HEADER, C_FORCES):
+        text += header.read_text(encoding="utf-8").partition('extern "C" {')[2]
     comment = r"(?:/\*\*(?P<text>(?:(?!\*/).)*)\*/\s*)?"
     function = r"extern (?P<function>[^;]*\));"
     enumeration = r"typedef enum (?:\w+ )?\{(?P<values>[^}]*)\} (?P<name>\w+);"

@@ -253,19 +253,17 @@ def _c() -> list[str]:
     text = headers.C_HEADER.read_text(encoding="utf-8")
     head = headers.plain(re.search(r"/\*\*(.*?)\*/", text, re.DOTALL)[1])
     lines = [title("C"), "``#include <OpenMMHelfrichCWrapper.h>``", "", *prose(head)]
-    group = None
+    sections: dict[str, list[headers.Member]] = {}
     for member in headers.c_functions():
         found = re.match(r"Helfrich_([A-Z]\w+?)_", member.name)
-        section = found[1] if found else "The library"
-        if section != group and not (section == "The library" and group):
-            group = section
-            lines += [title(section, "-")]
-        if member.is_enumeration:
-            lines += [f".. c:enum:: {member.name}", "", *indented(prose(member.text))]
-            for value in member.values:
+        sections.setdefault(found[1] if found else "The library", []).append(member)
+    for section, members in sections.items():
+        lines += [title(section, "-")]
+        for member in members:
+            kind, values = ("enum", member.values) if member.is_enumeration else ("function", ())
+            lines += [f".. c:{kind}:: {member.declaration}", "", *indented(prose(member.text))]
+            for value in values:
                 lines += [f"   .. c:enumerator:: {value.declaration}", ""]
-        else:
-            lines += [f".. c:function:: {member.declaration}", "", *indented(prose(member.text))]
     return lines
 
 

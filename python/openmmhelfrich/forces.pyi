@@ -20,28 +20,28 @@ __all__ = [
     "MonteCarloMembraneTension",
     "SurfaceViscosityThermostat",
     "TriangulatedForce",
-    "SurfaceAreaForce",
-    "EnclosedVolumeForce",
-    "BendingForce",
-    "TriangleHeightForce",
-    "DihedralForce",
-    "TriangleAreaForce",
-    "PlaquetteAreaForce",
-    "TriangleAreaRepulsionForce",
-    "SurfaceRepulsionForce",
-    "ParticleSurfaceForce",
-    "EdgeTensionForce",
-    "GaussianCurvatureForce",
-    "SkalakForce",
-    "LimForce",
-    "PressureForce",
-    "SurfaceTensionForce",
-    "OsmoticPressureForce",
     "AreaDifferenceForce",
-    "NeoHookeanForce",
-    "LinearElasticForce",
-    "SpringForce",
+    "BendingForce",
+    "DihedralForce",
+    "EdgeTensionForce",
+    "EnclosedVolumeForce",
+    "GaussianCurvatureForce",
+    "LimForce",
     "LineTensionForce",
+    "LinearElasticForce",
+    "NeoHookeanForce",
+    "OsmoticPressureForce",
+    "ParticleSurfaceForce",
+    "PlaquetteAreaForce",
+    "PressureForce",
+    "SkalakForce",
+    "SpringForce",
+    "SurfaceAreaForce",
+    "SurfaceRepulsionForce",
+    "SurfaceTensionForce",
+    "TriangleAreaForce",
+    "TriangleAreaRepulsionForce",
+    "TriangleHeightForce",
     "VariableMassVerletIntegrator",
     "VariableMassLangevinIntegrator",
 ]
@@ -208,46 +208,27 @@ class MembraneForce(TriangulatedForce):
     def getSwitches(self) -> int:
         """Get the state of all switches, one bit for each in the core's order."""
 
-class SurfaceAreaForce(MembraneForce):
-    """Keeps the total area A of a membrane near a target A0:"""
+class AreaDifferenceForce(MembraneForce):
+    """Area-difference elasticity: the two monolayers of a closed membrane cannot exchange lipids,
+    and resist changes of the difference in their areas.
+    """
 
     def __init__(
         self, triangles: _Triangles, modulus: _Scalar, target: _Scalar, *, offset: int = 0
     ) -> None: ...
     def getModulus(self) -> float:
-        """Get the area modulus kA, kJ/mol/nm^2."""
+        """Get the modulus m, kJ/mol/nm^2."""
     def setModulus(self, modulus: _Scalar, /) -> None:
-        """Set the area modulus kA, kJ/mol/nm^2, zero or above."""
+        """Set the modulus m, kJ/mol/nm^2, zero or above."""
     def getTarget(self) -> float:
-        """Get the target area A0, nm^2."""
+        """Get the target M0 of the integral of mean curvature, nm."""
     def setTarget(self, target: _Scalar, /) -> None:
-        """Set the target area A0, nm^2, above zero."""
+        """Set the target M0 of the integral of mean curvature, nm, of either sign."""
     @staticmethod
     def isinstance(force: openmm.Force) -> bool:
         """Whether a force of OpenMM is of this class."""
     @staticmethod
-    def cast(force: openmm.Force) -> SurfaceAreaForce:
-        """The same force as an object of this class."""
-
-class EnclosedVolumeForce(MembraneForce):
-    """Keeps the volume V that a membrane encloses near a target V0:"""
-
-    def __init__(
-        self, triangles: _Triangles, modulus: _Scalar, target: _Scalar, *, offset: int = 0
-    ) -> None: ...
-    def getModulus(self) -> float:
-        """Get the volume modulus kV, kJ/mol/nm^3."""
-    def setModulus(self, modulus: _Scalar, /) -> None:
-        """Set the volume modulus kV, kJ/mol/nm^3, zero or above."""
-    def getTarget(self) -> float:
-        """Get the target volume V0, nm^3."""
-    def setTarget(self, target: _Scalar, /) -> None:
-        """Set the target volume V0, nm^3, above zero."""
-    @staticmethod
-    def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
-    @staticmethod
-    def cast(force: openmm.Force) -> EnclosedVolumeForce:
+    def cast(force: openmm.Force) -> AreaDifferenceForce:
         """The same force as an object of this class."""
 
 class BendingForce(MembraneForce):
@@ -306,27 +287,6 @@ class BendingForce(MembraneForce):
     def cast(force: openmm.Force) -> BendingForce:
         """The same force as an object of this class."""
 
-class TriangleHeightForce(MembraneForce):
-    """Keeps triangles from degenerating by a repulsion at small heights:"""
-
-    def __init__(
-        self, triangles: _Triangles, minHeight: _Scalar, epsilon: _Scalar, *, offset: int = 0
-    ) -> None: ...
-    def getMinHeight(self) -> float:
-        """Get the height d, nm."""
-    def setMinHeight(self, minHeight: _Scalar, /) -> None:
-        """Set the height d, nm, zero or above."""
-    def getEpsilon(self) -> float:
-        """Get the strength epsilon, kJ/mol."""
-    def setEpsilon(self, epsilon: _Scalar, /) -> None:
-        """Set the strength epsilon, kJ/mol, zero or above."""
-    @staticmethod
-    def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
-    @staticmethod
-    def cast(force: openmm.Force) -> TriangleHeightForce:
-        """The same force as an object of this class."""
-
 class DihedralForce(MembraneForce):
     """Stiff hinges between neighbouring triangles:"""
 
@@ -373,105 +333,230 @@ class DihedralForce(MembraneForce):
     def cast(force: openmm.Force) -> DihedralForce:
         """The same force as an object of this class."""
 
-class TriangleAreaForce(MembraneForce):
-    """Keeps the area a of each triangle near a target a0:"""
+class EdgeTensionForce(MembraneForce):
+    """The line tension of a membrane's borders:"""
+
+    def __init__(self, triangles: _Triangles, tension: _Scalar, *, offset: int = 0) -> None: ...
+    def getTension(self) -> float:
+        """Get the energy per length, kJ/mol/nm."""
+    def setTension(self, tension: _Scalar, /) -> None:
+        """Set the energy per length, kJ/mol/nm."""
+    @staticmethod
+    def isinstance(force: openmm.Force) -> bool:
+        """Whether a force of OpenMM is of this class."""
+    @staticmethod
+    def cast(force: openmm.Force) -> EdgeTensionForce:
+        """The same force as an object of this class."""
+
+class EnclosedVolumeForce(MembraneForce):
+    """Keeps the volume V that a membrane encloses near a target V0:"""
+
+    def __init__(
+        self, triangles: _Triangles, modulus: _Scalar, target: _Scalar, *, offset: int = 0
+    ) -> None: ...
+    def getModulus(self) -> float:
+        """Get the volume modulus kV, kJ/mol/nm^3."""
+    def setModulus(self, modulus: _Scalar, /) -> None:
+        """Set the volume modulus kV, kJ/mol/nm^3, zero or above."""
+    def getTarget(self) -> float:
+        """Get the target volume V0, nm^3."""
+    def setTarget(self, target: _Scalar, /) -> None:
+        """Set the target volume V0, nm^3, above zero."""
+    @staticmethod
+    def isinstance(force: openmm.Force) -> bool:
+        """Whether a force of OpenMM is of this class."""
+    @staticmethod
+    def cast(force: openmm.Force) -> EnclosedVolumeForce:
+        """The same force as an object of this class."""
+
+class GaussianCurvatureForce(MembraneForce):
+    """The elasticity of Gaussian curvature:"""
+
+    def __init__(
+        self, triangles: _Triangles, modulus: _Scalar | ArrayLike, *, offset: int = 0
+    ) -> None: ...
+    def getModulus(self) -> float:
+        """Get the modulus kappa_G, kJ/mol."""
+    def setModulus(self, modulus: _Scalar, /) -> None:
+        """Set the modulus kappa_G, kJ/mol. Values of single vertices are given up."""
+    def getVertexModulus(self) -> tuple[float, ...]:
+        """Get the modulus of each vertex, kJ/mol; empty if all have the same."""
+    def setVertexModulus(self, values: _Values, /) -> None:
+        """Give each vertex its own modulus, which replaces the scalar."""
+    @staticmethod
+    def isinstance(force: openmm.Force) -> bool:
+        """Whether a force of OpenMM is of this class."""
+    @staticmethod
+    def cast(force: openmm.Force) -> GaussianCurvatureForce:
+        """The same force as an object of this class."""
+
+class LimForce(MembraneForce):
+    """Elasticity of the skeleton of a red blood cell, which hardens, against a reference shape:"""
+
+    Lim2002: ClassVar[int]
+    Amoudruz2023: ClassVar[int]
+    def __init__(
+        self,
+        triangles: _Triangles,
+        shearModulus: _Scalar,
+        areaModulus: _Scalar,
+        reference: Mesh | _Values,
+        coefficients: int | str = 0,
+        *,
+        offset: int = 0,
+    ) -> None: ...
+    def getCoefficients(self) -> int:
+        """Get the set of coefficients."""
+    def setCoefficients(self, coefficients: int | str, /) -> None:
+        """Set the set of coefficients. updateParametersInContext() tells existing Contexts."""
+    def getShearModulus(self) -> float:
+        """Get the modulus mu, kJ/mol/nm^2."""
+    def setShearModulus(self, shearModulus: _Scalar, /) -> None:
+        """Set the modulus mu, kJ/mol/nm^2, zero or above."""
+    def getAreaModulus(self) -> float:
+        """Get the modulus K, kJ/mol/nm^2."""
+    def setAreaModulus(self, areaModulus: _Scalar, /) -> None:
+        """Set the modulus K, kJ/mol/nm^2, zero or above."""
+    @staticmethod
+    def isinstance(force: openmm.Force) -> bool:
+        """Whether a force of OpenMM is of this class."""
+    @staticmethod
+    def cast(force: openmm.Force) -> LimForce:
+        """The same force as an object of this class."""
+    def setReference(self, reference: Mesh | _Values, /) -> None:
+        """Set where the vertices are at rest. Tell Contexts by updateParametersInContext()."""
+    def getReference(self) -> NDArray[np.float64]:
+        """Where the vertices are at rest, shape (num_vertices, 3), nm."""
+    def setReferenceBox(self, box: _Values | None, /) -> None:
+        """Say in which periodic box the reference is: its sides are nearest images in this box."""
+    def getReferenceBox(self) -> NDArray[np.float64] | None:
+        """The periodic box in which the reference is, shape (3, 3), nm, or None."""
+
+class LineTensionForce(MembraneForce):
+    """The tension of the line between domains of a membrane:"""
+
+    def __init__(
+        self, triangles: _Triangles, tension: _Scalar, domains: ArrayLike, *, offset: int = 0
+    ) -> None: ...
+    def getTension(self) -> float:
+        """Get the energy per length, kJ/mol/nm."""
+    def setTension(self, tension: _Scalar, /) -> None:
+        """Set the energy per length, kJ/mol/nm."""
+    @staticmethod
+    def isinstance(force: openmm.Force) -> bool:
+        """Whether a force of OpenMM is of this class."""
+    @staticmethod
+    def cast(force: openmm.Force) -> LineTensionForce:
+        """The same force as an object of this class."""
+    def setDomains(self, domains: ArrayLike, /) -> None:
+        """Say to which domain each vertex belongs. Tell Contexts by updateParametersInContext()."""
+    def getDomains(self) -> NDArray[np.int64]:
+        """The domain of each vertex in ascending order of particle index, (num_vertices,), int."""
+    def getDomainsInContext(self, context: openmm.Context) -> NDArray[np.int64]:
+        """The domain of each vertex as it is in a Context now, where neighbours may exchange them.
+        """
+
+class LinearElasticForce(MembraneForce):
+    """The simplest elasticity against a reference shape, quadratic in Green's strain e of each
+    triangle:
+    """
 
     def __init__(
         self,
         triangles: _Triangles,
-        modulus: _Scalar,
-        target: _Scalar | ArrayLike,
+        shearModulus: _Scalar,
+        areaModulus: _Scalar,
+        reference: Mesh | _Values,
         *,
         offset: int = 0,
     ) -> None: ...
-    def getModulus(self) -> float:
-        """Get the area modulus kA, kJ/mol/nm^2."""
-    def setModulus(self, modulus: _Scalar, /) -> None:
-        """Set the area modulus kA, kJ/mol/nm^2, zero or above."""
-    def getTarget(self) -> float:
-        """Get the target area a0 of each triangle, nm^2."""
-    def setTarget(self, target: _Scalar, /) -> None:
-        """Set the target area a0 of each triangle, nm^2, above zero. Values of single triangles are
-        given up.
-        """
-    def getTriangleTargets(self) -> tuple[float, ...]:
-        """Get the target area of each triangle, nm^2; empty if all have the same."""
-    def setTriangleTargets(self, values: _Values, /) -> None:
-        """Give each triangle its own target area, which replaces the scalar."""
+    def getShearModulus(self) -> float:
+        """Get the shear modulus mu, kJ/mol/nm^2."""
+    def setShearModulus(self, shearModulus: _Scalar, /) -> None:
+        """Set the shear modulus mu, kJ/mol/nm^2, zero or above."""
+    def getAreaModulus(self) -> float:
+        """Get the area modulus K, kJ/mol/nm^2."""
+    def setAreaModulus(self, areaModulus: _Scalar, /) -> None:
+        """Set the area modulus K, kJ/mol/nm^2, zero or above."""
     @staticmethod
     def isinstance(force: openmm.Force) -> bool:
         """Whether a force of OpenMM is of this class."""
     @staticmethod
-    def cast(force: openmm.Force) -> TriangleAreaForce:
+    def cast(force: openmm.Force) -> LinearElasticForce:
         """The same force as an object of this class."""
+    def setReference(self, reference: Mesh | _Values, /) -> None:
+        """Set where the vertices are at rest. Tell Contexts by updateParametersInContext()."""
+    def getReference(self) -> NDArray[np.float64]:
+        """Where the vertices are at rest, shape (num_vertices, 3), nm."""
+    def setReferenceBox(self, box: _Values | None, /) -> None:
+        """Say in which periodic box the reference is: its sides are nearest images in this box."""
+    def getReferenceBox(self) -> NDArray[np.float64] | None:
+        """The periodic box in which the reference is, shape (3, 3), nm, or None."""
 
-class PlaquetteAreaForce(MembraneForce):
-    """Keeps the plaquettes of all N vertices alike:"""
+class NeoHookeanForce(MembraneForce):
+    """Elasticity of a rubber-like membrane against a reference shape:"""
 
     def __init__(
-        self, triangles: _Triangles, stiffness: _Scalar, target: _Scalar, *, offset: int = 0
+        self,
+        triangles: _Triangles,
+        shearModulus: _Scalar,
+        areaModulus: _Scalar,
+        reference: Mesh | _Values,
+        *,
+        offset: int = 0,
     ) -> None: ...
-    def getStiffness(self) -> float:
-        """Get the stiffness k, (3/2) kB T in the paper, kJ/mol."""
-    def setStiffness(self, stiffness: _Scalar, /) -> None:
-        """Set the stiffness k, (3/2) kB T in the paper, kJ/mol, zero or above."""
-    def getTarget(self) -> float:
-        """Get the target A0 of the total area, nm^2."""
-    def setTarget(self, target: _Scalar, /) -> None:
-        """Set the target A0 of the total area, nm^2, above zero."""
+    def getShearModulus(self) -> float:
+        """Get the shear modulus mu, kJ/mol/nm^2."""
+    def setShearModulus(self, shearModulus: _Scalar, /) -> None:
+        """Set the shear modulus mu, kJ/mol/nm^2, zero or above."""
+    def getAreaModulus(self) -> float:
+        """Get the area modulus K, kJ/mol/nm^2."""
+    def setAreaModulus(self, areaModulus: _Scalar, /) -> None:
+        """Set the area modulus K, kJ/mol/nm^2, zero or above."""
     @staticmethod
     def isinstance(force: openmm.Force) -> bool:
         """Whether a force of OpenMM is of this class."""
     @staticmethod
-    def cast(force: openmm.Force) -> PlaquetteAreaForce:
+    def cast(force: openmm.Force) -> NeoHookeanForce:
         """The same force as an object of this class."""
+    def setReference(self, reference: Mesh | _Values, /) -> None:
+        """Set where the vertices are at rest. Tell Contexts by updateParametersInContext()."""
+    def getReference(self) -> NDArray[np.float64]:
+        """Where the vertices are at rest, shape (num_vertices, 3), nm."""
+    def setReferenceBox(self, box: _Values | None, /) -> None:
+        """Say in which periodic box the reference is: its sides are nearest images in this box."""
+    def getReferenceBox(self) -> NDArray[np.float64] | None:
+        """The periodic box in which the reference is, shape (3, 3), nm, or None."""
 
-class TriangleAreaRepulsionForce(MembraneForce):
-    """Keeps triangles from vanishing by a repulsion at small areas:"""
+class OsmoticPressureForce(MembraneForce):
+    """The osmotic pressure of solutes that cannot pass a membrane, which water can:"""
 
     def __init__(
-        self, triangles: _Triangles, minArea: _Scalar, epsilon: _Scalar, *, offset: int = 0
+        self,
+        triangles: _Triangles,
+        solutes: _Scalar,
+        concentration: _Scalar,
+        thermalEnergy: _Scalar,
+        *,
+        offset: int = 0,
     ) -> None: ...
-    def getMinArea(self) -> float:
-        """Get the area a_m below which the repulsion is strong, nm^2."""
-    def setMinArea(self, minArea: _Scalar, /) -> None:
-        """Set the area a_m below which the repulsion is strong, nm^2, zero or above."""
-    def getEpsilon(self) -> float:
-        """Get the strength, kJ/mol."""
-    def setEpsilon(self, epsilon: _Scalar, /) -> None:
-        """Set the strength, kJ/mol, zero or above."""
+    def getSolutes(self) -> float:
+        """Get the number n of solutes inside."""
+    def setSolutes(self, solutes: _Scalar, /) -> None:
+        """Set the number n of solutes inside, above zero."""
+    def getConcentration(self) -> float:
+        """Get the concentration c of solutes outside, 1/nm^3."""
+    def setConcentration(self, concentration: _Scalar, /) -> None:
+        """Set the concentration c of solutes outside, 1/nm^3, above zero."""
+    def getThermalEnergy(self) -> float:
+        """Get the thermal energy kT, kJ/mol."""
+    def setThermalEnergy(self, thermalEnergy: _Scalar, /) -> None:
+        """Set the thermal energy kT, kJ/mol, above zero."""
     @staticmethod
     def isinstance(force: openmm.Force) -> bool:
         """Whether a force of OpenMM is of this class."""
     @staticmethod
-    def cast(force: openmm.Force) -> TriangleAreaRepulsionForce:
-        """The same force as an object of this class."""
-
-class SurfaceRepulsionForce(MembraneForce):
-    """Keeps surfaces from passing through themselves and each other, by a repulsion of vertices and
-    triangles and of edges:
-    """
-
-    def __init__(
-        self, triangles: _Triangles, distance: _Scalar, epsilon: _Scalar, *, offset: int = 0
-    ) -> None: ...
-    def getDistance(self) -> float:
-        """Get the distance D below which there is a repulsion, nm."""
-    def setDistance(self, distance: _Scalar, /) -> None:
-        """Set the distance D below which there is a repulsion, nm, above zero."""
-    def getEpsilon(self) -> float:
-        """Get the strength, kJ/mol."""
-    def setEpsilon(self, epsilon: _Scalar, /) -> None:
-        """Set the strength, kJ/mol, zero or above."""
-    def getOnlyBetweenParts(self) -> bool:
-        """Get whether only different connected parts of the triangles repel each other."""
-    def setOnlyBetweenParts(self, only: bool, /) -> None:
-        """Choose whether only different connected parts of the triangles repel each other."""
-    @staticmethod
-    def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
-    @staticmethod
-    def cast(force: openmm.Force) -> SurfaceRepulsionForce:
+    def cast(force: openmm.Force) -> OsmoticPressureForce:
         """The same force as an object of this class."""
 
 class ParticleSurfaceForce(MembraneForce):
@@ -532,40 +617,40 @@ class ParticleSurfaceForce(MembraneForce):
     def getParticles(self) -> NDArray[np.int64]:
         """The indices of the particles that the surface acts on, shape (num_particles,)."""
 
-class EdgeTensionForce(MembraneForce):
-    """The line tension of a membrane's borders:"""
-
-    def __init__(self, triangles: _Triangles, tension: _Scalar, *, offset: int = 0) -> None: ...
-    def getTension(self) -> float:
-        """Get the energy per length, kJ/mol/nm."""
-    def setTension(self, tension: _Scalar, /) -> None:
-        """Set the energy per length, kJ/mol/nm."""
-    @staticmethod
-    def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
-    @staticmethod
-    def cast(force: openmm.Force) -> EdgeTensionForce:
-        """The same force as an object of this class."""
-
-class GaussianCurvatureForce(MembraneForce):
-    """The elasticity of Gaussian curvature:"""
+class PlaquetteAreaForce(MembraneForce):
+    """Keeps the plaquettes of all N vertices alike:"""
 
     def __init__(
-        self, triangles: _Triangles, modulus: _Scalar | ArrayLike, *, offset: int = 0
+        self, triangles: _Triangles, stiffness: _Scalar, target: _Scalar, *, offset: int = 0
     ) -> None: ...
-    def getModulus(self) -> float:
-        """Get the modulus kappa_G, kJ/mol."""
-    def setModulus(self, modulus: _Scalar, /) -> None:
-        """Set the modulus kappa_G, kJ/mol. Values of single vertices are given up."""
-    def getVertexModulus(self) -> tuple[float, ...]:
-        """Get the modulus of each vertex, kJ/mol; empty if all have the same."""
-    def setVertexModulus(self, values: _Values, /) -> None:
-        """Give each vertex its own modulus, which replaces the scalar."""
+    def getStiffness(self) -> float:
+        """Get the stiffness k, (3/2) kB T in the paper, kJ/mol."""
+    def setStiffness(self, stiffness: _Scalar, /) -> None:
+        """Set the stiffness k, (3/2) kB T in the paper, kJ/mol, zero or above."""
+    def getTarget(self) -> float:
+        """Get the target A0 of the total area, nm^2."""
+    def setTarget(self, target: _Scalar, /) -> None:
+        """Set the target A0 of the total area, nm^2, above zero."""
     @staticmethod
     def isinstance(force: openmm.Force) -> bool:
         """Whether a force of OpenMM is of this class."""
     @staticmethod
-    def cast(force: openmm.Force) -> GaussianCurvatureForce:
+    def cast(force: openmm.Force) -> PlaquetteAreaForce:
+        """The same force as an object of this class."""
+
+class PressureForce(MembraneForce):
+    """A pressure difference across a membrane that encloses the volume V:"""
+
+    def __init__(self, triangles: _Triangles, pressure: _Scalar, *, offset: int = 0) -> None: ...
+    def getPressure(self) -> float:
+        """Get the pressure difference p, inside less outside, kJ/mol/nm^3."""
+    def setPressure(self, pressure: _Scalar, /) -> None:
+        """Set the pressure difference p, inside less outside, kJ/mol/nm^3 (1.66 MPa, 16.6 bar)."""
+    @staticmethod
+    def isinstance(force: openmm.Force) -> bool:
+        """Whether a force of OpenMM is of this class."""
+    @staticmethod
+    def cast(force: openmm.Force) -> PressureForce:
         """The same force as an object of this class."""
 
 class SkalakForce(MembraneForce):
@@ -595,204 +680,6 @@ class SkalakForce(MembraneForce):
         """Whether a force of OpenMM is of this class."""
     @staticmethod
     def cast(force: openmm.Force) -> SkalakForce:
-        """The same force as an object of this class."""
-    def setReference(self, reference: Mesh | _Values, /) -> None:
-        """Set where the vertices are at rest. Tell Contexts by updateParametersInContext()."""
-    def getReference(self) -> NDArray[np.float64]:
-        """Where the vertices are at rest, shape (num_vertices, 3), nm."""
-    def setReferenceBox(self, box: _Values | None, /) -> None:
-        """Say in which periodic box the reference is: its sides are nearest images in this box."""
-    def getReferenceBox(self) -> NDArray[np.float64] | None:
-        """The periodic box in which the reference is, shape (3, 3), nm, or None."""
-
-class LimForce(MembraneForce):
-    """Elasticity of the skeleton of a red blood cell, which hardens, against a reference shape:"""
-
-    Lim2002: ClassVar[int]
-    Amoudruz2023: ClassVar[int]
-    def __init__(
-        self,
-        triangles: _Triangles,
-        shearModulus: _Scalar,
-        areaModulus: _Scalar,
-        reference: Mesh | _Values,
-        coefficients: int | str = 0,
-        *,
-        offset: int = 0,
-    ) -> None: ...
-    def getCoefficients(self) -> int:
-        """Get the set of coefficients."""
-    def setCoefficients(self, coefficients: int | str, /) -> None:
-        """Set the set of coefficients. updateParametersInContext() tells existing Contexts."""
-    def getShearModulus(self) -> float:
-        """Get the modulus mu, kJ/mol/nm^2."""
-    def setShearModulus(self, shearModulus: _Scalar, /) -> None:
-        """Set the modulus mu, kJ/mol/nm^2, zero or above."""
-    def getAreaModulus(self) -> float:
-        """Get the modulus K, kJ/mol/nm^2."""
-    def setAreaModulus(self, areaModulus: _Scalar, /) -> None:
-        """Set the modulus K, kJ/mol/nm^2, zero or above."""
-    @staticmethod
-    def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
-    @staticmethod
-    def cast(force: openmm.Force) -> LimForce:
-        """The same force as an object of this class."""
-    def setReference(self, reference: Mesh | _Values, /) -> None:
-        """Set where the vertices are at rest. Tell Contexts by updateParametersInContext()."""
-    def getReference(self) -> NDArray[np.float64]:
-        """Where the vertices are at rest, shape (num_vertices, 3), nm."""
-    def setReferenceBox(self, box: _Values | None, /) -> None:
-        """Say in which periodic box the reference is: its sides are nearest images in this box."""
-    def getReferenceBox(self) -> NDArray[np.float64] | None:
-        """The periodic box in which the reference is, shape (3, 3), nm, or None."""
-
-class PressureForce(MembraneForce):
-    """A pressure difference across a membrane that encloses the volume V:"""
-
-    def __init__(self, triangles: _Triangles, pressure: _Scalar, *, offset: int = 0) -> None: ...
-    def getPressure(self) -> float:
-        """Get the pressure difference p, inside less outside, kJ/mol/nm^3."""
-    def setPressure(self, pressure: _Scalar, /) -> None:
-        """Set the pressure difference p, inside less outside, kJ/mol/nm^3 (1.66 MPa, 16.6 bar)."""
-    @staticmethod
-    def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
-    @staticmethod
-    def cast(force: openmm.Force) -> PressureForce:
-        """The same force as an object of this class."""
-
-class SurfaceTensionForce(MembraneForce):
-    """A surface tension on the total area A of a membrane:"""
-
-    def __init__(self, triangles: _Triangles, tension: _Scalar, *, offset: int = 0) -> None: ...
-    def getTension(self) -> float:
-        """Get the tension sigma, kJ/mol/nm^2."""
-    def setTension(self, tension: _Scalar, /) -> None:
-        """Set the tension sigma, kJ/mol/nm^2 (1.66 mN/m), of either sign."""
-    @staticmethod
-    def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
-    @staticmethod
-    def cast(force: openmm.Force) -> SurfaceTensionForce:
-        """The same force as an object of this class."""
-
-class OsmoticPressureForce(MembraneForce):
-    """The osmotic pressure of solutes that cannot pass a membrane, which water can:"""
-
-    def __init__(
-        self,
-        triangles: _Triangles,
-        solutes: _Scalar,
-        concentration: _Scalar,
-        thermalEnergy: _Scalar,
-        *,
-        offset: int = 0,
-    ) -> None: ...
-    def getSolutes(self) -> float:
-        """Get the number n of solutes inside."""
-    def setSolutes(self, solutes: _Scalar, /) -> None:
-        """Set the number n of solutes inside, above zero."""
-    def getConcentration(self) -> float:
-        """Get the concentration c of solutes outside, 1/nm^3."""
-    def setConcentration(self, concentration: _Scalar, /) -> None:
-        """Set the concentration c of solutes outside, 1/nm^3, above zero."""
-    def getThermalEnergy(self) -> float:
-        """Get the thermal energy kT, kJ/mol."""
-    def setThermalEnergy(self, thermalEnergy: _Scalar, /) -> None:
-        """Set the thermal energy kT, kJ/mol, above zero."""
-    @staticmethod
-    def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
-    @staticmethod
-    def cast(force: openmm.Force) -> OsmoticPressureForce:
-        """The same force as an object of this class."""
-
-class AreaDifferenceForce(MembraneForce):
-    """Area-difference elasticity: the two monolayers of a closed membrane cannot exchange lipids,
-    and resist changes of the difference in their areas.
-    """
-
-    def __init__(
-        self, triangles: _Triangles, modulus: _Scalar, target: _Scalar, *, offset: int = 0
-    ) -> None: ...
-    def getModulus(self) -> float:
-        """Get the modulus m, kJ/mol/nm^2."""
-    def setModulus(self, modulus: _Scalar, /) -> None:
-        """Set the modulus m, kJ/mol/nm^2, zero or above."""
-    def getTarget(self) -> float:
-        """Get the target M0 of the integral of mean curvature, nm."""
-    def setTarget(self, target: _Scalar, /) -> None:
-        """Set the target M0 of the integral of mean curvature, nm, of either sign."""
-    @staticmethod
-    def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
-    @staticmethod
-    def cast(force: openmm.Force) -> AreaDifferenceForce:
-        """The same force as an object of this class."""
-
-class NeoHookeanForce(MembraneForce):
-    """Elasticity of a rubber-like membrane against a reference shape:"""
-
-    def __init__(
-        self,
-        triangles: _Triangles,
-        shearModulus: _Scalar,
-        areaModulus: _Scalar,
-        reference: Mesh | _Values,
-        *,
-        offset: int = 0,
-    ) -> None: ...
-    def getShearModulus(self) -> float:
-        """Get the shear modulus mu, kJ/mol/nm^2."""
-    def setShearModulus(self, shearModulus: _Scalar, /) -> None:
-        """Set the shear modulus mu, kJ/mol/nm^2, zero or above."""
-    def getAreaModulus(self) -> float:
-        """Get the area modulus K, kJ/mol/nm^2."""
-    def setAreaModulus(self, areaModulus: _Scalar, /) -> None:
-        """Set the area modulus K, kJ/mol/nm^2, zero or above."""
-    @staticmethod
-    def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
-    @staticmethod
-    def cast(force: openmm.Force) -> NeoHookeanForce:
-        """The same force as an object of this class."""
-    def setReference(self, reference: Mesh | _Values, /) -> None:
-        """Set where the vertices are at rest. Tell Contexts by updateParametersInContext()."""
-    def getReference(self) -> NDArray[np.float64]:
-        """Where the vertices are at rest, shape (num_vertices, 3), nm."""
-    def setReferenceBox(self, box: _Values | None, /) -> None:
-        """Say in which periodic box the reference is: its sides are nearest images in this box."""
-    def getReferenceBox(self) -> NDArray[np.float64] | None:
-        """The periodic box in which the reference is, shape (3, 3), nm, or None."""
-
-class LinearElasticForce(MembraneForce):
-    """The simplest elasticity against a reference shape, quadratic in Green's strain e of each
-    triangle:
-    """
-
-    def __init__(
-        self,
-        triangles: _Triangles,
-        shearModulus: _Scalar,
-        areaModulus: _Scalar,
-        reference: Mesh | _Values,
-        *,
-        offset: int = 0,
-    ) -> None: ...
-    def getShearModulus(self) -> float:
-        """Get the shear modulus mu, kJ/mol/nm^2."""
-    def setShearModulus(self, shearModulus: _Scalar, /) -> None:
-        """Set the shear modulus mu, kJ/mol/nm^2, zero or above."""
-    def getAreaModulus(self) -> float:
-        """Get the area modulus K, kJ/mol/nm^2."""
-    def setAreaModulus(self, areaModulus: _Scalar, /) -> None:
-        """Set the area modulus K, kJ/mol/nm^2, zero or above."""
-    @staticmethod
-    def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
-    @staticmethod
-    def cast(force: openmm.Force) -> LinearElasticForce:
         """The same force as an object of this class."""
     def setReference(self, reference: Mesh | _Values, /) -> None:
         """Set where the vertices are at rest. Tell Contexts by updateParametersInContext()."""
@@ -845,29 +732,142 @@ class SpringForce(MembraneForce):
     def getReferenceBox(self) -> NDArray[np.float64] | None:
         """The periodic box in which the reference is, shape (3, 3), nm, or None."""
 
-class LineTensionForce(MembraneForce):
-    """The tension of the line between domains of a membrane:"""
+class SurfaceAreaForce(MembraneForce):
+    """Keeps the total area A of a membrane near a target A0:"""
 
     def __init__(
-        self, triangles: _Triangles, tension: _Scalar, domains: ArrayLike, *, offset: int = 0
+        self, triangles: _Triangles, modulus: _Scalar, target: _Scalar, *, offset: int = 0
     ) -> None: ...
-    def getTension(self) -> float:
-        """Get the energy per length, kJ/mol/nm."""
-    def setTension(self, tension: _Scalar, /) -> None:
-        """Set the energy per length, kJ/mol/nm."""
+    def getModulus(self) -> float:
+        """Get the area modulus kA, kJ/mol/nm^2."""
+    def setModulus(self, modulus: _Scalar, /) -> None:
+        """Set the area modulus kA, kJ/mol/nm^2, zero or above."""
+    def getTarget(self) -> float:
+        """Get the target area A0, nm^2."""
+    def setTarget(self, target: _Scalar, /) -> None:
+        """Set the target area A0, nm^2, above zero."""
     @staticmethod
     def isinstance(force: openmm.Force) -> bool:
         """Whether a force of OpenMM is of this class."""
     @staticmethod
-    def cast(force: openmm.Force) -> LineTensionForce:
+    def cast(force: openmm.Force) -> SurfaceAreaForce:
         """The same force as an object of this class."""
-    def setDomains(self, domains: ArrayLike, /) -> None:
-        """Say to which domain each vertex belongs. Tell Contexts by updateParametersInContext()."""
-    def getDomains(self) -> NDArray[np.int64]:
-        """The domain of each vertex in ascending order of particle index, (num_vertices,), int."""
-    def getDomainsInContext(self, context: openmm.Context) -> NDArray[np.int64]:
-        """The domain of each vertex as it is in a Context now, where neighbours may exchange them.
+
+class SurfaceRepulsionForce(MembraneForce):
+    """Keeps surfaces from passing through themselves and each other, by a repulsion of vertices and
+    triangles and of edges:
+    """
+
+    def __init__(
+        self, triangles: _Triangles, distance: _Scalar, epsilon: _Scalar, *, offset: int = 0
+    ) -> None: ...
+    def getDistance(self) -> float:
+        """Get the distance D below which there is a repulsion, nm."""
+    def setDistance(self, distance: _Scalar, /) -> None:
+        """Set the distance D below which there is a repulsion, nm, above zero."""
+    def getEpsilon(self) -> float:
+        """Get the strength, kJ/mol."""
+    def setEpsilon(self, epsilon: _Scalar, /) -> None:
+        """Set the strength, kJ/mol, zero or above."""
+    def getOnlyBetweenParts(self) -> bool:
+        """Get whether only different connected parts of the triangles repel each other."""
+    def setOnlyBetweenParts(self, only: bool, /) -> None:
+        """Choose whether only different connected parts of the triangles repel each other."""
+    @staticmethod
+    def isinstance(force: openmm.Force) -> bool:
+        """Whether a force of OpenMM is of this class."""
+    @staticmethod
+    def cast(force: openmm.Force) -> SurfaceRepulsionForce:
+        """The same force as an object of this class."""
+
+class SurfaceTensionForce(MembraneForce):
+    """A surface tension on the total area A of a membrane:"""
+
+    def __init__(self, triangles: _Triangles, tension: _Scalar, *, offset: int = 0) -> None: ...
+    def getTension(self) -> float:
+        """Get the tension sigma, kJ/mol/nm^2."""
+    def setTension(self, tension: _Scalar, /) -> None:
+        """Set the tension sigma, kJ/mol/nm^2 (1.66 mN/m), of either sign."""
+    @staticmethod
+    def isinstance(force: openmm.Force) -> bool:
+        """Whether a force of OpenMM is of this class."""
+    @staticmethod
+    def cast(force: openmm.Force) -> SurfaceTensionForce:
+        """The same force as an object of this class."""
+
+class TriangleAreaForce(MembraneForce):
+    """Keeps the area a of each triangle near a target a0:"""
+
+    def __init__(
+        self,
+        triangles: _Triangles,
+        modulus: _Scalar,
+        target: _Scalar | ArrayLike,
+        *,
+        offset: int = 0,
+    ) -> None: ...
+    def getModulus(self) -> float:
+        """Get the area modulus kA, kJ/mol/nm^2."""
+    def setModulus(self, modulus: _Scalar, /) -> None:
+        """Set the area modulus kA, kJ/mol/nm^2, zero or above."""
+    def getTarget(self) -> float:
+        """Get the target area a0 of each triangle, nm^2."""
+    def setTarget(self, target: _Scalar, /) -> None:
+        """Set the target area a0 of each triangle, nm^2, above zero. Values of single triangles are
+        given up.
         """
+    def getTriangleTargets(self) -> tuple[float, ...]:
+        """Get the target area of each triangle, nm^2; empty if all have the same."""
+    def setTriangleTargets(self, values: _Values, /) -> None:
+        """Give each triangle its own target area, which replaces the scalar."""
+    @staticmethod
+    def isinstance(force: openmm.Force) -> bool:
+        """Whether a force of OpenMM is of this class."""
+    @staticmethod
+    def cast(force: openmm.Force) -> TriangleAreaForce:
+        """The same force as an object of this class."""
+
+class TriangleAreaRepulsionForce(MembraneForce):
+    """Keeps triangles from vanishing by a repulsion at small areas:"""
+
+    def __init__(
+        self, triangles: _Triangles, minArea: _Scalar, epsilon: _Scalar, *, offset: int = 0
+    ) -> None: ...
+    def getMinArea(self) -> float:
+        """Get the area a_m below which the repulsion is strong, nm^2."""
+    def setMinArea(self, minArea: _Scalar, /) -> None:
+        """Set the area a_m below which the repulsion is strong, nm^2, zero or above."""
+    def getEpsilon(self) -> float:
+        """Get the strength, kJ/mol."""
+    def setEpsilon(self, epsilon: _Scalar, /) -> None:
+        """Set the strength, kJ/mol, zero or above."""
+    @staticmethod
+    def isinstance(force: openmm.Force) -> bool:
+        """Whether a force of OpenMM is of this class."""
+    @staticmethod
+    def cast(force: openmm.Force) -> TriangleAreaRepulsionForce:
+        """The same force as an object of this class."""
+
+class TriangleHeightForce(MembraneForce):
+    """Keeps triangles from degenerating by a repulsion at small heights:"""
+
+    def __init__(
+        self, triangles: _Triangles, minHeight: _Scalar, epsilon: _Scalar, *, offset: int = 0
+    ) -> None: ...
+    def getMinHeight(self) -> float:
+        """Get the height d, nm."""
+    def setMinHeight(self, minHeight: _Scalar, /) -> None:
+        """Set the height d, nm, zero or above."""
+    def getEpsilon(self) -> float:
+        """Get the strength epsilon, kJ/mol."""
+    def setEpsilon(self, epsilon: _Scalar, /) -> None:
+        """Set the strength epsilon, kJ/mol, zero or above."""
+    @staticmethod
+    def isinstance(force: openmm.Force) -> bool:
+        """Whether a force of OpenMM is of this class."""
+    @staticmethod
+    def cast(force: openmm.Force) -> TriangleHeightForce:
+        """The same force as an object of this class."""
 
 class MonteCarloBondFlip(_SurfaceMover):
     """Makes a membrane fluid: now and then it tries to flip edges of the mesh, so that neighbours

@@ -45,7 +45,7 @@ impl<T: Copy, const EDGES: bool> Block<T, EDGES> {
         };
         for n in 0..self.count {
             let found = self.nearest.map(|values| values[n]);
-            // What is no number counts as near, and will be refused.
+            // A NaN counts as near, and will be refused.
             if found[0] >= most {
                 continue;
             }

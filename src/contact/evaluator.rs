@@ -64,7 +64,7 @@ impl Contacts {
         self.sharing = Sharing::new();
     }
 
-    /// Other triangles have come, not by flips.
+    /// Forget the lists, since the triangles have been replaced other than by flips.
     pub fn forget(&mut self) {
         self.surface.forget();
     }
@@ -190,7 +190,8 @@ impl Contacts {
         Ok(())
     }
 
-    /// The most that a flip can gain, kJ/mol: what the contacts around it have now, or more. `quad` is as it is now.
+    /// An upper bound of the energy that a flip can set free, kJ/mol: that of the contacts around it. `quad` is the
+    /// quadrilateral before the flip.
     pub fn most(&mut self, mesh: &Triangulation, terms: &[Term], quad: &Quad) -> f64 {
         let [surface, particles] = sorted(terms);
         let quiet = particles.iter().zip(&self.particles).all(|(_, contacts)| contacts.is_quiet());
@@ -216,12 +217,12 @@ impl Contacts {
         surface + pairs.map(of).sum::<f64>()
     }
 
-    /// Have the edge kl of a quadrilateral in place of ij; the mesh is not looked at.
+    /// Replace the edge ij of a quadrilateral by kl in the lists; the mesh is not looked at.
     pub fn follow(&mut self, quad: &Quad) {
         self.surface.follow(quad);
     }
 
-    /// What [`Self::around`] found last is here to stay.
+    /// Keep what [`Self::around`] found last, since its flip has been made.
     pub fn note_new_pairs(&mut self) {
         self.surface.note_new_pairs();
     }

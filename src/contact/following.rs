@@ -1,4 +1,4 @@
-//! Lists after flips, and what is near at present while flips go on.
+//! Lists after flips, and what is near at present during a round of flips.
 
 use super::inner::sort;
 use super::lists::{Far, Lists, Made, Pair, ascending, lowest_first};
@@ -16,7 +16,7 @@ const MOST_NEW: usize = 200;
 const FEW: usize = 4;
 
 impl Lists {
-    /// Have the pairs of other triangles; false if too many are new.
+    /// Go over to the pairs of other triangles; false if too many of these are new.
     pub(super) fn follow_flips(&mut self, mesh: &Triangulation, made: &Made) -> bool {
         let changed = |(old, new): &(&[u32; 3], &[u32; 3])| old != new;
         let pairs = self.triangles.iter().zip(mesh.triangles()).filter(changed);
@@ -34,7 +34,7 @@ impl Lists {
         keep_differences(&mut old, &mut new);
         keep_differences(&mut old_edges, &mut new_edges);
         self.leave_out(mesh.num_vertices(), &old, &old_edges);
-        // Most have been followed while flips went on.
+        // Most were followed during the round of flips.
         old_edges.iter().for_each(|ends| self.take_edge(made, *ends));
         new_edges.iter().for_each(|ends| self.put_edge(made, *ends));
         let mut scratch = std::mem::take(&mut self.scratch);
@@ -91,7 +91,7 @@ impl Lists {
             let one = Edge { ends: *ends, middle, half };
             for place in &search.found {
                 let other = self.edges.edge(*place as usize);
-                // Of two new ones the higher one finds the lower one.
+                // Of two new edges the one with the higher number adds the pair.
                 if other.ends < *ends || new.binary_search(&other.ends).is_err() {
                     let arms = self.edges.arms(&one, &other);
                     let most = reach + sphere.room + self.outer.room_of(other.ends);
@@ -128,7 +128,7 @@ impl Lists {
         let cell = cell.as_ref();
         let (points, middle, radius) = triangle_sphere(cell, &self.positions, corners);
         let part = self.own_part(corners[0]);
-        // Vertices are where the boxes have them or in the room around.
+        // Vertices are in their balls around the places that the boxes have.
         search.forget();
         self.vertices.find((&middle, radius), reach, corners, part, search);
         found.extend(search.found.iter().map(|place| self.vertices.ends(*place as usize)[0]));
@@ -157,7 +157,7 @@ impl Lists {
         found.sort_unstable();
     }
 
-    /// Have kl in place of ij.
+    /// Replace the edge ij by kl.
     pub fn follow(&mut self, quad: &Quad) {
         let Some(made) = self.made_for else { return };
         let [i, j, k, l] = quad.vertices;
@@ -166,7 +166,7 @@ impl Lists {
     }
 }
 
-/// Sort both, and keep what only one of them has, once.
+/// Sort both, and keep in each what the other does not have.
 fn keep_differences<T: Ord + Clone>(one: &mut Vec<T>, other: &mut Vec<T>) {
     for all in [&mut *one, &mut *other] {
         all.sort_unstable();

@@ -8,7 +8,7 @@ use crate::mesh::geometry::Vec3;
 /// Positions whose boxes are found together, in lanes.
 pub const TOGETHER: usize = 64;
 
-/// How many periodic boxes away positions are found: a little more than vertices may be, since lists aim ahead of them.
+/// How many periodic boxes away positions may be: a little more than vertices may, since lists look at where they are going.
 const FARTHEST: f64 = 1.05 * MOST_BOXES;
 
 /// No box.
@@ -87,8 +87,8 @@ impl Grid {
         self.rows.map(|row| row.dot(&from))
     }
 
-    /// The box that a position is in, if there is one: over a periodic box only positions have none that are not finite or a
-    /// billion boxes away.
+    /// The box that a position is in, if there is one. Over a periodic box every position has one, unless it is not finite or
+    /// a billion boxes away.
     #[inline]
     pub fn home(&self, position: &Vec3) -> Option<usize> {
         let home = self.home_of([position.x, position.y, position.z]);
@@ -127,7 +127,7 @@ impl Grid {
             is_inside &= (place >= 0.0) & (place < count);
             index = index * count + place;
         }
-        // There are fewer boxes than a double has whole numbers.
+        // Numbers of boxes are exact as doubles.
         if is_inside { index as u32 } else { NOWHERE }
     }
 
@@ -207,7 +207,7 @@ impl Grid {
         mut visit: impl FnMut(std::ops::Range<usize>),
     ) {
         let count = self.counts[0];
-        // What lies in boxes side by side lies side by side.
+        // Boxes that follow each other along an axis have their numbers one after the other.
         let runs = if !self.periodic {
             [[x[0], x[1]], [0, -1]]
         } else {
@@ -247,7 +247,7 @@ impl Grid {
         })
     }
 
-    /// Boxes along an axis that there are, each once.
+    /// The boxes of a range along an axis that exist, each once.
     #[inline]
     fn clip(&self, axis: usize, [low, high]: [i64; 2]) -> [i64; 2] {
         let last = self.counts[axis] - 1;

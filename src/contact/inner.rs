@@ -7,14 +7,15 @@ use crate::mesh::closest::{Arms, edge_arms};
 use crate::mesh::geometry::Vec3;
 use crate::team::{Parts, Team};
 
-/// What may be strayed by in the inner list as a share of that in the outer one: at first, at least and at most.
+/// How far vertices may stray in the inner list, as a share of how far they may in the outer one: at first, at least and at
+/// most.
 pub const INNER: [f64; 3] = [0.2, 0.02, 0.6];
 
-/// What it costs to choose from a pair of the outer list, in looks at a pair.
+/// The cost of deciding whether a pair of the outer list goes into the inner one; an evaluation of a pair costs 1.
 const CHOOSING: f64 = 0.15;
 
 impl Lists {
-    /// What costs less from now on than it did.
+    /// Let vertices stray farther in the inner list if making it has cost more than looking through it, else less far.
     pub(super) fn adapt_inner(&mut self) {
         let (looking, choosing) = (self.cost.looking, self.cost.choosing);
         self.cost.all += looking + choosing;
@@ -77,7 +78,7 @@ impl Lists {
         let cell = made.cell.as_ref();
         let mut rough = Rough::<_, EDGES>::new([0; 4]);
         for Far { pair, distance } in all {
-            // What a pair has lost of its distance is no more than its vertices have moved.
+            // A pair cannot have come nearer by more than its vertices have moved.
             if *distance <= reach + sum_of::<EDGES>(&self.moved, pair) {
                 let arms = arms::<EDGES>(cell, &self.inner.middles, *pair);
                 let single = arms.map(|arm| arm.map(|x| x as f32).into());
@@ -89,21 +90,21 @@ impl Lists {
     }
 }
 
-/// The most of the vertices of the one and the most of those of the other.
+/// The largest value at the vertices of one of the pair, plus the largest at those of the other.
 #[inline(always)]
 pub fn sum_of<const EDGES: bool>(values: &[f32], pair: &Pair) -> f32 {
     let [a, b, c, d] = pair.map(|vertex| values[vertex as usize]);
     if EDGES { a.max(b) + c.max(d) } else { a + b.max(c).max(d) }
 }
 
-/// Have pairs in ascending order.
+/// Sort pairs in ascending order.
 pub fn sort(pairs: &mut [Pair]) {
     pairs.sort_unstable_by_key(|pair| {
         pair.iter().fold(0_u128, |key, vertex| key << 32 | u128::from(*vertex))
     });
 }
 
-/// From the first of the second thing to that of the first, and along both.
+/// The vectors of a pair: from the first vertex of the second partner to that of the first, and along the sides.
 #[inline]
 pub fn arms<const EDGES: bool>(cell: Option<&Cell>, positions: &[Vec3], pair: Pair) -> [Vec3; 3] {
     let [p, a, b, c] = pair.map(|vertex| &positions[vertex as usize]);

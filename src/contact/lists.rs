@@ -1,11 +1,12 @@
 //! Which vertices may touch which triangles of a surface, and which edges which edges.
 //!
-//! Two lists, one within the other, have the pairs that can come within reach while every vertex stays in a ball around its place
-//! in a **reference**, but for those that share a vertex. As vertices fly straight on for a while, a reference is where they
-//! will be half a **life** of the list later, and a ball has room for the way there, and for some straying. The outer list has a long life
-//! and comes from boxes (`outer.rs`); the inner one has a short life and comes from the outer one (`inner.rs`), and is what
-//! evaluations look at. Pairs are known by their vertices, and the inner list is in ascending order of these, so that nothing depends
-//! on when lists were made. After flips, pairs of what is gone are taken out and those of what is new are added (`following.rs`).
+//! Two lists, one within the other, hold the pairs that can come within reach as long as every vertex stays in a ball around
+//! its place in a **reference**; pairs that share a vertex are left out. Vertices fly straight on for a while, so the
+//! reference is where they will be after half of the list's **life**, and a ball has room for the way there and for some
+//! straying. The outer list has a long life and is made with boxes (`outer.rs`). The inner one has a short life, is chosen
+//! from the outer one (`inner.rs`), and is what evaluations go through. Pairs are named by their vertices, and the inner
+//! list is in ascending order of these, so that no result depends on when lists were made. After flips, pairs of triangles
+//! and edges that are gone are taken out and those of new ones are added (`following.rs`).
 
 use super::spheres::{Search, Sphere, Spheres};
 use crate::error::Result;
@@ -19,7 +20,7 @@ use crate::team::Team;
 /// of each and the lower edge first.
 pub type Pair = [u32; 4];
 
-/// A pair of the outer list, and the distance at its reference, or less, nm.
+/// A pair of the outer list, with a lower bound of its distance in the reference, nm.
 #[derive(Clone, Copy)]
 pub struct Far {
     pub pair: Pair,
@@ -34,18 +35,18 @@ pub struct Lists {
     pub(super) positions: Vec<Vec3>,
     pub(super) outer: Balls,
     pub(super) inner: Balls,
-    /// For each vertex how far what it does in the balls of the inner list may be from its outer reference, nm.
+    /// For each vertex how far it may be from its place in the outer reference while it is in its ball of the inner list, nm.
     pub(super) moved: Vec<f32>,
     /// Where vertices were when the last list was made, and how many refreshes ago that was.
     pub(super) last: Vec<Vec3>,
     pub(super) since: usize,
-    /// How many refreshes ago the outer list was made, and how many the outer and the inner one last usually.
+    /// How many refreshes ago the outer list was made, and how many the outer and the inner one usually last.
     pub(super) age: usize,
     pub(super) lives: [f64; 2],
-    /// What vertices may stray by in the outer list, in mean edges, and in the inner one, as a share of that; none before the
+    /// How far vertices may stray in the outer list, in mean edges, and in the inner one, as a share of that; none before the
     /// first lists.
     pub(super) shares: Option<[f64; 2]>,
-    /// The triangles that the lists are of.
+    /// The triangles for which the lists were made.
     pub(super) triangles: Vec<[u32; 3]>,
     /// For each vertex the connected part that it is on; empty unless that matters.
     pub(super) parts: Vec<u32>,
@@ -69,14 +70,14 @@ pub struct Scratch {
     pub search: Search,
 }
 
-/// Looks at pairs since lists were made.
+/// What lists have cost since they were made; an evaluation of a pair costs 1.
 #[derive(Default)]
 pub struct Cost {
     /// In evaluations with the present inner list.
     pub looking: f64,
     /// To make the present inner list.
     pub choosing: f64,
-    /// All of both with the present outer list.
+    /// Both together, since the present outer list was made.
     pub all: f64,
 }
 
@@ -87,14 +88,14 @@ pub struct Made {
     pub between_parts: bool,
     pub cell: Option<Cell>,
     pub fingerprint: u64,
-    /// The mean edge, and what straying goes by, nm.
+    /// The mean edge, and the length of which straying is a share, nm.
     pub mean: f64,
     pub size: f64,
 }
 
 impl Lists {
-    /// Be good for pairs up to `reach` at some positions of all particles; with `between_parts` only for those of
-    /// different parts of the surface.
+    /// See to it that the lists have all pairs up to `reach` at some positions of all particles; with `between_parts` only
+    /// those of different parts of the surface.
     ///
     /// # Errors
     /// A position that is not finite or too many boxes away; a box that is too small.
@@ -137,7 +138,7 @@ impl Lists {
         Ok(())
     }
 
-    /// Know nothing.
+    /// Make all lists anew at the next refresh.
     pub fn forget(&mut self) {
         self.made_for = None;
     }
@@ -152,18 +153,18 @@ impl Lists {
         &self.near
     }
 
-    /// How many pairs that are.
+    /// The number of these pairs.
     pub fn work(&self) -> usize {
         self.near[0].len() + self.near[1].len()
     }
 
-    /// The part that a vertex is on; 0 unless that matters.
+    /// The connected part that a vertex is on; 0 where parts do not matter.
     #[inline]
     pub(super) fn part(&self, vertex: u32) -> u32 {
         self.parts.get(vertex as usize).copied().unwrap_or(0)
     }
 
-    /// The part that has no pairs with a vertex, or none.
+    /// The part whose vertices make no pairs with a vertex; a number that no part has where parts do not matter.
     #[inline]
     pub(super) fn own_part(&self, vertex: u32) -> u32 {
         self.parts.get(vertex as usize).copied().unwrap_or(u32::MAX)
@@ -181,15 +182,15 @@ pub struct Balls {
     squares: Vec<f64>,
 }
 
-/// What is usual after a list that lasted for some refreshes.
+/// How long a list usually lasts, after one that lasted for `age` refreshes.
 pub fn usual(life: f64, age: usize) -> f64 {
-    // Lists that last as long as they are made for are made for longer.
+    // The factors add up to more than 1, so that a list that lasts as long as expected makes the next one longer.
     0.5 * life + 0.6 * age as f64
 }
 
 impl Balls {
-    /// For vertices that were elsewhere `since` refreshes ago, in balls for a life, with room for straying. No way is longer than
-    /// some length, nm.
+    /// Put the balls where vertices are going: each has moved from `last` to `now` in `since` refreshes, and goes on like that
+    /// for half of `life`, but by no more than `longest`, nm. Balls have room for that way and for straying.
     pub fn aim(
         &mut self,
         now: &[Vec3],
@@ -244,7 +245,7 @@ struct Within<'a> {
 impl Kernel for Within<'_> {
     #[inline(always)]
     fn execute<A: Arithmetic>(self) {
-        // What is no number is nowhere.
+        // A NaN is in no ball.
         let within = |now: &Vec3, then: &Vec3, square: f64| {
             let way = [now[0] - then[0], now[1] - then[1], now[2] - then[2]];
             way[0] * way[0] + way[1] * way[1] + way[2] * way[2] < square

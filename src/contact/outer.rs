@@ -12,13 +12,13 @@ use crate::mesh::triangulation::next;
 use crate::mesh::{Cell, Triangulation};
 use crate::team::{Parts, Team};
 
-/// What vertices may stray by, in mean edges: at first, at least and at most.
+/// How far vertices may stray, in mean edges: at first, at least and at most.
 const OUTER: [f64; 3] = [0.1, 0.03, 0.5];
 
-/// The most that a way may be long, in mean edges.
+/// The longest way that vertices are expected to go, in mean edges.
 const LONGEST: f64 = 0.5;
 
-/// What it costs to make the outer list, by triangle or edge, in looks at a pair.
+/// The cost of making the outer list, for each triangle or edge; an evaluation of a pair costs 1.
 const MAKING: f64 = 4.0;
 
 impl Lists {
@@ -55,10 +55,10 @@ impl Lists {
         self.age = 0;
         let [outer, _] = *self.shares.get_or_insert([OUTER[0], INNER[0]]);
         self.cost = Cost::default();
-        // What is as near as half of the reach matters, whatever edges are.
+        // Where edges are short, half of the reach is the length to go by.
         let mut size = mean.max(0.5 * reach);
         if let Some(cell) = cell {
-            // A triangle is not farther around its middle than its longest edge.
+            // A triangle lies within its longest edge around its middle.
             let room = cell.half_width() - reach - 1.5 * largest;
             if room <= 0.0 {
                 return Err(Error::Contract(format!(
@@ -190,7 +190,8 @@ impl Lists {
         rough.find(note);
     }
 
-    /// Which parts may be near which; none unless that matters, and in a periodic box, whose parts may lie across its faces.
+    /// Which parts may be near which; none where that does not matter, and in a periodic box, where parts may lie across the
+    /// faces.
     fn neighbours(&self, cell: Option<&Cell>, range: f64) -> Neighbours {
         if self.parts.is_empty() || cell.is_some() {
             return Neighbours::default();
@@ -235,7 +236,7 @@ fn are_near([a, b]: &[Vec3; 2], [c, d]: &[Vec3; 2], range: f64) -> bool {
     (0..3).all(|k| a[k] - range < d[k] && c[k] - range < b[k])
 }
 
-/// What a least distance may be if positions are off by some slack, and the slack.
+/// The least distance that is left if positions are off by some slack, and the slack.
 pub fn limits(range: f64, slack: f64) -> (f32, f32) {
     let more = 1.0 + 1e-6;
     ((range + slack) as f32 * more, slack as f32 * more)

@@ -20,7 +20,7 @@ pub struct Map {
 }
 
 impl Map {
-    /// Have all triangles that may be nearer than `reach` to any point of a box in its list.
+    /// Give each box the list of the triangles that may be nearer than `reach` to any of its points.
     pub fn refresh(
         &mut self,
         mesh: &Triangulation,

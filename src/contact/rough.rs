@@ -1,8 +1,9 @@
 //! Least distances of pairs in single precision, in lanes: quick, and never too large.
 //!
-//! Where edges are nearly parallel or triangles nearly lines, s and t are off by δ = e |r| / sin² θ of what they lead to, with e of some 5e-7.
-//! The formulas here are such that distances grow by no more than δ sin θ, and no more than by what the ends or
-//! sides are farther, L sin θ; so by no more than √(e |r| L). [`MARGIN`] is taken off for that.
+//! Where edges are nearly parallel, or triangles nearly lines, at an angle θ, the points at s and t are off by
+//! δ = e |r| / sin² θ, with e about 5e-7. The formulas here make a distance too large by δ sin θ at most, and also by L sin θ
+//! at most, which is by how much the ends or sides, of length L, are farther away; so by √(e |r| L) at most. [`MARGIN`] is
+//! subtracted for that.
 
 use crate::lanes::{Arithmetic, Kernel, run};
 use std::cmp::Ordering;
@@ -10,7 +11,7 @@ use std::cmp::Ordering;
 /// Pairs that are looked at together.
 const LANES: usize = 32;
 
-/// How much of the longest of r, u and v a distance may be too large by.
+/// By how much a distance may be too large, as a share of the longest of r, u and v.
 const MARGIN: f32 = 1e-3;
 
 /// Some pairs of edges, or of vertices and triangles.
@@ -29,7 +30,8 @@ impl<T: Copy, const EDGES: bool> Rough<T, EDGES> {
         Self { pairs: [nothing; LANES], arms, most: zeros, least: zeros, count: 0 }
     }
 
-    /// Add a pair by its arms, as `closest.rs` has them, that is looked for up to some distance; when there is no more room, visit all as [`Self::find`] does.
+    /// Add a pair by its arms, as `closest.rs` has them, and the distance up to which it counts; when there is no more room,
+    /// visit all as [`Self::find`] does.
     #[inline(always)]
     pub fn push(&mut self, pair: T, arms: [[f32; 3]; 3], most: f32, visit: impl FnMut(T, f32)) {
         self.pairs[self.count] = pair;
@@ -43,14 +45,14 @@ impl<T: Copy, const EDGES: bool> Rough<T, EDGES> {
         }
     }
 
-    /// Visit the pairs that may be nearer than they are looked for, with their least distance, and forget all.
+    /// Visit the pairs that may be nearer than the distance up to which they count, with their least distance, and forget all.
     #[inline]
     pub fn find(&mut self, mut visit: impl FnMut(T, f32)) {
         run(Together(self));
         for ((pair, least), most) in
             self.pairs[..self.count].iter().zip(&self.least).zip(&self.most)
         {
-            // What is no number counts as near.
+            // A NaN counts as near.
             if least.partial_cmp(most).is_none_or(Ordering::is_lt) {
                 visit(*pair, *least);
             }
@@ -100,7 +102,7 @@ fn squared(r: [f32; 3], s: f32, u: [f32; 3], t: f32, v: [f32; 3]) -> f32 {
     dot(way, way)
 }
 
-/// Each of s and t is the best one for the other.
+/// s and t in turn, each the best one for the value of the other.
 #[inline(always)]
 fn of_edges(r: [f32; 3], u: [f32; 3], v: [f32; 3]) -> f32 {
     let (rr, uu, uv, vv) = (dot(r, r), dot(u, u), dot(u, v), dot(v, v));

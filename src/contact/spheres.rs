@@ -9,10 +9,10 @@ use crate::mesh::Cell;
 use crate::mesh::closest::difference;
 use crate::mesh::geometry::Vec3;
 
-/// What positions in single precision may be off by, as a share of how far they are from the origin.
+/// The largest error of positions in single precision, as a share of their distance from the origin.
 const ROUNDING: f64 = 4e-7;
 
-/// What is around an edge, or a vertex of no size.
+/// The sphere around an edge, or around a vertex, which has no size.
 #[derive(Clone, Copy)]
 pub struct Sphere {
     pub middle: Vec3,
@@ -72,7 +72,7 @@ pub struct Spheres {
     /// Middles and halves, in the order of the boxes, and then as they came.
     middles: [Vec<f32>; 3],
     halves: [Vec<f32>; 3],
-    /// No number for those that have been taken out.
+    /// NaN for those that have been taken out.
     radii: Vec<f32>,
     ends: Vec<[u32; 2]>,
     parts: Vec<u32>,
@@ -164,7 +164,7 @@ impl Spheres {
         self.grid.home(position).unwrap_or(0)
     }
 
-    /// How many places there are, those of what has been taken out among them.
+    /// How many places there are, with those of what has been taken out.
     pub fn len(&self) -> usize {
         self.ends.len()
     }
@@ -174,7 +174,7 @@ impl Spheres {
         self.len() - self.sorted
     }
 
-    /// The ends of the one at a place.
+    /// The ends of the edge, or the vertex twice, at a place.
     #[inline]
     pub fn ends(&self, place: usize) -> [u32; 2] {
         self.ends[place]

@@ -19,12 +19,12 @@ use std::collections::HashSet;
 struct Hit {
     /// Their vertices: the vertex and the corners, or the ends of both.
     vertices: [u32; 4],
-    /// How much each of them moves the way between the nearest points.
+    /// By how much the vector between the nearest points changes with the position of each.
     weights: [f64; 4],
     squared: f64,
-    /// The way, nm.
+    /// That vector, nm.
     separation: Vec3,
-    /// From the first of the second thing to that of the first, and along both edges or sides, nm.
+    /// From the first vertex of the second partner to that of the first, and along both edges or sides, nm.
     arms: [Vec3; 3],
     are_edges: bool,
 }
@@ -38,9 +38,9 @@ pub struct SurfaceContacts {
     parts: Vec<u32>,
     /// Of vertices and triangles, and of edges, for each thread; the hits of all, one after the other, are in the order of the lists.
     hits: [Vec<Vec<Hit>>; 2],
-    /// While flips go on, the triangles and edges that take part in a pair within reach, or did.
+    /// During a round of flips, the triangles and edges that are, or were, in a pair within reach.
     touched: Touched,
-    /// What takes part in the pairs that [`Self::around`] found last.
+    /// The triangles and edges in the pairs that [`Self::around`] found last.
     last: Vec<(Pair, bool)>,
     /// Kept for their memory.
     near: Vec<u32>,
@@ -292,19 +292,19 @@ impl SurfaceContacts {
         energy
     }
 
-    /// Have the edge kl of a quadrilateral in place of ij.
+    /// Replace the edge ij of a quadrilateral by kl.
     pub fn follow(&mut self, quad: &Quad) {
         self.lists.follow(quad);
     }
 
-    /// What [`Self::around`] found last is here to stay.
+    /// Keep what [`Self::around`] found last, since its flip has been made.
     pub fn note_new_pairs(&mut self) {
         for (pair, are_edges) in &self.last {
             self.touched.add(*pair, *are_edges);
         }
     }
 
-    /// Know nothing of any positions or triangles.
+    /// Forget all positions and triangles.
     pub fn forget(&mut self) {
         self.lists.forget();
     }

@@ -153,7 +153,7 @@ impl Viscosity {
         let velocities = motion.velocities.as_chunks::<3>().0;
         let vertices = mesh.particles().iter().zip(&self.inverse_masses);
         let moving = vertices.map(|(&particle, &inverse)| {
-            // Whatever velocity it may have, a particle without mass stays where it is.
+            // A particle without mass stays where it is, even if it has been given a velocity.
             let [x, y, z] = if inverse == 0.0 { [0.0; 3] } else { velocities[particle as usize] };
             [x, y, z, inverse]
         });

@@ -55,7 +55,7 @@ impl BorderEvaluator {
                 false => Contribution::default(),
             })
             .collect();
-        // Of positions that are not finite the other evaluator names the culprit.
+        // Where positions are not finite, the other evaluator names the culprit.
         if totals.length.is_finite() && totals.turning.is_finite() {
             check_energies(terms, &contributions)?;
         }

@@ -177,7 +177,7 @@ impl ChosenEvaluator {
         self.on_gpu(present, request)
     }
 
-    /// See what the processor says of some positions, whatever has been chosen.
+    /// Evaluate some positions on the processor, whatever has been chosen, since its errors name the culprit.
     ///
     /// # Errors
     /// Those of [`Evaluator::evaluate`].
@@ -188,7 +188,7 @@ impl ChosenEvaluator {
         positions: &[f64],
         forces: &mut [f64],
     ) -> Result<()> {
-        // It says of energies only if somebody wants to know them.
+        // Energies that are not finite are errors only where energies are wanted.
         let mut energies = vec![Contribution::default(); terms.len()];
         let request = Request::new(terms, positions).with_energies(&mut energies);
         self.cpu(present).evaluate(request.with_forces(forces))
@@ -339,7 +339,7 @@ impl ChosenEvaluator {
             computed = gpu.evaluate(request.with_forces(&mut forces[..]));
         });
         if !computed? {
-            // What it cannot compute says nothing about its speed, so nothing is remembered.
+            // A failure says nothing about its speed, so nothing is remembered.
             return Ok(false);
         }
         let times = calibration::Times { cpu, gpu: on_gpu };

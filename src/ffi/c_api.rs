@@ -1,8 +1,8 @@
 //! The C API of the force classes, in the style of OpenMM's C wrapper: `Helfrich_BendingForce_create` and so on.
 //!
-//! The build makes these functions of their declarations in `wrappers/include/OpenMMHelfrichCWrapper.h`
-//! (`wrappers/declarations.rs`). They are Rust's, because a Rust library exports only Rust's own symbols; what they do is
-//! in `wrappers/src/CApi.cpp`.
+//! The build makes these functions of their declarations in `wrappers/include/OpenMMHelfrichCWrapper.h` and
+//! `OpenMMHelfrichCForces.h` (`wrappers/declarations.rs`). They are Rust's, because a Rust library exports only Rust's own
+//! symbols; what they do is in `wrappers/src/CApi.cpp`.
 //!
 //! A force is an `OpenMM_Force` that `OpenMM_System_addForce` takes. Functions that can fail return a
 //! [`Status`](crate::ffi::Status), or a null pointer; [`crate::ffi::Helfrich_lastError`] has the message.
@@ -70,7 +70,6 @@ macro_rules! create {
 /// The `get` of a scalar.
 macro_rules! get {
     ($(#[$doc:meta])* $name:ident $class:ident $parameter:ident) => {
-        #[doc = concat!("The scalar `", stringify!($parameter), "` of a `", stringify!($class), "`.")]
         $(#[$doc])*
         #[unsafe(no_mangle)]
         pub unsafe extern "C" fn $name(force: *mut OpenMM_Force) -> c_double {
@@ -87,7 +86,6 @@ macro_rules! get {
 /// The `set` of a scalar.
 macro_rules! set {
     ($(#[$doc:meta])* $name:ident $class:ident $parameter:ident) => {
-        #[doc = concat!("Set the scalar `", stringify!($parameter), "` of a `", stringify!($class), "`.")]
         $(#[$doc])*
         #[unsafe(no_mangle)]
         pub unsafe extern "C" fn $name(force: *mut OpenMM_Force, value: c_double) -> Helfrich_Status {

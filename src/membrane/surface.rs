@@ -211,7 +211,7 @@ impl Placed<'_> {
         match is_inside_out(mesh, self.positions) {
             Some((true, totals)) => Err(Error::InsideOut { force, volume: totals.volume }),
             found => {
-                // Of positions that are not finite the evaluator names the culprit.
+                // Where positions are not finite, the evaluator names the culprit.
                 *self.has_outside = found.is_some();
                 Ok(())
             }

@@ -25,7 +25,7 @@ pub fn plus(one: Image, other: Image) -> Image {
     std::array::from_fn(|k| one[k].wrapping_add(other[k]))
 }
 
-/// What leads from the other to the one.
+/// The image that leads from `other` to `one`.
 #[inline]
 pub fn minus(one: Image, other: Image) -> Image {
     std::array::from_fn(|k| one[k].wrapping_sub(other[k]))

@@ -15,11 +15,11 @@ use crate::mesh::vertex_vectors::VertexVectors;
 use crate::mesh::{Cell, NONE};
 use crate::potentials::{Needs, Term};
 
-/// Below twice this area, nm², a triangle has none.
+/// |N| below which a triangle counts as having no area, nm².
 const SMALLEST_AREA: f64 = 1e-140;
 
-/// Of half of the width of a periodic box, what new edges have for themselves; an edge as long as that half ends the
-/// run, and the rest is for vertices to move before the edge flips again.
+/// New edges stay below this share of half of the width of a periodic box. An edge as long as that half ends the run, so the
+/// rest is room for its ends to move before it flips again.
 const SHARE_OF_HALF_WIDTH: f64 = 0.8;
 
 /// Energies of all elements of a mesh, and the geometry that they come from.

@@ -190,7 +190,7 @@ pub fn attempt(mesh: &Triangulation, local: &LocalEnergy, terms: &[Term], round:
                 _ => state.demon_energy,
             };
             let difference = around.exchange(ends, sources);
-            // Nor is it what is no number.
+            // A difference that is NaN is refused, too.
             if !(difference.is_finite() && difference <= limit) {
                 sources.swap(ends[0] as usize, ends[1] as usize);
                 state.by_energy += 1;

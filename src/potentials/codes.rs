@@ -115,6 +115,15 @@ named! {
     Coefficients { Lim2002, Amoudruz2023 }
 }
 
+/// All forms: the class, its enumeration in C++, how shaders begin their constants (if they know them), and the names.
+pub const FORMS: [(&str, &str, Option<&str>, &[&CStr]); 5] = [
+    ("BendingForce", "Scheme", Some("SCHEME"), Scheme::NAMES),
+    ("DihedralForce", "Form", Some("FORM"), Form::NAMES),
+    ("LimForce", "Coefficients", Some("COEFFICIENTS"), Coefficients::NAMES),
+    ("ParticleSurfaceForce", "Attraction", None, Attraction::NAMES),
+    ("SpringForce", "Form", Some("SPRING"), SpringForm::NAMES),
+];
+
 /// The switches of `BendingForce`; the k-th is bit k.
 pub const BENDING_SWITCHES: &[&CStr] = &[c"unsignedSpontaneousCurvature"];
 

@@ -180,7 +180,7 @@ impl MadeOf {
         Ok(common)
     }
 
-    /// What a vertex on no border, with the values of the one given, adds to that, times the number of triangles.
+    /// What an inner vertex with the values of this one adds to [`Self::common`], times the number of triangles.
     pub fn part(self, term: &Term, vertex: usize) -> f64 {
         match self {
             Self::Reference(_) | Self::Domains(_) => 0.0,
@@ -191,7 +191,7 @@ impl MadeOf {
     /// The constants of a triangle.
     ///
     /// # Errors
-    /// Its shape at rest is none.
+    /// The triangle has no shape at rest.
     pub fn constants(
         self,
         term: &Term,

@@ -2,39 +2,68 @@
 //!
 //! A potential states its energy and its derivatives with respect to geometry and never touches a
 //! coordinate; the chain rule from there to forces is in [`crate::mesh`]. Each potential is one file
-//! here, and one line in [`REGISTRY`].
+//! here; `.ci/potentials.py` writes the list of all, [`REGISTRY`].
 
-mod area_difference;
-mod bending;
 pub mod codes;
 mod constants;
-mod dihedral;
-mod edge_tension;
 mod elements;
-mod enclosed_volume;
-mod gaussian_curvature;
 mod in_lanes;
-mod lim;
-mod line_tension;
-mod linear_elastic;
-mod neo_hookean;
-mod osmotic_pressure;
 mod parameter;
-pub(crate) mod particle_surface;
-mod plaquette_area;
-mod pressure;
 mod request;
 mod runs;
-mod skalak;
-mod spring;
 mod strain;
-mod surface_area;
-pub(crate) mod surface_repulsion;
-mod surface_tension;
 mod term;
-mod triangle_area;
-mod triangle_area_repulsion;
-mod triangle_height;
+
+// .ci/potentials.py writes what follows, from the files here with an `impl Potential`.
+pub(crate) mod area_difference;
+pub(crate) mod bending;
+pub(crate) mod dihedral;
+pub(crate) mod edge_tension;
+pub(crate) mod enclosed_volume;
+pub(crate) mod gaussian_curvature;
+pub(crate) mod lim;
+pub(crate) mod line_tension;
+pub(crate) mod linear_elastic;
+pub(crate) mod neo_hookean;
+pub(crate) mod osmotic_pressure;
+pub(crate) mod particle_surface;
+pub(crate) mod plaquette_area;
+pub(crate) mod pressure;
+pub(crate) mod skalak;
+pub(crate) mod spring;
+pub(crate) mod surface_area;
+pub(crate) mod surface_repulsion;
+pub(crate) mod surface_tension;
+pub(crate) mod triangle_area;
+pub(crate) mod triangle_area_repulsion;
+pub(crate) mod triangle_height;
+
+/// All potentials, by the names of their OpenMM classes.
+pub static REGISTRY: [&dyn Potential; 22] = [
+    &area_difference::AreaDifference,
+    &bending::Bending,
+    &dihedral::Dihedral,
+    &edge_tension::EdgeTension,
+    &enclosed_volume::EnclosedVolume,
+    &gaussian_curvature::GaussianCurvature,
+    &lim::Lim,
+    &line_tension::LineTension,
+    &linear_elastic::LinearElastic,
+    &neo_hookean::NeoHookean,
+    &osmotic_pressure::OsmoticPressure,
+    &particle_surface::ParticleSurface,
+    &plaquette_area::PlaquetteArea,
+    &pressure::Pressure,
+    &skalak::Skalak,
+    &spring::Spring,
+    &surface_area::SurfaceArea,
+    &surface_repulsion::SurfaceRepulsion,
+    &surface_tension::SurfaceTension,
+    &triangle_area::TriangleArea,
+    &triangle_area_repulsion::TriangleAreaRepulsion,
+    &triangle_height::TriangleHeight,
+];
+// Up to here.
 
 use crate::error::{Error, Result};
 use crate::mesh::borders::{BorderPartials, BorderTotals};
@@ -49,32 +78,6 @@ pub use runs::*;
 use std::ffi::CStr;
 pub use surface_repulsion::ONLY_BETWEEN_PARTS;
 pub use term::{Term, Values};
-
-/// All potentials, by the names of their OpenMM classes.
-pub static REGISTRY: [&dyn Potential; 22] = [
-    &surface_area::SurfaceArea,
-    &enclosed_volume::EnclosedVolume,
-    &bending::Bending,
-    &triangle_height::TriangleHeight,
-    &dihedral::Dihedral,
-    &triangle_area::TriangleArea,
-    &plaquette_area::PlaquetteArea,
-    &triangle_area_repulsion::TriangleAreaRepulsion,
-    &edge_tension::EdgeTension,
-    &gaussian_curvature::GaussianCurvature,
-    &surface_repulsion::SurfaceRepulsion,
-    &particle_surface::ParticleSurface,
-    &skalak::Skalak,
-    &lim::Lim,
-    &pressure::Pressure,
-    &surface_tension::SurfaceTension,
-    &osmotic_pressure::OsmoticPressure,
-    &area_difference::AreaDifference,
-    &neo_hookean::NeoHookean,
-    &linear_elastic::LinearElastic,
-    &spring::Spring,
-    &line_tension::LineTension,
-];
 
 impl std::ops::AddAssign for Contribution {
     fn add_assign(&mut self, other: Self) {

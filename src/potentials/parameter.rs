@@ -67,7 +67,7 @@ impl Parameter {
         Self { per: Some(element), ..self }
     }
 
-    /// The same, but behind the form in constructors, as what has come later must be.
+    /// The same, but behind the form in constructors, so that a scalar that is added to a class leaves older calls valid.
     pub const fn last(self) -> Self {
         Self { last: true, ..self }
     }

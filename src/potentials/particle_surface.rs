@@ -31,7 +31,7 @@ pub const RADIUS: usize = 3;
 /// Beyond so many D from a particle's rim there is no attraction.
 const TAIL: f64 = 3.0;
 
-/// Below so many D a gap is none: on a triangle rounding leaves some.
+/// Gaps below this share of D count as none: rounding leaves some to a particle that touches a triangle.
 const TOUCHING: f64 = 1e-9;
 
 impl Potential for ParticleSurface {
@@ -112,7 +112,7 @@ pub fn pair(term: &Term, radius: f64, arms: &Arms) -> Pair {
     let far = nearest.squared.sqrt();
     let gap = far - radius;
     if gap < distance {
-        // Within the radius the energy is no number, nor where rounding has made the gap.
+        // Inside of the radius, and where the gap is nothing but rounding, the energy is infinite and will be refused.
         let ratio =
             if gap > TOUCHING * distance { (distance / gap).powi(2) } else { f64::INFINITY };
         let (contribution, slope) = core(distance, epsilon, ratio, gap * gap);

@@ -43,7 +43,7 @@ impl<'a, 't> Request<'a, 't> {
         Self { forces: forces.into(), ..self }
     }
 
-    /// The same for somebody else first.
+    /// The same request again, which lends its arrays to another evaluator for a while.
     pub fn again(&mut self) -> Request<'_, 't> {
         Request {
             terms: self.terms,

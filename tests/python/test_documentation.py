@@ -270,7 +270,7 @@ def test_architecture_names_what_there_is():
     build = [ROOT / "build.rs", *(ROOT / "shaders").rglob("*.rs"), *(ROOT / "python").glob("*.i")]
     words = sources() + "".join(path.read_text(encoding="utf-8") for path in build)
     names = [name for name in re.findall(r"`([^`]+)`", text) if "our_term" not in name]
-    names = [name for name in names if "YourForce" not in name]
+    names = [name for name in names if "YourTermForce" not in name]
     made = ["NativeCodes.h", ".venv/bin/python"]
     assert len(names) > 100
 

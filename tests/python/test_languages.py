@@ -146,7 +146,7 @@ def test_c_reports_what_is_wrong(tmp_path):
 
 def test_every_force_class_has_its_c_functions():
     """A force that is added to the C++ list must come to C programs, too."""
-    header = (Path(helfrich.include_path()) / "OpenMMHelfrichCWrapper.h").read_text()
+    header = (Path(helfrich.include_path()) / "OpenMMHelfrichCForces.h").read_text()
     library = ctypes.CDLL(helfrich.library_path())
     for force in helfrich.MembraneForce.__subclasses__():
         names = [f"Helfrich_{force.__name__}_create"]

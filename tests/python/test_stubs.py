@@ -1,4 +1,4 @@
-"""The stubs of the force classes: they are current, and what they promise is so."""
+"""What is written from the force classes is current, and what their stubs promise is so."""
 
 import ast
 import inspect
@@ -74,11 +74,22 @@ def functions(classes, cls):
     return found
 
 
+def script(name):
+    spec = spec_from_file_location(name, ROOT / ".ci" / f"{name}.py")
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
 def test_the_file_is_current():
-    spec = spec_from_file_location("stubs", ROOT / ".ci" / "stubs.py")
-    stubs = module_from_spec(spec)
-    spec.loader.exec_module(stubs)
-    assert STUB.read_text(encoding="utf-8") == stubs.stub(), "run .venv/bin/python .ci/stubs.py"
+    assert STUB.read_text(encoding="utf-8") == script("stubs").stub(), "run make derived"
+
+
+def test_the_lists_of_potentials_are_current():
+    potentials = script("potentials")
+    for path, text in potentials.texts().items():
+        assert path.read_text(encoding="utf-8") == text, f"{path}: run make derived"
+    assert len(potentials.forces()) == len(helfrich.MembraneForce.__subclasses__())
 
 
 def test_all_classes_and_their_functions_are_there(classes):

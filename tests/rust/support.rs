@@ -2,7 +2,9 @@
 
 use openmm_helfrich::membrane::Membrane;
 use openmm_helfrich::mesh::Cell;
-use openmm_helfrich::potentials::{Term, VertexNumbers};
+use openmm_helfrich::potentials::{
+    Domain, MadeOf, Needs, Potential, REGISTRY, Term, VertexNumbers,
+};
 
 /// Positions of all particles, x y z of one after the other, and triangles.
 pub type Mesh = (Vec<f64>, Vec<[i64; 3]>);
@@ -158,21 +160,18 @@ pub fn terms_of_vertices(mesh: &Mesh, cell: Option<Cell>) -> Vec<Term<'static>> 
     let mut by_vertex = Term::new("GaussianCurvatureForce", 0, &[1.0]).unwrap();
     by_vertex.fields[0] = moduli.leak();
     by_vertex.numbers = numbers(Vec::new(), None);
-    let with = |numbers, name, form, values: &[f64]| Term {
-        numbers,
-        ..Term::new(name, form, values).unwrap()
-    };
-    vec![
-        with(reference, "SkalakForce", 0, &[2.0, 3.0]),
-        with(reference, "NeoHookeanForce", 0, &[2.0, 3.0]),
-        with(reference, "LimForce", 0, &[2.0, 3.0]),
-        with(reference, "LimForce", 1, &[2.0, 3.0]),
-        with(reference, "LinearElasticForce", 0, &[2.0, 3.0]),
-        with(reference, "SpringForce", 0, &[1.5, 0.5]),
-        with(reference, "SpringForce", 1, &[1.5, 0.4]),
-        with(domains, "LineTensionForce", 0, &[2.5]),
-        by_vertex,
-    ]
+    let mut terms = Vec::new();
+    for potential in REGISTRY {
+        let made_of = potential.constants(&Term::of(potential));
+        let numbers = match made_of.and_then(MadeOf::numbers) {
+            Some((_, 3)) => reference,
+            Some(_) => domains,
+            None => continue,
+        };
+        terms.extend(usual_terms(potential).into_iter().map(|term| Term { numbers, ..term }));
+    }
+    terms.push(by_vertex);
+    terms
 }
 
 /// The same terms with their constants of triangles on some mesh.
@@ -192,8 +191,24 @@ pub fn random(seed: u64) -> impl FnMut() -> f64 {
     }
 }
 
-/// Every potential in every form, with values that make it act on the meshes of these tests; all with or all
-/// without the derivatives with respect to their scalars.
+/// A potential in every form, with values that fit triangles whose sides are some 3 nm long.
+fn usual_terms(potential: &'static dyn Potential) -> Vec<Term<'static>> {
+    let parameters = potential.parameters().iter().enumerate();
+    let values: Vec<f64> = parameters
+        .map(|(index, parameter)| match (parameter.domain, parameter.default) {
+            (Domain::Share, _) => 0.4,
+            (_, Some(default)) => default,
+            // Different ones, so that none is taken for another.
+            _ if parameter.energy != 0 => 2.0 + index as f64,
+            _ => 3f64.powi(parameter.length.into()),
+        })
+        .collect();
+    let forms = 0..potential.forms().map_or(1, |(_, names)| names.len());
+    forms.map(|form| Term::new(potential.name(), form, &values).unwrap()).collect()
+}
+
+/// Every potential of elements and totals in every form, with values that make it act on the meshes of these tests; all
+/// with or all without the derivatives with respect to their scalars.
 pub fn all_terms(wants_derivatives: bool) -> Vec<Term<'static>> {
     let mut terms = Vec::new();
     let mut add = |name, form, values: &[f64]| terms.push(Term::new(name, form, values).unwrap());
@@ -204,16 +219,22 @@ pub fn all_terms(wants_derivatives: bool) -> Vec<Term<'static>> {
         add("DihedralForce", form, &[1.5, 0.0]);
         add("DihedralForce", form, &[1.5, -0.4]);
     }
+    // Scales of the whole surface.
     add("SurfaceAreaForce", 0, &[3.0, 900.0]);
     add("EnclosedVolumeForce", 0, &[0.7, 3000.0]);
-    add("TriangleHeightForce", 0, &[3.0, 2.0]);
-    add("TriangleAreaForce", 0, &[1.0, 8.0]);
     add("PlaquetteAreaForce", 0, &[4.0, 1000.0]);
-    add("TriangleAreaRepulsionForce", 0, &[9.0, 2.0]);
     add("PressureForce", 0, &[0.6]);
     add("SurfaceTensionForce", 0, &[-1.4]);
     add("OsmoticPressureForce", 0, &[500.0, 0.2, 2.5]);
     add("AreaDifferenceForce", 0, &[0.3, 90.0]);
+    for potential in REGISTRY {
+        let needs = potential.needs(&Term::of(potential));
+        let is_elsewhere = needs.intersects(Needs::CONTACTS | Needs::BORDERS)
+            || potential.constants(&Term::of(potential)).is_some();
+        if !is_elsewhere && terms.iter().all(|term| term.potential.name() != potential.name()) {
+            terms.extend(usual_terms(potential));
+        }
+    }
     for index in 0..terms.len() {
         if terms[index].potential.name() == "BendingForce" && terms[index].values[1] != 0.0 {
             let mut unsigned = terms[index];

@@ -1,6 +1,8 @@
 #ifndef OPENMM_HELFRICH_H_
 #define OPENMM_HELFRICH_H_
 
+/* .ci/potentials.py writes this file, from the headers in openmm-helfrich/. */
+
 /** All forces and integrators of the plugin. */
 
 #include "openmm-helfrich/AreaDifferenceForce.h"
@@ -12,9 +14,12 @@
 #include "openmm-helfrich/LimForce.h"
 #include "openmm-helfrich/LineTensionForce.h"
 #include "openmm-helfrich/LinearElasticForce.h"
+#include "openmm-helfrich/MembraneForce.h"
 #include "openmm-helfrich/MonteCarloBondFlip.h"
 #include "openmm-helfrich/MonteCarloDomainSwap.h"
 #include "openmm-helfrich/MonteCarloMembraneTension.h"
+#include "openmm-helfrich/MonteCarloMover.h"
+#include "openmm-helfrich/MonteCarloSurfaceMover.h"
 #include "openmm-helfrich/NeoHookeanForce.h"
 #include "openmm-helfrich/OsmoticPressureForce.h"
 #include "openmm-helfrich/ParticleSurfaceForce.h"
@@ -29,34 +34,36 @@
 #include "openmm-helfrich/TriangleAreaForce.h"
 #include "openmm-helfrich/TriangleAreaRepulsionForce.h"
 #include "openmm-helfrich/TriangleHeightForce.h"
+#include "openmm-helfrich/TriangulatedForce.h"
+#include "openmm-helfrich/VariableMassIntegrator.h"
 #include "openmm-helfrich/VariableMassLangevinIntegrator.h"
 #include "openmm-helfrich/VariableMassVerletIntegrator.h"
 
-/** Apply a macro to the name of each force class: the list that the plugin and Python are made from. */
+/** Apply a macro to the name of each force class: the list that plugin and Python are made from. */
 // clang-format off: one a line
 #define HELFRICH_FORCES(apply) \
-    apply(SurfaceAreaForce) \
-    apply(EnclosedVolumeForce) \
-    apply(BendingForce) \
-    apply(TriangleHeightForce) \
-    apply(DihedralForce) \
-    apply(TriangleAreaForce) \
-    apply(PlaquetteAreaForce) \
-    apply(TriangleAreaRepulsionForce) \
-    apply(SurfaceRepulsionForce) \
-    apply(ParticleSurfaceForce) \
-    apply(EdgeTensionForce) \
-    apply(GaussianCurvatureForce) \
-    apply(SkalakForce) \
-    apply(LimForce) \
-    apply(PressureForce) \
-    apply(SurfaceTensionForce) \
-    apply(OsmoticPressureForce) \
     apply(AreaDifferenceForce) \
-    apply(NeoHookeanForce) \
+    apply(BendingForce) \
+    apply(DihedralForce) \
+    apply(EdgeTensionForce) \
+    apply(EnclosedVolumeForce) \
+    apply(GaussianCurvatureForce) \
+    apply(LimForce) \
+    apply(LineTensionForce) \
     apply(LinearElasticForce) \
+    apply(NeoHookeanForce) \
+    apply(OsmoticPressureForce) \
+    apply(ParticleSurfaceForce) \
+    apply(PlaquetteAreaForce) \
+    apply(PressureForce) \
+    apply(SkalakForce) \
     apply(SpringForce) \
-    apply(LineTensionForce)
+    apply(SurfaceAreaForce) \
+    apply(SurfaceRepulsionForce) \
+    apply(SurfaceTensionForce) \
+    apply(TriangleAreaForce) \
+    apply(TriangleAreaRepulsionForce) \
+    apply(TriangleHeightForce)
 // clang-format on
 
 #endif /*OPENMM_HELFRICH_H_*/

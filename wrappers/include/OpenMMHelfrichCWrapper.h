@@ -5,13 +5,13 @@
  * The plugin's forces for C, in the style of OpenMMCWrapper.h. Link libOpenMMHelfrich.so and libOpenMM.so.
  *
  * A create function makes an OpenMM_Force for OpenMM_System_addForce(), which takes it over; a force that no
- * System owns is deleted with Helfrich_MembraneForce_destroy(). What the forces compute, and the units of
- * their scalars, is documented in the C++ headers in openmm-helfrich/.
+ * System owns is deleted with Helfrich_MembraneForce_destroy(). The C++ headers in openmm-helfrich/ have the formulas.
  *
  * The create functions return null for failure, most others a Helfrich_Status; Helfrich_lastError() then has the
  * message. (OpenMM's own C functions end the program instead.)
  */
 
+#include "OpenMMHelfrichCForces.h"
 #include "openmm-helfrich/internal/Status.h"
 
 #include <OpenMMCWrapper.h>
@@ -84,184 +84,10 @@ extern Helfrich_Status Helfrich_MembraneForce_getPermutationInContext(OpenMM_For
 extern Helfrich_Status Helfrich_MembraneForce_setPermutationInContext(OpenMM_Force* force, OpenMM_Context* context,
                                                                       const int* permutation, int numVertices);
 
-/** The schemes of BendingForce. */
-typedef enum {
-    Helfrich_BendingForce_Julicher = 0,
-    Helfrich_BendingForce_GompperKroll = 1,
-    Helfrich_BendingForce_GompperKrollBarycentric = 2,
-    Helfrich_BendingForce_JulicherVoronoi = 3,
-    Helfrich_BendingForce_Espriu = 4
-} Helfrich_BendingForce_Scheme;
+/* What some forces have beside their scalars. */
 
-/** The forms of DihedralForce. */
-typedef enum {
-    Helfrich_DihedralForce_Quartic = 0,
-    Helfrich_DihedralForce_Cosine = 1,
-    Helfrich_DihedralForce_Exp = 2,
-    Helfrich_DihedralForce_SmoothExp = 3,
-    Helfrich_DihedralForce_SmoothExp46 = 4
-} Helfrich_DihedralForce_Form;
-
-/** The coefficients of LimForce. */
-typedef enum { Helfrich_LimForce_Lim2002 = 0, Helfrich_LimForce_Amoudruz2023 = 1 } Helfrich_LimForce_Coefficients;
-/** The forms of SpringForce. */
-typedef enum { Helfrich_SpringForce_Harmonic = 0, Helfrich_SpringForce_WLCPower = 1 } Helfrich_SpringForce_Form;
-
-/** The attractions of ParticleSurfaceForce. */
-typedef enum {
-    Helfrich_ParticleSurfaceForce_WCA = 0,
-    Helfrich_ParticleSurfaceForce_LennardJones = 1,
-    Helfrich_ParticleSurfaceForce_NineThree = 2
-} Helfrich_ParticleSurfaceForce_Attraction;
-
-/* `triangles` holds three particle indices a triangle, counter-clockwise seen from outside. */
-
-extern OpenMM_Force* Helfrich_SurfaceAreaForce_create(const int* triangles, int numTriangles, double modulus,
-                                                      double target);
-extern double Helfrich_SurfaceAreaForce_getModulus(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_SurfaceAreaForce_setModulus(OpenMM_Force* force, double modulus);
-extern double Helfrich_SurfaceAreaForce_getTarget(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_SurfaceAreaForce_setTarget(OpenMM_Force* force, double target);
-
-extern OpenMM_Force* Helfrich_EnclosedVolumeForce_create(const int* triangles, int numTriangles, double modulus,
-                                                         double target);
-extern double Helfrich_EnclosedVolumeForce_getModulus(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_EnclosedVolumeForce_setModulus(OpenMM_Force* force, double modulus);
-extern double Helfrich_EnclosedVolumeForce_getTarget(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_EnclosedVolumeForce_setTarget(OpenMM_Force* force, double target);
-
-extern OpenMM_Force* Helfrich_BendingForce_create(const int* triangles, int numTriangles, double rigidity,
-                                                  double spontaneousCurvature, int scheme);
-extern double Helfrich_BendingForce_getRigidity(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_BendingForce_setRigidity(OpenMM_Force* force, double rigidity);
-extern double Helfrich_BendingForce_getSpontaneousCurvature(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_BendingForce_setSpontaneousCurvature(OpenMM_Force* force, double spontaneousCurvature);
-
-extern OpenMM_Force* Helfrich_TriangleHeightForce_create(const int* triangles, int numTriangles, double minHeight,
-                                                         double epsilon);
-extern double Helfrich_TriangleHeightForce_getMinHeight(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_TriangleHeightForce_setMinHeight(OpenMM_Force* force, double minHeight);
-extern double Helfrich_TriangleHeightForce_getEpsilon(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_TriangleHeightForce_setEpsilon(OpenMM_Force* force, double epsilon);
-
-extern OpenMM_Force* Helfrich_DihedralForce_create(const int* triangles, int numTriangles, double stiffness, int form);
-extern double Helfrich_DihedralForce_getStiffness(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_DihedralForce_setStiffness(OpenMM_Force* force, double stiffness);
-extern double Helfrich_DihedralForce_getRestAngle(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_DihedralForce_setRestAngle(OpenMM_Force* force, double restAngle);
-
-extern OpenMM_Force* Helfrich_TriangleAreaForce_create(const int* triangles, int numTriangles, double modulus,
-                                                       double target);
-extern double Helfrich_TriangleAreaForce_getModulus(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_TriangleAreaForce_setModulus(OpenMM_Force* force, double modulus);
-extern double Helfrich_TriangleAreaForce_getTarget(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_TriangleAreaForce_setTarget(OpenMM_Force* force, double target);
-
-extern OpenMM_Force* Helfrich_PlaquetteAreaForce_create(const int* triangles, int numTriangles, double stiffness,
-                                                        double target);
-extern double Helfrich_PlaquetteAreaForce_getStiffness(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_PlaquetteAreaForce_setStiffness(OpenMM_Force* force, double stiffness);
-extern double Helfrich_PlaquetteAreaForce_getTarget(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_PlaquetteAreaForce_setTarget(OpenMM_Force* force, double target);
-
-extern OpenMM_Force* Helfrich_TriangleAreaRepulsionForce_create(const int* triangles, int numTriangles, double minArea,
-                                                                double epsilon);
-extern double Helfrich_TriangleAreaRepulsionForce_getMinArea(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_TriangleAreaRepulsionForce_setMinArea(OpenMM_Force* force, double minArea);
-extern double Helfrich_TriangleAreaRepulsionForce_getEpsilon(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_TriangleAreaRepulsionForce_setEpsilon(OpenMM_Force* force, double epsilon);
-
-extern OpenMM_Force* Helfrich_SurfaceRepulsionForce_create(const int* triangles, int numTriangles, double distance,
-                                                           double epsilon);
-extern double Helfrich_SurfaceRepulsionForce_getDistance(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_SurfaceRepulsionForce_setDistance(OpenMM_Force* force, double distance);
-extern double Helfrich_SurfaceRepulsionForce_getEpsilon(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_SurfaceRepulsionForce_setEpsilon(OpenMM_Force* force, double epsilon);
-
-/** Acts on no particles until Helfrich_ParticleSurfaceForce_setParticles() has named them. */
-extern OpenMM_Force* Helfrich_ParticleSurfaceForce_create(const int* triangles, int numTriangles, double distance,
-                                                          double epsilon, double adhesion, double radius,
-                                                          int attraction);
+/** Name the particles that the surface acts on; until then there are none. */
 extern Helfrich_Status Helfrich_ParticleSurfaceForce_setParticles(OpenMM_Force* force, const int* particles, int count);
-extern double Helfrich_ParticleSurfaceForce_getDistance(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_ParticleSurfaceForce_setDistance(OpenMM_Force* force, double distance);
-extern double Helfrich_ParticleSurfaceForce_getEpsilon(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_ParticleSurfaceForce_setEpsilon(OpenMM_Force* force, double epsilon);
-extern double Helfrich_ParticleSurfaceForce_getAdhesion(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_ParticleSurfaceForce_setAdhesion(OpenMM_Force* force, double adhesion);
-extern double Helfrich_ParticleSurfaceForce_getRadius(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_ParticleSurfaceForce_setRadius(OpenMM_Force* force, double radius);
-
-extern OpenMM_Force* Helfrich_EdgeTensionForce_create(const int* triangles, int numTriangles, double tension);
-extern double Helfrich_EdgeTensionForce_getTension(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_EdgeTensionForce_setTension(OpenMM_Force* force, double tension);
-
-extern OpenMM_Force* Helfrich_GaussianCurvatureForce_create(const int* triangles, int numTriangles, double modulus);
-extern double Helfrich_GaussianCurvatureForce_getModulus(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_GaussianCurvatureForce_setModulus(OpenMM_Force* force, double modulus);
-
-/* Helfrich_MembraneForce_setReference() gives these four their shape at rest. */
-
-extern OpenMM_Force* Helfrich_SkalakForce_create(const int* triangles, int numTriangles, double shearModulus,
-                                                 double areaModulus);
-extern double Helfrich_SkalakForce_getShearModulus(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_SkalakForce_setShearModulus(OpenMM_Force* force, double shearModulus);
-extern double Helfrich_SkalakForce_getAreaModulus(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_SkalakForce_setAreaModulus(OpenMM_Force* force, double areaModulus);
-
-extern OpenMM_Force* Helfrich_LimForce_create(const int* triangles, int numTriangles, double shearModulus,
-                                              double areaModulus, int coefficients);
-extern double Helfrich_LimForce_getShearModulus(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_LimForce_setShearModulus(OpenMM_Force* force, double shearModulus);
-extern double Helfrich_LimForce_getAreaModulus(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_LimForce_setAreaModulus(OpenMM_Force* force, double areaModulus);
-extern OpenMM_Force* Helfrich_PressureForce_create(const int* triangles, int numTriangles, double pressure);
-extern double Helfrich_PressureForce_getPressure(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_PressureForce_setPressure(OpenMM_Force* force, double pressure);
-
-extern OpenMM_Force* Helfrich_SurfaceTensionForce_create(const int* triangles, int numTriangles, double tension);
-extern double Helfrich_SurfaceTensionForce_getTension(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_SurfaceTensionForce_setTension(OpenMM_Force* force, double tension);
-
-extern OpenMM_Force* Helfrich_OsmoticPressureForce_create(const int* triangles, int numTriangles, double solutes,
-                                                          double concentration, double thermalEnergy);
-extern double Helfrich_OsmoticPressureForce_getSolutes(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_OsmoticPressureForce_setSolutes(OpenMM_Force* force, double solutes);
-extern double Helfrich_OsmoticPressureForce_getConcentration(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_OsmoticPressureForce_setConcentration(OpenMM_Force* force, double concentration);
-extern double Helfrich_OsmoticPressureForce_getThermalEnergy(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_OsmoticPressureForce_setThermalEnergy(OpenMM_Force* force, double thermalEnergy);
-
-extern OpenMM_Force* Helfrich_AreaDifferenceForce_create(const int* triangles, int numTriangles, double modulus,
-                                                         double target);
-extern double Helfrich_AreaDifferenceForce_getModulus(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_AreaDifferenceForce_setModulus(OpenMM_Force* force, double modulus);
-extern double Helfrich_AreaDifferenceForce_getTarget(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_AreaDifferenceForce_setTarget(OpenMM_Force* force, double target);
-extern OpenMM_Force* Helfrich_NeoHookeanForce_create(const int* triangles, int numTriangles, double shearModulus,
-                                                     double areaModulus);
-extern double Helfrich_NeoHookeanForce_getShearModulus(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_NeoHookeanForce_setShearModulus(OpenMM_Force* force, double shearModulus);
-extern double Helfrich_NeoHookeanForce_getAreaModulus(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_NeoHookeanForce_setAreaModulus(OpenMM_Force* force, double areaModulus);
-
-extern OpenMM_Force* Helfrich_LinearElasticForce_create(const int* triangles, int numTriangles, double shearModulus,
-                                                        double areaModulus);
-extern double Helfrich_LinearElasticForce_getShearModulus(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_LinearElasticForce_setShearModulus(OpenMM_Force* force, double shearModulus);
-extern double Helfrich_LinearElasticForce_getAreaModulus(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_LinearElasticForce_setAreaModulus(OpenMM_Force* force, double areaModulus);
-
-extern OpenMM_Force* Helfrich_SpringForce_create(const int* triangles, int numTriangles, double stiffness, double ratio,
-                                                 int form);
-extern double Helfrich_SpringForce_getStiffness(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_SpringForce_setStiffness(OpenMM_Force* force, double stiffness);
-extern double Helfrich_SpringForce_getRatio(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_SpringForce_setRatio(OpenMM_Force* force, double ratio);
-
-extern OpenMM_Force* Helfrich_LineTensionForce_create(const int* triangles, int numTriangles, double tension);
-extern double Helfrich_LineTensionForce_getTension(OpenMM_Force* force);
-extern Helfrich_Status Helfrich_LineTensionForce_setTension(OpenMM_Force* force, double tension);
 /** Say to which domain each vertex belongs, in ascending order of particle index; needed after the creation. */
 extern Helfrich_Status Helfrich_LineTensionForce_setDomains(OpenMM_Force* force, const int* domains, int numVertices);
 /** Write the domain of each vertex as it is in a Context now. */

@@ -23,8 +23,8 @@ const string THREADS = "Threads";
 /** More than any machine has; a team of more is a mistake. */
 const int MAX_THREADS = 1024;
 
-// OpenMM does not tell which kernels a platform has. The rules of the language allow to name a private member in
-// an explicit instantiation, and nowhere else.
+// Plugins that were loaded before this one have registered their kernels with Reference, and OpenMM tells nobody their
+// names: they are in a private member, which C++ lets one name in an explicit instantiation and nowhere else.
 using Factories = map<string, KernelFactory*> Platform::*;
 Factories getFactoriesMember();
 template <Factories member>

@@ -14,12 +14,12 @@ struct Query {
     middle: [f32; 3],
     /// How far spheres may be from the middle at most.
     own: f32,
-    /// Larger spheres do not count, nor do those as large from a place on.
+    /// Larger spheres do not count, nor do spheres of this size whose place is not before that of the one looked for.
     largest: f32,
     before: u32,
     /// Vertices that must not be among the ends.
     corners: [u32; 3],
-    /// The part that does not count.
+    /// The part whose spheres do not count.
     part: u32,
 }
 
@@ -35,7 +35,7 @@ pub struct Search {
 }
 
 impl Search {
-    /// Other spheres are searched from now on.
+    /// Forget what was gathered, since other spheres are searched from now on.
     pub fn forget(&mut self) {
         self.around = None;
     }
@@ -120,7 +120,7 @@ impl Spheres {
             }
         });
         copy(self.sorted..self.len());
-        // None is in the lanes that are left.
+        // Fill the last lanes with spheres that are never found.
         let room = places.len().next_multiple_of(LANES);
         middles.iter_mut().for_each(|values| values.resize(room, 0.0));
         radii.resize(room, f32::NAN);

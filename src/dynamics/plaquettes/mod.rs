@@ -45,7 +45,7 @@ pub(super) fn share(
 
 /// Whether two arrays have the same bits.
 fn is_same(one: &[f64], other: &[f64]) -> bool {
-    // A loop without an end before the end takes vector instructions.
+    // A loop that never stops early is compiled to vector instructions.
     let difference =
         one.iter().zip(other).fold(0, |bits, (a, b)| bits | (a.to_bits() ^ b.to_bits()));
     one.len() == other.len() && difference == 0

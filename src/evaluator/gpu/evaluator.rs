@@ -234,7 +234,7 @@ impl GpuEvaluator {
         let (send, received) = mpsc::channel();
         let mapped = device.guarded(self.topology.num_vertices(), || {
             self.buffers.readback.map_async(wgpu::MapMode::Read, .., move |result| {
-                // Nobody listens any more if waiting has failed.
+                // If waiting has failed, nobody receives this.
                 let _ = send.send(result);
             });
             let waited = device.wgpu.poll(wgpu::PollType::wait_indefinitely());

@@ -17,18 +17,10 @@ pub fn groups(elements: usize) -> usize {
     elements.div_ceil(GROUP_SIZE as usize)
 }
 
-/// The number by which the shaders know a potential: that of its file, whose stem is the name of its class as
-/// Rust writes it, "triangle_height" for "TriangleHeightForce".
+/// The number by which the shaders know a potential.
 pub fn shader_of(potential: &dyn Potential) -> usize {
-    let mut stem = String::new();
-    for letter in potential.name().trim_end_matches("Force").chars() {
-        if letter.is_uppercase() && !stem.is_empty() {
-            stem.push('_');
-        }
-        stem.extend(letter.to_lowercase());
-    }
     // A test demands a shader of every potential.
-    shaders::POTENTIALS.iter().position(|known| *known == stem).unwrap_or(usize::MAX)
+    shaders::POTENTIALS.iter().position(|name| *name == potential.name()).unwrap_or(usize::MAX)
 }
 
 /// The sums of one term.
@@ -147,7 +139,7 @@ impl Frame {
             _ => false,
         });
         if !same || !rest.is_empty() {
-            // It stays so until they have been uploaded, which may be later than now.
+            // It stays true until they have been uploaded, which may be in a later evaluation.
             self.fields_changed = true;
             self.given = fields().flatten().copied().collect();
             self.fields.clone_from(&self.given);
@@ -306,7 +298,7 @@ impl FrameConstants {
         if versions().eq(self.versions.iter().copied()) && unit == self.unit {
             return;
         }
-        // It stays so until they have been uploaded, which may be later than now.
+        // It stays true until they have been uploaded, which may be in a later evaluation.
         self.changed = true;
         self.versions = versions().collect();
         self.unit = unit;

@@ -227,7 +227,7 @@ impl Layout {
                     places[lane] = 4 * *number + place;
                     neighbours[lane] = 4 * self.number[triangles[next(half) as usize] as usize];
                     halves[lane] = mesh.after(half);
-                    // What is left at the end is the last of the ring.
+                    // After the last step these are the last triangle and neighbour of the ring.
                     (before[lane], neighbours_before[lane]) = (4 * *number, neighbours[lane]);
                 }
             }

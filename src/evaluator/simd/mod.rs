@@ -38,7 +38,8 @@ use survey::Findings;
 use sweep::{Scratch, Sweep, backward};
 use triangles::TriangleSums;
 
-/// Below twice this area, nm², a triangle has none: its reciprocal and products of it are no numbers any more.
+/// |N| below which a triangle counts as having no area, nm²: reciprocals and products of smaller ones leave the range of a
+/// double.
 const SMALLEST_AREA: f64 = 1e-140;
 
 /// Evaluates terms on one mesh in lanes, on one thread or several.
@@ -115,7 +116,7 @@ impl SimdEvaluator {
         self.scratch.resize_with(self.team.as_ref().map_or(1, Team::size), scratch);
     }
 
-    /// Where a surface that spans it goes on.
+    /// Set the periodic box, which says where a surface that spans it goes on.
     pub fn set_cell(&mut self, cell: &Cell) {
         self.layout.ghosts.set_cell(cell);
     }

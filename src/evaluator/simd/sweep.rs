@@ -16,6 +16,18 @@ use crate::mesh::geometry::TotalPartials;
 use crate::potentials::{Contribution, Edges, Needs, Term, Triangles, Vertices};
 use crate::team::{Member, Parts};
 
+/// Expands `$pass!` with what is known and a constant for how much of the vertices' vectors is needed.
+macro_rules! with_vectors {
+    ($needs:expr, $pass:ident $($known:literal)*) => {
+        match vector_level($needs) {
+            0 => $pass!($($known)* 0),
+            VORONOI => $pass!($($known)* VORONOI),
+            VECTORS => $pass!($($known)* VECTORS),
+            _ => $pass!($($known)* NORMALS),
+        }
+    };
+}
+
 /// What a thread needs for the tile that it is at.
 pub struct Scratch {
     pub triangles: TriangleTile,
@@ -175,14 +187,8 @@ impl Sweep<'_, '_> {
         }
         match (bends, vector_level(needs)) {
             (false, 0) if !needs.contains(Needs::VERTICES) && self.findings.is_none() => return,
-            (false, 0) => forward!(false 0),
-            (false, VORONOI) => forward!(false VORONOI),
-            (false, VECTORS) => forward!(false VECTORS),
-            (false, _) => forward!(false NORMALS),
-            (true, 0) => forward!(true 0),
-            (true, VORONOI) => forward!(true VORONOI),
-            (true, VECTORS) => forward!(true VECTORS),
-            (true, _) => forward!(true NORMALS),
+            (false, _) => with_vectors!(needs, forward false),
+            (true, _) => with_vectors!(needs, forward true),
         }
         if lengths {
             self.edges(index, contributions);
@@ -287,32 +293,22 @@ pub fn backward(
             dispatch(level, Pass { layout, arrays, totals, index, forces })
         }};
     }
-    let (bends, moments) = (needs.contains(Needs::CURVATURES), needs.contains(Needs::EDGES));
-    match (bends, moments, needs.contains(Needs::TRIANGLES), vector_level(needs)) {
-        (false, false, false, 0) => backward!(false false false 0),
-        (false, false, false, VORONOI) => backward!(false false false VORONOI),
-        (false, false, false, VECTORS) => backward!(false false false VECTORS),
-        (false, false, false, _) => backward!(false false false NORMALS),
-        (false, false, true, 0) => backward!(false false true 0),
-        (false, false, true, VORONOI) => backward!(false false true VORONOI),
-        (false, false, true, VECTORS) => backward!(false false true VECTORS),
-        (false, false, true, _) => backward!(false false true NORMALS),
-        (true, false, false, 0) => backward!(true false false 0),
-        (true, false, false, VORONOI) => backward!(true false false VORONOI),
-        (true, false, false, VECTORS) => backward!(true false false VECTORS),
-        (true, false, false, _) => backward!(true false false NORMALS),
-        (true, false, true, 0) => backward!(true false true 0),
-        (true, false, true, VORONOI) => backward!(true false true VORONOI),
-        (true, false, true, VECTORS) => backward!(true false true VECTORS),
-        (true, false, true, _) => backward!(true false true NORMALS),
-        (_, true, false, 0) => backward!(true true false 0),
-        (_, true, false, VORONOI) => backward!(true true false VORONOI),
-        (_, true, false, VECTORS) => backward!(true true false VECTORS),
-        (_, true, false, _) => backward!(true true false NORMALS),
-        (_, true, true, 0) => backward!(true true true 0),
-        (_, true, true, VORONOI) => backward!(true true true VORONOI),
-        (_, true, true, VECTORS) => backward!(true true true VECTORS),
-        (_, true, true, _) => backward!(true true true NORMALS),
+    macro_rules! with_tensions {
+        ($bends:literal $moments:literal) => {
+            if needs.contains(Needs::TRIANGLES) {
+                with_vectors!(needs, backward $bends $moments true)
+            } else {
+                with_vectors!(needs, backward $bends $moments false)
+            }
+        };
+    }
+    // With moments of edges, those of curvatures are always taken along.
+    if needs.contains(Needs::EDGES) {
+        with_tensions!(true true)
+    } else if needs.contains(Needs::CURVATURES) {
+        with_tensions!(true false)
+    } else {
+        with_tensions!(false false)
     }
 }
 
