@@ -1,4 +1,5 @@
-//! The readable reference: plain scalar code, one pass for each kind of element.
+//! The readable reference: one number at a time, one pass for each kind of element. Of large meshes the threads of rayon
+//! share the passes (`passes.rs`).
 
 use super::checks::check_energies;
 use super::passes::{Nothing, fill, fill_pair};
@@ -20,11 +21,16 @@ mod terms;
 
 use places::Places;
 
+/// From this many triangles on, threads save more than waking them costs.
+const PARALLEL_TRIANGLES: usize = 8192;
+
 /// Evaluates any set of terms on one mesh: geometry forward, potentials, geometry backward.
 ///
-/// Work is O(N), on one thread, and no memory is allocated once the buffers exist.
+/// Work is O(N), no memory is allocated once the buffers exist (but for a few words per pass when
+/// threads take part), and the bits of the result do not depend on the number of threads.
 pub struct ReferenceEvaluator {
     places: Places,
+    parallel: bool,
     triangles: Vec<TriangleGeometry>,
     edges: Vec<EdgeGeometry>,
     edge_names: Vec<u32>,
@@ -83,6 +89,7 @@ impl ReferenceEvaluator {
         let on_border = (0..v).map(|vertex| topology.is_border(vertex));
         let geometry = TriangleGeometry { normal: Vec3::zeros(), twice_area: 0.0, dots: [0.0; 3] };
         Self {
+            parallel: t >= PARALLEL_TRIANGLES,
             triangles: vec![geometry; t],
             edges: vec![EdgeGeometry::default(); topology.edges.len()],
             edge_names: topology.edge_names(),
@@ -136,7 +143,7 @@ impl ReferenceEvaluator {
         contributions: &mut [Contribution],
     ) -> Result<(Needs, Totals, TotalPartials)> {
         let needs = terms.iter().fold(Needs::empty(), |all, term| all | term.potential.needs(term));
-        self.places.gather(positions);
+        self.places.gather(positions, self.parallel);
         let mut totals = self.forward_triangles().ok_or_else(|| self.places.culprit(positions))?;
         if needs.intersects(Needs::EDGES | Needs::CURVATURES) {
             totals.mean_curvature = self.forward_edges();
@@ -165,7 +172,7 @@ impl ReferenceEvaluator {
     /// finite.
     fn forward_triangles(&mut self) -> Option<Totals> {
         let places = &self.places;
-        let sums = fill(&mut self.triangles, |first, chunk| {
+        let sums = fill(self.parallel, &mut self.triangles, |first, chunk| {
             let mut sums = TriangleSums::default();
             for (offset, triangle) in chunk.iter_mut().enumerate() {
                 let [a, b, c] = places.corners(first + offset);
@@ -188,7 +195,7 @@ impl ReferenceEvaluator {
     fn forward_edges(&mut self) -> f64 {
         let (places, triangles) = (&self.places, &self.triangles);
         let topology = &self.places.topology;
-        fill(&mut self.edges, |first, chunk| {
+        fill(self.parallel, &mut self.edges, |first, chunk| {
             let mut mean_curvature = 0.0;
             for (slot, edge) in chunk.iter_mut().zip(&topology.edges[first..]) {
                 if edge.triangles[1] == NONE {
@@ -209,7 +216,7 @@ impl ReferenceEvaluator {
 
     fn forward_vertices(&mut self, needs: Needs) {
         let (triangles, edges, topology) = (&self.triangles, &self.edges, &self.places.topology);
-        fill(&mut self.vertices, |first, chunk| {
+        fill(self.parallel, &mut self.vertices, |first, chunk| {
             for (offset, slot) in chunk.iter_mut().enumerate() {
                 let ring = topology.ring(first + offset);
                 let mut twice_area = 0.0;
@@ -240,25 +247,30 @@ impl ReferenceEvaluator {
         let (places, triangles) = (&self.places, &self.triangles);
         let topology = &self.places.topology;
         let normals = needs.contains(Needs::NORMALS);
-        fill_pair(&mut self.vertices, &mut self.vectors, |first, scalars, vectors| {
-            for (offset, (vertex, vectors)) in scalars.iter_mut().zip(vectors).enumerate() {
-                *vectors = VertexVectors::default();
-                for &corner in &topology.corners[topology.ring(first + offset)] {
-                    let (triangle, k) = (corner as usize / 3, corner as usize % 3);
-                    let mut points = places.corners(triangle);
-                    points.rotate_left(k);
-                    let points = points.each_ref();
-                    add_corner(vertex, vectors, points, &triangles[triangle], k, normals);
+        fill_pair(
+            self.parallel,
+            &mut self.vertices,
+            &mut self.vectors,
+            |first, scalars, vectors| {
+                for (offset, (vertex, vectors)) in scalars.iter_mut().zip(vectors).enumerate() {
+                    *vectors = VertexVectors::default();
+                    for &corner in &topology.corners[topology.ring(first + offset)] {
+                        let (triangle, k) = (corner as usize / 3, corner as usize % 3);
+                        let mut points = places.corners(triangle);
+                        points.rotate_left(k);
+                        let points = points.each_ref();
+                        add_corner(vertex, vectors, points, &triangles[triangle], k, normals);
+                    }
                 }
-            }
-            Nothing
-        });
+                Nothing
+            },
+        );
     }
 
     fn backward_edges(&mut self, needs: Needs, totals: &TotalPartials) {
         let (edges, topology) = (&self.edges, &self.places.topology);
         let (vertex_partials, edge_partials) = (&self.vertex_partials, &self.edge_partials);
-        fill(&mut self.tensions, |first, chunk| {
+        fill(self.parallel, &mut self.tensions, |first, chunk| {
             for (offset, slot) in chunk.iter_mut().enumerate() {
                 let (geometry, edge) = (&edges[first + offset], &topology.edges[first + offset]);
                 *slot = EdgeTension::default();
@@ -283,7 +295,7 @@ impl ReferenceEvaluator {
         let (tensions, triangle_partials) = (&self.tensions, &self.triangle_partials);
         let (vertex_partials, vector_partials) = (&self.vertex_partials, &self.vector_partials);
         let by_edges = needs.intersects(Needs::EDGES | Needs::CURVATURES);
-        fill(&mut self.corner_forces, |first, chunk| {
+        fill(self.parallel, &mut self.corner_forces, |first, chunk| {
             for (offset, slot) in chunk.iter_mut().enumerate() {
                 let triangle = first + offset;
                 let geometry = &triangles[triangle];
@@ -318,7 +330,7 @@ impl ReferenceEvaluator {
             Nothing
         });
         let corner_forces = self.corner_forces.as_flattened();
-        fill(&mut self.forces, |first, chunk| {
+        fill(self.parallel, &mut self.forces, |first, chunk| {
             for (offset, slot) in chunk.iter_mut().enumerate() {
                 let corners = &topology.corners[topology.ring(first + offset)];
                 *slot = corners.iter().map(|&corner| corner_forces[corner as usize]).sum();

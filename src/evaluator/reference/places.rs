@@ -28,11 +28,11 @@ impl Places {
     }
 
     /// Take the vertices' positions from those of all particles.
-    pub fn gather(&mut self, all: &[f64]) {
+    pub fn gather(&mut self, all: &[f64], parallel: bool) {
         let particles = &self.topology.particles;
         let position = |particle: u32| Vec3::from_column_slice(&all[3 * particle as usize..][..3]);
         let origin = position(particles[0]);
-        fill(&mut self.positions, |first, chunk| {
+        fill(parallel, &mut self.positions, |first, chunk| {
             for (slot, &particle) in chunk.iter_mut().zip(&particles[first..]) {
                 *slot = position(particle) - origin;
             }

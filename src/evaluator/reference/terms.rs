@@ -44,15 +44,16 @@ impl ReferenceEvaluator {
             }
             if needs.contains(Needs::TRIANGLES) {
                 let triangles = &self.triangles;
-                *contribution += fill(&mut self.triangle_partials, |first, chunk| {
-                    let geometry = &triangles[first..][..chunk.len()];
-                    let partials = chunk;
-                    potential.triangles(term, Triangles::Plain { first, geometry, partials })
-                });
+                *contribution +=
+                    fill(self.parallel, &mut self.triangle_partials, |first, chunk| {
+                        let geometry = &triangles[first..][..chunk.len()];
+                        let partials = chunk;
+                        potential.triangles(term, Triangles::Plain { first, geometry, partials })
+                    });
             }
             if needs.contains(Needs::EDGES) {
                 let (edges, names) = (&self.edges, &self.edge_names);
-                *contribution += fill(&mut self.edge_partials, |first, chunk| {
+                *contribution += fill(self.parallel, &mut self.edge_partials, |first, chunk| {
                     let geometry = &edges[first..][..chunk.len()];
                     let names = &names[first..][..chunk.len()];
                     potential.edges(term, Edges::Plain { names, geometry, partials: chunk })
@@ -70,7 +71,7 @@ impl ReferenceEvaluator {
         let wants_vectors = needs.contains(Needs::VECTORS);
         let left_out = if term.potential.acts_at_borders() { &[] } else { &self.on_border[..] };
         let beside: &mut [_] = if wants_vectors { &mut self.vector_partials } else { &mut [] };
-        fill_pair(&mut self.vertex_partials, beside, |first, scalars, vectors| {
+        fill_pair(self.parallel, &mut self.vertex_partials, beside, |first, scalars, vectors| {
             let here = first..first + scalars.len();
             let known: &[_] = if wants_vectors { &all_vectors[here.clone()] } else { &[] };
             let run = Vertices::Plain {
