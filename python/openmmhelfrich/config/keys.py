@@ -88,14 +88,8 @@ KEYS: tuple[Key, ...] = (
         "Of all random numbers; 0 draws one, which is printed and kept."),
     Key("simulation", "platform", text, None,
         "OpenMM platform, unless --platform names another. Default: the fastest."),
-    Key(
-        "simulation",
-        "minimise",
-        boolean,
-        False,
-        "Minimise the energy before the first step, to forces of 0.01 kJ/mol/nm (r"
-        "oot mean square).",
-    ),
+    Key("simulation", "minimise", boolean, False,
+        "Minimise the energy before the first step, until forces are 0.01 kJ/mol/nm (rms)."),
     Key("simulation", "thermal_velocities", boolean, True,
         "Draw the first velocities at the temperature; otherwise they are zero."),
     Key("integrator", "kind", choice(_INTEGRATORS), "LangevinMiddle",
