@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ._mesh import files
+from ._mesh import ply
 from ._types import Array
-from ._writing import naming
+from ._writing import naming, write_whole
 
 __all__ = ["check_whole", "write_start"]
 
 # A comment of the header. Of the triangles of such a run those of the start are but the first.
-_FLIPS = b"comment openmm-helfrich bonds flip"
-_END = b"\nend_header\n"
+_FLIPS = "openmm-helfrich bonds flip"
+# More than a header that `write_start` makes is long.
 _LONGEST = 4096
 
 
@@ -20,11 +20,9 @@ def write_start(
     path: Path, vertices: Array, triangles: Array, box: Array | None, flows: bool
 ) -> None:
     """Write it; with `flows` it says that the triangles of each frame are in ``NAME.triangles``."""
+    comments = [_FLIPS] if flows else []
     with naming(path):
-        files.write(path, vertices, triangles, binary=True, box=box)
-        if flows:
-            header, end, body = path.read_bytes().partition(_END)
-            path.write_bytes(header + b"\n" + _FLIPS + end + body)
+        write_whole(path, ply.write(vertices, triangles, None, True, box, comments))
 
 
 def check_whole(start: Path, trajectory: Path) -> None:
@@ -43,8 +41,8 @@ def check_whole(start: Path, trajectory: Path) -> None:
         If they flip.
     """
     with start.open("rb") as file:
-        header = file.read(_LONGEST).partition(_END)[0]
-    if _FLIPS in header:
+        header = file.read(_LONGEST).partition(b"end_header")[0]
+    if f"comment {_FLIPS}".encode() in header.splitlines():
         raise ValueError(
             f"bonds flip in the run of {trajectory}, and {trajectory.stem}.triangles, which has "
             "the triangles of each frame, is gone; bring it back beside the trajectory, or give "

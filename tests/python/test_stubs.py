@@ -137,3 +137,17 @@ def test_the_stubs_are_installed():
     for name in ("forces.pyi", "py.typed"):
         assert (STUB.parent / name).is_file()
         assert any(fnmatch(name, pattern) for pattern in data)
+
+
+@pytest.mark.parametrize("name", ["TriangleAreaForce", "SkalakForce", "LineTensionForce"])
+def test_a_force_without_example_and_figure_gets_plain_ones(name, monkeypatch, tmp_path):
+    monkeypatch.syspath_prepend(str(ROOT / "docs"))
+    from _site import examples, figures
+
+    monkeypatch.delitem(examples._LINES, name)
+    monkeypatch.delitem(figures._FIGURES, name)
+    left, printed = examples.run(name)
+    assert type(left["force"]).__name__ == name
+    assert np.isfinite(float(printed.split()[0]))
+    figures.draw(name, tmp_path / "figure.svg")
+    assert b"scale of the mesh" in (tmp_path / "figure.svg").read_bytes()

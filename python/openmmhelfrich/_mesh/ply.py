@@ -6,6 +6,7 @@ whatever the header declares, so that none of the digits is lost.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -72,11 +73,12 @@ def write(
     point_data: dict[str, Array] | None = None,
     binary: bool = False,
     box: Array | None = None,
+    comments: Sequence[str] = (),
 ) -> bytes:
     """A PLY file of doubles; as text, each with the fewest digits that give it back exactly.
 
     Values of the vertices are properties after the coordinates; vectors are three, ``name_x`` and
-    so on. The periodic box is a comment.
+    so on. The periodic box is a comment, and there may be others, each of one line.
     """
     columns = {axis: vertices[:, k] for k, axis in enumerate("xyz")}
     for name, values in (point_data or {}).items():
@@ -94,6 +96,7 @@ def write(
         f"format {'binary_little_endian' if binary else 'ascii'} 1.0",
         "comment openmm-helfrich mesh, nm",
         *([] if box is None else [" ".join([*_BOX, *map(repr, box.ravel().tolist())])]),
+        *(f"comment {text}" for text in comments),
         f"element vertex {len(vertices)}",
         *(f"property double {name}" for name in columns),
         f"element face {len(triangles)}",
