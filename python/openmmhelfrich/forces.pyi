@@ -168,8 +168,8 @@ class MembraneForce(TriangulatedForce):
         """
     def addEnergyParameterDerivative(self, name: str) -> None:
         """Ask for the derivative of the energy with respect to a Context parameter, which
-        Context::getState() then returns. Available on the Reference and CPU platforms. Asking twice
-        changes nothing.
+        Context::getState() then returns; on OpenCL, CUDA and HIP not of what the processor
+        computes, as contacts. Asking twice changes nothing.
         """
     def getNumEnergyParameterDerivatives(self) -> int:
         """Get the number of Context parameters whose derivatives are asked for."""

@@ -79,9 +79,8 @@ public:
      */
     const std::string& getContextParameter(const std::string& parameter) const;
     /**
-     * Ask for the derivative of the energy with respect to a Context parameter, which
-     * Context::getState() then returns. Available on the Reference and CPU platforms. Asking twice
-     * changes nothing.
+     * Ask for the derivative of the energy with respect to a Context parameter, which Context::getState() then
+     * returns; on OpenCL, CUDA and HIP not of what the processor computes, as contacts. Asking twice changes nothing.
      *
      * @param name  the name of the Context parameter, given to setContextParameter() before
      */
