@@ -1,4 +1,4 @@
-"""Fig. 6 c and e: spectra and the Young modulus Y against radius and number of vertices.
+"""Fig. 6 on random meshes: spectra and the Young modulus Y against radius, N and scheme.
 
 Random meshes, each sample on its own. The paper scales N with r0², so that a radius changes nothing
 but the size; and it has Y, in kBT/nm², as a function of Ξ alone, (45). Here N and r0 are varied
@@ -6,6 +6,9 @@ apart too at Ξ = 0.59, which tells Y r0² ∝ r0² at given N, as a material of
 Y r0² ∝ N kBT at any r0, an entropy of the vertices. Y is that of (A18) for l = 2 … 5, with what
 short waves add (`mesh_corrections.py`). The mean shape of a mesh is not part of fluctuations: its
 square is the product of the means over the two halves of a run.
+
+Soft meshes of all N have both barycentric schemes, and an ordered one stands beside the random ones
+of its size. `sm05_density_modes.py` has the density modes of these runs.
 """
 
 from typing import NamedTuple
@@ -16,32 +19,34 @@ from _paper import Figure, mean_and_error
 from fluctuations import RIGIDITY, SOFTNESS, VERSION, fluctuate
 from mesh_corrections import SOFTENING, fit_shear
 from openmmhelfrich.analysis import theory
+from spectra import SCHEMES
 
 SOFT, HARD = SOFTNESS[0], SOFTNESS[-1]
 L = np.arange(2, 6)
 
 
 class Mesh(NamedTuple):
-    """N, r0 in nm, Ξ, and whether the mesh is random."""
+    """N, r0 in nm, Ξ, whether the mesh is random, and the bending scheme."""
 
     num_vertices: int
     radius: float = 1000.0
     softness: float = HARD
     random: bool = True
+    scheme: str = "Julicher"
 
 
 FULL = {
     "scaled": ((252, 500.0), (492, 700.0), (1002, 1000.0), (1962, 1400.0)),
     "radii": ((1002, 500.0), (1002, 1000.0), (1002, 2000.0)),
     "vertices": ((252, 1000.0), (492, 1000.0), (1002, 1000.0), (1962, 1000.0)),
-    "ordered": 1002,
+    "ordered": (1002, 1000.0),
     "samples": 10,
 }
 QUICK = {
     "scaled": ((252, 700.0), (492, 1000.0)),
     "radii": ((252, 700.0), (252, 1000.0)),
     "vertices": ((252, 1000.0), (492, 1000.0)),
-    "ordered": 252,
+    "ordered": (252, 700.0),
     "samples": 3,
 }
 
@@ -50,7 +55,9 @@ def meshes_of(size):
     """All meshes that are needed, each once."""
     found = [Mesh(*pair) for name in ("scaled", "radii", "vertices") for pair in size[name]]
     found += [Mesh(*pair, SOFT) for pair in size["scaled"]]
-    found.append(Mesh(size["ordered"], random=False))
+    found.append(Mesh(*size["ordered"], random=False))
+    found += [Mesh(*pair, SOFT, scheme=scheme) for pair in size["scaled"] for scheme in SCHEMES]
+    found.append(Mesh(*size["ordered"], SOFT, random=False))
     return list(dict.fromkeys(found))
 
 
@@ -60,8 +67,7 @@ def arguments_of(mesh, place, samples):
         {
             **mesh._asdict(),
             "rigidity": RIGIDITY,
-            "scheme": "Julicher",
-            "lmax": 7,
+            "lmax": max(7, resolved(mesh)),
             "periods": 10,
             "frames_per_period": 8,
             "settle_periods": 2,
@@ -69,6 +75,23 @@ def arguments_of(mesh, place, samples):
         }
         for sample in range(samples)
     ]
+
+
+def measure(size, figure):
+    """The runs of each mesh, {mesh: [result, …]}."""
+    meshes = meshes_of(size)
+    points = [
+        arguments
+        for place, mesh in enumerate(meshes)
+        for arguments in arguments_of(mesh, place, size["samples"])
+    ]
+    results = iter(figure.sweep(fluctuate, points, VERSION))
+    return {mesh: [next(results) for _ in range(size["samples"])] for mesh in meshes}
+
+
+def resolved(mesh):
+    """The largest l that a mesh resolves within a third or so: 10 for N = 1002."""
+    return int(mesh.num_vertices**0.5 / 3)
 
 
 def power(run, l, still=True):
@@ -91,7 +114,7 @@ def ratios(runs, still=False, orders=L):
 
 def modulus(mesh, runs):
     """Y r0²/kBT and its error."""
-    y, error = fit_shear(mesh.num_vertices, RIGIDITY, L, *ratios(runs), SOFTENING["Julicher"])
+    y, error = fit_shear(mesh.num_vertices, RIGIDITY, L, *ratios(runs), SOFTENING[mesh.scheme])
     return mesh.num_vertices * y, mesh.num_vertices * error
 
 
@@ -104,24 +127,19 @@ def exponent(x, values, errors):
 
 
 def main():
-    figure = Figure("fig06e", "Fig. 6 c, e", "Spectra and Y against radius and N", __doc__)
+    figure = Figure("fig06e", "Fig. 6, random", "Spectra and Y of random meshes", __doc__)
     size = figure.choose(FULL, QUICK)
-    meshes = meshes_of(size)
-    points = [
-        arguments
-        for place, mesh in enumerate(meshes)
-        for arguments in arguments_of(mesh, place, size["samples"])
-    ]
-    results = iter(figure.sweep(fluctuate, points, VERSION))
-    runs = {mesh: [next(results) for _ in range(size["samples"])] for mesh in meshes}
+    runs = measure(size, figure)
     figure.parameters(
-        f"κ = {RIGIDITY:g} kBT, Jülicher, kV = 0; LangevinMiddle, 300 K, γ = ω_2, "
-        f"Δt = 0.075 √Ξ τ_fastest, {size['samples']} samples of 10 τ_2"
+        f"κ = {RIGIDITY:g} kBT, Jülicher where nothing else is said, kV = 0; LangevinMiddle, "
+        f"300 K, γ = ω_2, Δt = 0.075 √Ξ τ_fastest, {size['samples']} samples of 10 τ_2"
     )
     found = {mesh: modulus(mesh, of_mesh) for mesh, of_mesh in runs.items() if mesh.random}
     check_scaled(figure, size, runs, found)
     check_apart(figure, size, found)
     check_spike(figure, size, runs)
+    check_schemes(figure, size, runs)
+    check_order(figure, size, runs)
     figure.table(
         "⟨|u_lm|²⟩ that fluctuates over (A17), and the modulus:",
         ["mesh", *(f"l = {l}" for l in L), "Y r0²/kBT", "Y r0² / N kBT", "Y / kBT, 1/nm²"],
@@ -133,7 +151,10 @@ def main():
 
 def row(mesh, runs, found):
     value, error = found
-    cells = [f"N = {mesh.num_vertices}, r0 = {mesh.radius:g} nm, Ξ = {mesh.softness:g}"]
+    cells = [
+        f"N = {mesh.num_vertices}, r0 = {mesh.radius:g} nm, Ξ = {mesh.softness:g}, "
+        f"{SCHEMES[mesh.scheme]}"
+    ]
     cells += [f"{one:.2f} ± {e:.2f}" for one, e in zip(*ratios(runs), strict=True)]
     for scale, form in ((1, "{:.0f} ± {:.0f}"), (mesh.num_vertices, "{:.3f} ± {:.3f}")):
         cells.append(form.format(value / scale, error / scale))
@@ -207,7 +228,7 @@ def check_spike(figure, size, runs):
     """The mean shape at l = 6, which an ordered mesh has and a random one should not."""
     orders = np.array([5, 6, 7])
     for random, name in ((True, "random"), (False, "ordered")):
-        mesh = Mesh(size["ordered"], random=random)
+        mesh = Mesh(*size["ordered"], random=random)
         values, errors = ratios(runs[mesh], True, orders)
         around = (values[0] + values[2]) / 2
         error = np.hypot(errors[1], np.hypot(errors[0], errors[2]) / 2) / around
@@ -220,6 +241,51 @@ def check_spike(figure, size, runs):
             why="an ordered mesh has the mean shape of an icosahedron, whose corners are at its "
             "twelve vertices of five neighbours; random meshes have none (row above)",
         )
+
+
+def overall(mesh, runs):
+    """⟨|u|²⟩ over (A17), the mean over the l that a mesh resolves, each alike, and its error."""
+    values, errors = ratios(runs[mesh], True, np.arange(2, resolved(mesh) + 1))
+    return values.mean(), np.hypot.reduce(errors) / len(errors)
+
+
+def check_difference(figure, name, mesh, other, runs, why):
+    """That the spectra of two meshes are the same, by their means over l."""
+    (value, error), (reference, reference_error) = (overall(one, runs) for one in (mesh, other))
+    both = np.hypot(error, reference_error)
+    figure.check(
+        f"Ξ = {mesh.softness:g}, N = {mesh.num_vertices}, mean over l = 2 … {resolved(mesh)} over "
+        f"(A17), {name}",
+        value - reference,
+        0,
+        3 * both,
+        both,
+        why=why,
+    )
+
+
+def check_schemes(figure, size, runs):
+    """Both barycentric schemes at all N."""
+    barycentric = "GompperKrollBarycentric"
+    for pair in size["scaled"]:
+        mesh = Mesh(*pair, SOFT)
+        check_difference(
+            figure,
+            f"{SCHEMES[barycentric]} less {SCHEMES[mesh.scheme]}",
+            mesh._replace(scheme=barycentric),
+            mesh,
+            runs,
+            "short waves are softer with GK barycentric, c = 2.6 against 2.3 in the common fits of "
+            "Fig. 6, and on coarse meshes all waves are short",
+        )
+
+
+def check_order(figure, size, runs):
+    """A random mesh against an ordered one."""
+    mesh = Mesh(*size["ordered"], SOFT)
+    check_difference(
+        figure, "random less ordered mesh", mesh, mesh._replace(random=False), runs, ""
+    )
 
 
 def draw(figure, size, runs, found):
