@@ -110,6 +110,7 @@ class SurfaceReporter:
                 f"{type(self).__name__}: the triangles name particle {self._particles[-1]}, but "
                 f"there are {count}"
             )
+        self._refuse_shared_file(simulation)
         existed = self._append and Path(self._file).exists()
         last, present = self._begin(simulation), simulation.currentStep
         if present == 0 and self._dropped:
@@ -127,6 +128,21 @@ class SurfaceReporter:
                 stacklevel=2,
             )
         self._begun = True
+
+    def _refuse_shared_file(self, simulation):
+        """As after a cell of a notebook that ran twice: two reporters would write rows in turns."""
+        own = Path(self._file).resolve()
+        for other in getattr(simulation, "reporters", ()):
+            if (
+                isinstance(other, SurfaceReporter)
+                and other is not self
+                and Path(other._file).resolve() == own
+            ):
+                raise ValueError(
+                    f"{type(self).__name__}: {self._file}: another {type(other).__name__} of this "
+                    "Simulation writes there; take it out of simulation.reporters, or give this "
+                    "one a file of its own"
+                )
 
 
 class TableReporter(SurfaceReporter):

@@ -500,3 +500,17 @@ class TestHdf5:
         path.write_bytes(path.read_bytes()[:2000])
         with pytest.raises(ValueError, match=rf"{path} is no HDF5 file, or.*; do not append"):
             open_table(path, COLUMNS, append=True)
+
+
+def test_two_reporters_of_a_simulation_never_write_to_one_file(mesh, tmp_path, monkeypatch):
+    """As after a cell of a notebook that ran twice: nothing of the first one's file is lost."""
+    simulation, path = simulate(mesh), tmp_path / "modes.csv"
+    simulation.reporters.append(ModeReporter(path, 2, mesh, 1))
+    simulation.step(4)
+    monkeypatch.chdir(tmp_path)
+    simulation.reporters.append(MembraneReporter("modes.csv", 2, mesh))
+    with pytest.raises(ValueError, match=r"MembraneReporter: modes\.csv: another ModeReporter"):
+        simulation.step(2)
+    del simulation.reporters[-1]
+    simulation.step(2)
+    assert analysis.read_modes(path).step.tolist() == [2, 4, 6]
