@@ -17,6 +17,9 @@ SOURCES := Cargo.toml Cargo.lock build.rs setup.py python/forces.i \
            $(wildcard src/*.rs src/*/*.rs src/*/*/*.rs shaders/* shaders/*/* $(foreach any,wrappers/* wrappers/*/* wrappers/*/*/*,$(any)/*))
 CPP := $(wildcard $(foreach any,wrappers/* wrappers/*/* wrappers/*/*/* tests/cpp examples,\
            $(any)/*.h $(any)/*.c $(any)/*.cpp))
+# Scripts write the two that are left out.
+MD := $(filter-out docs/reproduction.md docs/benchmarks.md,$(wildcard *.md docs/*.md docs/tutorials/*.md))
+MDFORMAT := $(VENV)/bin/mdformat --wrap 100 --number --compact-tables
 PY := $(wildcard .ci setup.py python tests examples benches docs/conf.py docs/_site)
 
 .DEFAULT_GOAL := build
@@ -37,18 +40,20 @@ lint: $(VENV)/.requirements ## check formatting, lint Rust, C++ and Python, and 
 	@$(VENV)/bin/clang-format --dry-run -Werror $(CPP)
 	@$(VENV)/bin/ruff check -q $(PY)
 	@$(VENV)/bin/ruff format -q --check $(PY)
+	@$(MDFORMAT) --check $(MD)
 
 derived: $(VENV)/.requirements ## write anew what follows from the potentials: their lists, the C functions, the stubs
 	@$(VENV)/bin/python .ci/potentials.py
 	@$(MAKE) -s build
 	@$(VENV)/bin/python .ci/stubs.py
 
-format: $(VENV)/.requirements ## format Rust, C++ and Python in place
+format: $(VENV)/.requirements ## format Rust, C++, Python and Markdown in place
 	@cargo fmt
 	@cargo fmt --manifest-path tests/loom/Cargo.toml
 	@$(VENV)/bin/clang-format -i $(CPP)
 	@$(VENV)/bin/ruff check -q --fix-only $(PY)
 	@$(VENV)/bin/ruff format -q $(PY)
+	@$(MDFORMAT) $(MD)
 
 # Properties are tested on the same examples each time; another number looks for others.
 test-rust: export PROPTEST_RNG_SEED ?= 1

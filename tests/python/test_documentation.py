@@ -40,7 +40,7 @@ PAGES = [
 LANGUAGES = {"python", "toml", "sh", "text"}
 VESICLE = "simulation.duration = 1\n\n[[vesicle]]\nmesh = { icosphere = 2, radius = 30 }\n\n"
 
-_COMMENT = r"<!-- test: (?:(?!-->)[\s\S])*?-->\n"
+_COMMENT = r"<!-- test: (?:(?!-->)[\s\S])*?-->\n\n?"
 _BLOCK = re.compile(
     rf"(?P<notes>(?:{_COMMENT})*)^```(?P<language>.*)\n(?P<body>[\s\S]*?)^```$", re.M
 )
@@ -229,7 +229,7 @@ def test_links_lead_to_files_of_the_repository(page):
     """Pages are read where there is no site, too: none of what a build makes is linked."""
     made = ROOT / "docs" / "forces", ROOT / "docs" / "api"
     text = re.sub(r"^```[\s\S]*?^```", "", page.read_text(encoding="utf-8"), flags=re.M)
-    for link in re.findall(r"\]\((?!https?:)([^)#]+)", text):
+    for link in re.findall(r"\]\((?!<?https?:)([^)#]+)", text):
         target = (page.parent / link).resolve()
         assert target.exists(), link
         assert not any(folder in target.parents for folder in made), link
