@@ -367,6 +367,22 @@ def test_grid():
     ]
 
 
+def helped(x, folder):
+    """While 0 is computed another sweep computes 2."""
+    with open(Path(folder) / "log", "a") as log:
+        log.write(f"{x} ")
+    if x == 0:
+        quiet(helped, grid(x=[2], folder=[folder]), cache=Path(folder) / "cache", workers=0)
+    return {"number": x**2}
+
+
+def test_what_another_sweep_has_stored_by_then_is_not_computed_again(tmp_path):
+    points = grid(x=range(4), folder=[str(tmp_path)])
+    results = quiet(helped, points, cache=tmp_path / "cache", workers=0)
+    assert [result["number"] for result in results] == [0, 1, 4, 9]
+    assert (tmp_path / "log").read_text().split() == ["0", "2", "1", "3"]
+
+
 def test_cluster_of_this_machine(tmp_path):
     points = grid(x=range(6), folder=[str(tmp_path)])
     results = quiet(square, points, workers=2)

@@ -86,7 +86,8 @@ def sweep(
     cache : str, Path or Cache, optional
         Folder in which results are stored and looked for, made where needed. Sweeps of several
         functions may share it if their modules, as they are imported, or their names differ; those
-        of notebooks are all in a module ``__main__``. Default: none.
+        of notebooks are all in a module ``__main__``. Processes may share it too: with
+        ``workers=0`` each leaves out what another has stored by then. Default: none.
     version : int
         Part of the key of the stored results: count it up when the function changes.
     scheduler : str, optional
@@ -152,6 +153,17 @@ def sweep(
     log = logger("sweep")
     log.info("%s: %d of %d points are stored", name, len(results), len(results) + len(missing))
     failures: dict[str, BaseException] = {}
+
+    def still_missing(bar):
+        """What is computed next; what another sweep has stored by then is not."""
+        for key, point in missing.items():
+            stored = store.load(stored_name, key, point) if store else None
+            if stored is None:
+                yield key, point
+            else:
+                results[key] = stored
+                bar.update()
+
     bar = tqdm(
         total=len(results) + len(missing),
         initial=len(results),
@@ -160,8 +172,11 @@ def sweep(
     )
     with bar:
         if missing:
-            backend = on_this_process if workers == 0 else on_dask
-            for key, outcome in backend(function, missing, scheduler, workers):
+            if workers == 0:
+                outcomes = on_this_process(function, still_missing(bar))
+            else:
+                outcomes = on_dask(function, missing, scheduler, workers)
+            for key, outcome in outcomes:
                 if isinstance(outcome, BaseException):
                     log.info("%s: %s failed: %s", name, missing[key], outcome)
                     failures[key] = outcome

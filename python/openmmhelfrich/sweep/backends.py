@@ -12,7 +12,7 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -30,9 +30,9 @@ class SweepError(RuntimeError):
     """Some points of a sweep failed; the message names them. A cache has the others."""
 
 
-def on_this_process(function: Any, points: Any, scheduler: Any, workers: Any) -> Iterator[Any]:
+def on_this_process(function: Any, points: Iterable[tuple[str, Any]]) -> Iterator[Any]:
     """Compute in this process, and yield each key with what `timed` returns or the exception."""
-    for key, point in points.items():
+    for key, point in points:
         try:
             yield key, timed(function, point)
         except Exception as error:
