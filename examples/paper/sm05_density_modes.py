@@ -3,7 +3,7 @@
 The structure factor S(l) = ⟨|ρ_lm|²⟩ is 1 for vertices that know nothing of each other. In hard
 meshes they keep even distances: long waves vanish, and a peak rises near l = 2√N, the number of
 half waves around the vesicle at the spacing of the vertices. The runs are those of
-`fig06_spectrum.py`, of ordered meshes, and those of `fig06e_radius.py`: random meshes of several N,
+`fig06_spectrum.py`, of ordered meshes, and those of `fig06e_random.py`: random meshes of several N,
 soft and hard, and with either barycentric scheme.
 
 At small l a fluid mesh is stiffer than a gas, for which S = 1: the entropy of places in the surface
@@ -11,11 +11,11 @@ and of heights, which scale with the square root of the area of a vertex, is tha
 vertex, the factor of the paper's (20), and the resistance to shear adds 4π μ r0²/N kBT.
 """
 
-import fig06e_radius as random_meshes
+import fig06e_random as random_meshes
 import matplotlib.pyplot as plt
 import numpy as np
 from _paper import Figure, mean_and_error
-from fig06e_radius import HARD, SOFT, Mesh
+from fig06e_random import HARD, SOFT, Mesh
 from fluctuations import SOFTNESS
 from openmmhelfrich.analysis import density_modes
 from spectra import FULL, QUICK, SCHEMES, Point, measure

@@ -132,7 +132,7 @@ def test_fits_of_meshes_find_what_spectra_were_made_with():
 
 
 def test_mean_shapes_are_no_fluctuation_and_powers_come_back():
-    from fig06e_radius import exponent, power
+    from fig06e_random import exponent, power
 
     random = np.random.default_rng(11)
     shape = random.normal(size=16)
