@@ -110,7 +110,7 @@ def of_kind(others, softness, scheme="Julicher"):
 
 
 def check_sizes(figure, others):
-    """b: the peak follows the spacing of the vertices, and long waves do not know of N."""
+    """b: as a function of l / √N, S does not know of N."""
     hard, soft = (of_kind(others, softness) for softness in (HARD, SOFT))
     for num_vertices, (mean, _) in hard.items():
         root = num_vertices**0.5
@@ -120,12 +120,15 @@ def check_sizes(figure, others):
             2,
             0.2,
         )
-    levels = {count: long_waves(count, factor) for count, factor in soft.items()}
+    levels = {
+        count: plateau(factor, int(np.ceil(0.2 * count**0.5)), int(0.5 * count**0.5))
+        for count, factor in soft.items()
+    }
     (most, reference), *smaller = sorted(levels.items(), reverse=True)
     for count, (level, error) in smaller:
         both = np.hypot(error, reference[1])
         figure.check(
-            f"b, random: S of long waves at Ξ = {SOFT:g}, N = {count} less N = {most}",
+            f"b, random: S of l = 0.2 … 0.5 √N at Ξ = {SOFT:g}, N = {count} less N = {most}",
             level - reference[0],
             0,
             3 * both,
@@ -174,14 +177,14 @@ def draw(figure, num_vertices, factors, others):
         axis.errorbar(l, mean[2:], error[2:], fmt=".-", ms=3, lw=0.7, label=f"Ξ = {softness:g}")
     axis.axvline(2 * num_vertices**0.5, color="black", lw=0.8, ls=":")
     axis.axhline(1, color="black", lw=0.8)
-    axis.set(xlabel="l", ylabel="⟨|ρ_lm|²⟩", yscale="log", title="a  ordered meshes")
+    axis.set(xlabel="l", ylabel="⟨|ρ_lm|²⟩", yscale="log", title="a  ordered")
     axis.legend()
     kinds = {
-        f"b  random meshes, Ξ = {SOFT:g} and {HARD:g}": [
+        f"b  random, Ξ = {SOFT:g} and {HARD:g}": [
             (SOFT, "Julicher"),
             (HARD, "Julicher"),
         ],
-        f"c  random meshes, Ξ = {SOFT:g}, both schemes": [(SOFT, scheme) for scheme in SCHEMES],
+        f"c  random, Ξ = {SOFT:g}, both schemes": [(SOFT, scheme) for scheme in SCHEMES],
     }
     for panel, (title, pairs) in zip(other_axes, kinds.items(), strict=True):
         for (softness, scheme), line in zip(pairs, ("-", "--"), strict=True):
