@@ -73,7 +73,7 @@ def main():
         for softness in softnesses
     )
     figure.parameters(
-        f"{seeds} random meshes of N = {count}, κ = {RIGIDITY:g} kJ/mol, GKB, kA and kV of the "
+        f"{'one random mesh' if seeds == 1 else f'{seeds} random meshes'} of N = {count}, κ = {RIGIDITY:g} kJ/mol, GKB, kA and kV of the "
         f"paper, LangevinMiddle, γ = {FRICTION:g}/ps, 300 K, {periods:g} τ_2, of which {RAMP:g} "
         f"are the ramp of d, Δt = {steps}."
     )
