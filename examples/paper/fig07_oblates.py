@@ -72,8 +72,9 @@ def main():
         f"{vesicles[volumes[0], softness][0]['time_step']:.2g} ps at Ξ = {softness:g}"
         for softness in softnesses
     )
+    meshes = "One random mesh" if seeds == 1 else f"{seeds} random meshes"
     figure.parameters(
-        f"{'one random mesh' if seeds == 1 else f'{seeds} random meshes'} of N = {count}, κ = {RIGIDITY:g} kJ/mol, GKB, kA and kV of the "
+        f"{meshes} of N = {count}, κ = {RIGIDITY:g} kJ/mol, GKB, kA and kV of the "
         f"paper, LangevinMiddle, γ = {FRICTION:g}/ps, 300 K, {periods:g} τ_2, of which {RAMP:g} "
         f"are the ramp of d, Δt = {steps}."
     )
