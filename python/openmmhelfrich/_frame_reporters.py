@@ -93,7 +93,8 @@ class VTKHDFReporter(SeriesReporter):
         Without h5py.
     ValueError
         A number out of range, or another suffix; at the first report, a file that is none of this
-        reporter or has other numbers of vertices or triangles.
+        reporter, belongs to another one of the Simulation, or has other numbers of vertices or
+        triangles.
 
     Examples
     --------
@@ -140,8 +141,8 @@ class GSDReporter(SeriesReporter):
     ImportError
         At the first report, without the package gsd.
     ValueError
-        A number out of range, or another suffix; at the first report, a file that is no GSD file or
-        has another number of vertices.
+        A number out of range, or another suffix; at the first report, a file that is no GSD file,
+        belongs to another reporter of the Simulation, or has another number of vertices.
 
     Examples
     --------
@@ -175,7 +176,8 @@ class ExtendedXYZReporter(SeriesReporter):
     Raises
     ------
     ValueError
-        A number out of range, or another suffix; at the first report, a file of something else.
+        A number out of range, or another suffix; at the first report, a file of something else, or
+        one of another reporter of the Simulation.
 
     Examples
     --------

@@ -74,8 +74,8 @@ class ModeReporter(TableReporter):
     Raises
     ------
     ValueError
-        A number out of range; at the first report, another suffix, a file with other columns, or a
-        surface that is not closed.
+        A number out of range; at the first report, another suffix, a file with other columns or of
+        another reporter of the Simulation, or a surface that is not closed.
 
     Examples
     --------
