@@ -98,6 +98,12 @@ class Figure:
         """One of two values, of the full size or of the quick one."""
         return quick if self.quick else full
 
+    def check_same(self, what, one, other, why=""):
+        """Check that two values, each with its standard error, differ by three errors at most."""
+        (value, error), (reference, its_error) = one, other
+        both = np.hypot(error, its_error)
+        return self.check(what, value - reference, 0, 3 * both, both, why=why)
+
     def sweep(self, function, points, version=1, description=None):
         """The results of a function at points, stored in the folder of results."""
         try:

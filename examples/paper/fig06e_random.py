@@ -150,7 +150,7 @@ def main():
         f"300 K, γ = ω_2, Δt = 0.075 √Ξ τ_fastest, {size['samples']} samples of 10 τ_2"
     )
     found = {mesh: modulus(mesh, of_mesh) for mesh, of_mesh in runs.items() if mesh.random}
-    check_scaled(figure, size, runs, found)
+    check_scaled(figure, size, runs)
     check_apart(figure, size, runs, found)
     check_spike(figure, size, runs)
     check_schemes(figure, size, runs)
@@ -177,20 +177,16 @@ def row(mesh, runs, found):
     return cells
 
 
-def check_scaled(figure, size, runs, found):
+def check_scaled(figure, size, runs):
     """N ∝ r0²: the spectrum of soft meshes is that of one size, and Y of hard ones is (45)."""
     (first, *others) = (Mesh(*pair, SOFT) for pair in size["scaled"])
-    reference, reference_error = ratios(runs[first])
+    reference = [both[0] for both in ratios(runs[first])]
     for mesh in others:
-        value, error = ratios(runs[mesh])
-        both = np.hypot(error, reference_error)[0]
-        figure.check(
+        figure.check_same(
             f"Ξ = {SOFT:g}, l = 2 over (A17), r0 = {mesh.radius:g} nm less {first.radius:g} nm, "
             "N ∝ r0²",
-            value[0] - reference[0],
-            0,
-            3 * both,
-            both,
+            [both[0] for both in ratios(runs[mesh])],
+            reference,
             why="the modulus of a mesh with fixed neighbours is an entropy of its N vertices, and "
             "Y r0² grows with N (rows of Ξ = 0.59 below)",
         )
@@ -280,18 +276,14 @@ def overall(mesh, runs):
     return values.mean(), np.hypot.reduce(errors) / len(errors)
 
 
-def check_difference(figure, name, mesh, other, runs, why):
+def check_spectra(figure, name, mesh, other, runs, why=""):
     """That the spectra of two meshes are the same, by their means over l."""
-    (value, error), (reference, reference_error) = (overall(one, runs) for one in (mesh, other))
-    both = np.hypot(error, reference_error)
-    figure.check(
+    figure.check_same(
         f"Ξ = {mesh.softness:g}, N = {mesh.num_vertices}, mean over l = 2 … {resolved(mesh)} over "
         f"(A17), {name}",
-        value - reference,
-        0,
-        3 * both,
-        both,
-        why=why,
+        overall(mesh, runs),
+        overall(other, runs),
+        why,
     )
 
 
@@ -300,7 +292,7 @@ def check_schemes(figure, size, runs):
     barycentric = "GompperKrollBarycentric"
     for pair in size["scaled"]:
         mesh = Mesh(*pair, SOFT)
-        check_difference(
+        check_spectra(
             figure,
             f"{SCHEMES[barycentric]} less {SCHEMES[mesh.scheme]}",
             mesh._replace(scheme=barycentric),
@@ -314,9 +306,7 @@ def check_schemes(figure, size, runs):
 def check_order(figure, size, runs):
     """A random mesh against an ordered one."""
     mesh = Mesh(*size["ordered"], SOFT)
-    check_difference(
-        figure, "random less ordered mesh", mesh, mesh._replace(random=False), runs, ""
-    )
+    check_spectra(figure, "random less ordered mesh", mesh, mesh._replace(random=False), runs)
 
 
 def draw(figure, size, runs, found):

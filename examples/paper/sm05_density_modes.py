@@ -125,14 +125,11 @@ def check_sizes(figure, others):
         for count, factor in soft.items()
     }
     (most, reference), *smaller = sorted(levels.items(), reverse=True)
-    for count, (level, error) in smaller:
-        both = np.hypot(error, reference[1])
-        figure.check(
+    for count, level in smaller:
+        figure.check_same(
             f"b, random: S of l = 0.2 … 0.5 √N at Ξ = {SOFT:g}, N = {count} less N = {most}",
-            level - reference[0],
-            0,
-            3 * both,
-            both,
+            level,
+            reference,
         )
 
 
@@ -140,16 +137,9 @@ def check_schemes(figure, others):
     """c: places in the surface do not know how its bending energy is computed."""
     julicher, other = (of_kind(others, SOFT, scheme) for scheme in SCHEMES)
     for count in julicher:
-        (level, error), (reference, its_error) = (
-            long_waves(count, kind[count]) for kind in (other, julicher)
-        )
-        both = np.hypot(error, its_error)
-        figure.check(
+        figure.check_same(
             f"c, N = {count}: S of long waves at Ξ = {SOFT:g}, GK barycentric less Jülicher",
-            level - reference,
-            0,
-            3 * both,
-            both,
+            *(long_waves(count, kind[count]) for kind in (other, julicher)),
         )
 
 
