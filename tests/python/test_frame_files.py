@@ -67,6 +67,11 @@ def fail_to_write(patch, suffix):
         patch.setattr("os.fsync", full)
 
 
+def killed(*arguments):
+    """Leaves what a kill leaves: nothing here tidies up after this error."""
+    raise KeyboardInterrupt
+
+
 class TestSeries:
     @ALL
     @pytest.mark.parametrize("again", [False, True])
@@ -120,6 +125,39 @@ class TestSeries:
             assert series.steps().tolist() == [0, 7]
             series.add(frames[2:])
             assert path.read_bytes() == whole
+
+    @pytest.mark.parametrize("kept", [0, 3, 200])
+    def test_a_kill_as_a_gsd_file_begins_leaves_none_or_an_empty_one(
+        self, tmp_path, kept, monkeypatch
+    ):
+        path, frames = tmp_path / "a.gsd", frames_of(3)
+        series = GSDSeries(path)
+        with monkeypatch.context() as patch:
+            patch.setattr("os.replace", killed)
+            with pytest.raises(KeyboardInterrupt):
+                series.add(frames)
+        assert not path.exists()
+        fresh = path.with_name("a.gsd.new")
+        fresh.write_bytes(fresh.read_bytes()[:kept])
+        with monkeypatch.context() as patch:
+            fail_to_write(patch, ".gsd")
+            with pytest.raises(OSError, match="free some space"):
+                series.add(frames)
+        assert GSDSeries(path).steps().size == 0
+        GSDSeries(path).add(frames)
+        written_at_once(tmp_path / "b.gsd", frames)
+        assert contents(path) == contents(tmp_path / "b.gsd")
+
+    @ALL
+    def test_others_may_read_what_is_written(self, tmp_path, suffix):
+        path = tmp_path / f"a{suffix}"
+        SERIES[suffix](path).add(frames_of(3))
+        written_at_once(tmp_path / f"b{suffix}", frames_of(3))
+        tmp_path.joinpath("plain").touch()
+        modes = {file.stat().st_mode for file in tmp_path.iterdir()}
+        assert len(modes) == 1
+        SERIES[suffix](path).cut(2)
+        assert {path.stat().st_mode} == modes
 
     @ALL
     def test_a_kill_leaves_whole_frames(self, tmp_path, suffix):

@@ -79,6 +79,8 @@ def fresh_file(path: Path) -> Iterator[Path]:
     """
     fresh = path.with_name(f".{path.name}.{os.getpid()}.new")
     try:
+        # gsd would leave it to its owner and group alone.
+        fresh.touch()
         yield fresh
         with fresh.open("rb") as file:
             os.fsync(file.fileno())

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .._writing import naming
+from .._writing import in_memory, naming, replace
 from ._growing import GrowingFile
 from ._gsd import import_gsd
 from ._surface_frames import Types, fresh_file
@@ -100,12 +100,10 @@ class GSDSeries(FrameFile):
         self._frames = None
 
     def _add(self, frames: Iterable[SurfaceFrame]) -> None:
-        new = not self.path.exists()
-        if new:
-            self._frames = None
-        mode = "w" if new else "r+"
+        if not self.path.exists():
+            self._begin()
         try:
-            with _readable(self.path), self._hoomd.open(name=str(self.path), mode=mode) as file:
+            with _readable(self.path), self._hoomd.open(name=str(self.path), mode="r+") as file:
                 for frame in frames:
                     file.append(self._next(file, frame))
             with self.path.open("rb") as written:
@@ -114,6 +112,12 @@ class GSDSeries(FrameFile):
             # A frame that is not there has no triangles for those after it: look again.
             self._frames = None
             raise
+
+    def _begin(self) -> None:
+        """Make a file of no frames in one go; gsd writes its head where a kill could cut it."""
+        self._frames = None
+        empty = in_memory(lambda name: self._hoomd.open(name=name, mode="w").close())
+        replace(self.path, empty)
 
     def _next(self, file, frame: SurfaceFrame):
         """The next frame of a file that is open."""
