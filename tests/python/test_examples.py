@@ -165,11 +165,6 @@ def test_integrators():
         assert word in text
 
 
-def test_bench():
-    text = run(ROOT / "benches" / "steps.py", "--quick").stdout
-    assert "asked" in text and "measured" in text
-
-
 @pytest.mark.parametrize(
     ("script", "quick", "said"),
     [

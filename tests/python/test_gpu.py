@@ -104,13 +104,17 @@ def test_size_and_place_do_not_matter(radius: float, distance: float, target: Ta
     positions = radius / 160 * base.positions + shift
     # Differences of coordinates near 1e6 nm have lost the digits that they have lost.
     m = Membrane("moved", positions, base.triangles)
-    for case in CLOSED if SLOW else CLOSED[::3]:
-        forces = [case.make(m)]
-        found = Running(forces, m.num_particles, target).evaluate(positions)
-        reference = Running([case.make(m)], m.num_particles, REFERENCE)
-        expected = reference.evaluate(target.rounded(positions))
-        assert np.abs(expected[1]).max() > 0
-        compare(found, expected, target.tolerance)
+    cases = CLOSED if SLOW else CLOSED[::3]
+    for first in range(0, len(cases), 32):
+        batch = cases[first : first + 32]
+        found, reference = (
+            Running([case.make(m) for case in batch], m.num_particles, platform)
+            for platform in (target, REFERENCE)
+        )
+        for group in range(len(batch)):
+            expected = reference.evaluate(target.rounded(positions), group)
+            assert np.abs(expected[1]).max() > 0
+            compare(found.evaluate(positions, group), expected, target.tolerance)
 
 
 @pytest.mark.parametrize("strain", [1e-4, -1e-4])
@@ -120,18 +124,21 @@ def test_small_strains_of_area_and_volume(where: str, strain: float, target: Tar
     """Single precision alone would leave three digits of a strain of 1e-4, and of its force."""
     m = membrane(where)
     mesh = helfrich.Mesh(m.positions[m.members], np.searchsorted(m.members, m.triangles))
-    for cls, arguments in (
+    terms = (
         (helfrich.SurfaceAreaForce, (1e3, mesh.area / (1 + strain))),
         (helfrich.EnclosedVolumeForce, (1e3, mesh.volume / (1 + strain))),
         (helfrich.OsmoticPressureForce, (400 * mesh.volume / (1 + strain), 400.0, 2.5)),
-    ):
-        found = Running([cls(m.triangles, *arguments)], m.num_particles, target)
-        expected = Running([cls(m.triangles, *arguments)], m.num_particles, REFERENCE)
-        # What cancels to 1e-4 of itself has lost four digits in double precision, too, and the
-        # square of it twice as many of what was left.
-        tolerance = 1e-9 if target.name.endswith("double") else 1e-4
-        reference = expected.evaluate(target.rounded(m.positions))
-        compare(found.evaluate(m.positions), reference, tolerance)
+    )
+    found, expected = (
+        Running([cls(m.triangles, *values) for cls, values in terms], m.num_particles, platform)
+        for platform in (target, REFERENCE)
+    )
+    # What cancels to 1e-4 of itself has lost four digits in double precision, too, and the
+    # square of it twice as many of what was left.
+    tolerance = 1e-9 if target.name.endswith("double") else 1e-4
+    for group in range(len(terms)):
+        reference = expected.evaluate(target.rounded(m.positions), group)
+        compare(found.evaluate(m.positions, group), reference, tolerance)
 
 
 def large_mesh() -> helfrich.Mesh:

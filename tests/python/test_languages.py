@@ -113,7 +113,8 @@ def test_cpp_with_cmake(tmp_path, mesh_file, expected):
 
 def test_rust(mesh_file, expected):
     command = ["cargo", "run", "--quiet", "--release", "--locked", "--example", "vesicle", "--"]
-    environment = dict(os.environ, PYTHON=sys.executable)
+    # As in the Makefile, whose tests of Rust have compiled everything.
+    environment = dict(os.environ, PYTHON=sys.executable, OPENMM_DIR=str(OPENMM))
     check(run([*command, mesh_file], cwd=PROJECT, env=environment), expected)
 
 
