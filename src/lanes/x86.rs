@@ -1,9 +1,16 @@
-//! Records in the instruction sets of x86: two numbers a load, transposed in registers.
+//! Records in the instruction sets of x86: AVX2 loads two numbers at a time, AVX-512 four; they are transposed in registers.
 
 use super::records::Records;
 use pulp::cast;
 use pulp::x86::{V3, V4};
-use std::arch::x86_64::{__m256d, __m512d};
+use std::arch::x86_64::{__m128d, __m256d, __m512d};
+
+/// An offset. By itself, or the compiler masks many at once and takes them apart again, which costs as much as the shuffles.
+#[inline(always)]
+unsafe fn offset<const BY: u32, const KEEP: u32>(from: *const u32) -> usize {
+    // SAFETY: the caller's offsets are there.
+    ((unsafe { from.read_volatile() } & KEEP) / BY) as usize
+}
 
 /// Two numbers of the records of two lanes.
 #[inline(always)]
@@ -15,8 +22,8 @@ unsafe fn pair<const BY: u32, const KEEP: u32>(
 ) -> __m256d {
     // SAFETY: the caller's records are there.
     unsafe {
-        let low = simd.sse2._mm_loadu_pd(base.add(((*low & KEEP) / BY) as usize));
-        let high = simd.sse2._mm_loadu_pd(base.add(((*high & KEEP) / BY) as usize));
+        let low = simd.sse2._mm_loadu_pd(base.add(offset::<BY, KEEP>(low)));
+        let high = simd.sse2._mm_loadu_pd(base.add(offset::<BY, KEEP>(high)));
         simd.avx._mm256_insertf128_pd::<1>(simd.avx._mm256_castpd128_pd256(low), high)
     }
 }
@@ -128,22 +135,71 @@ impl Records for V3 {
     }
 }
 
-type Four = <V3 as pulp::Simd>::f64s;
-type Eight = <V4 as pulp::Simd>::f64s;
-
-/// Two registers of four lanes as one of eight.
+/// The eight lanes of a pair of registers at these places, those of the second counted from 8 on.
 #[inline(always)]
-fn join(simd: V4, low: Four, high: Four) -> Eight {
-    let low: __m512d = simd.avx512f._mm512_castpd256_pd512(cast!(low));
-    cast!(simd.avx512f._mm512_insertf64x4::<1>(low, cast!(high)))
+fn chosen(simd: V4, [a, b]: [__m512d; 2], places: [i64; 8]) -> __m512d {
+    simd.avx512f._mm512_permutex2var_pd(a, cast!(places), b)
 }
 
 #[inline(always)]
-fn split(eight: Eight) -> [Four; 2] {
-    cast!(eight)
+fn columns_of_eight(simd: V4, [even, odd]: [__m512d; 2]) -> [__m512d; 2] {
+    [simd.avx512f._mm512_unpacklo_pd(even, odd), simd.avx512f._mm512_unpackhi_pd(even, odd)]
 }
 
-// Each is two of four lanes.
+/// The records of four numbers of a lane and of the fourth one after it.
+#[inline(always)]
+unsafe fn row<const KEEP: u32>(simd: V4, base: *const f64, offsets: *const u32) -> __m512d {
+    // SAFETY: the caller's records are there.
+    let (low, high) = unsafe {
+        (
+            simd.avx._mm256_loadu_pd(base.add(offset::<1, KEEP>(offsets))),
+            simd.avx._mm256_loadu_pd(base.add(offset::<1, KEEP>(offsets.add(4)))),
+        )
+    };
+    simd.avx512f._mm512_insertf64x4::<1>(simd.avx512f._mm512_castpd256_pd512(low), high)
+}
+
+/// The records of four numbers of eight lanes, two in a register.
+#[inline(always)]
+unsafe fn rows<const KEEP: u32>(simd: V4, base: *const f64, offsets: *const u32) -> [__m512d; 4] {
+    // SAFETY: the caller's records are there.
+    unsafe {
+        [
+            row::<KEEP>(simd, base, offsets),
+            row::<KEEP>(simd, base, offsets.add(1)),
+            row::<KEEP>(simd, base, offsets.add(2)),
+            row::<KEEP>(simd, base, offsets.add(3)),
+        ]
+    }
+}
+
+/// The first numbers of two pairs of lanes and of those four lanes on, and the third ones likewise: from what
+/// [`columns_of_eight`] makes of rows 0 and 1, and of rows 2 and 3.
+const FIRST: [i64; 8] = [0, 1, 8, 9, 4, 5, 12, 13];
+const THIRD: [i64; 8] = [2, 3, 10, 11, 6, 7, 14, 15];
+
+/// Two numbers of a record.
+#[inline(always)]
+unsafe fn two<const BY: u32>(simd: V4, base: *const f64, from: *const u32) -> __m128d {
+    // SAFETY: the caller's record is there.
+    unsafe { simd.sse2._mm_loadu_pd(base.add(offset::<BY, { u32::MAX }>(from))) }
+}
+
+/// Two numbers of the records of a lane and of every second one after it.
+#[inline(always)]
+unsafe fn every_second<const BY: u32>(simd: V4, base: *const f64, offsets: *const u32) -> __m512d {
+    // SAFETY: the caller's records are there.
+    unsafe {
+        let first = simd.avx512f._mm512_castpd128_pd512(two::<BY>(simd, base, offsets));
+        let next = two::<BY>(simd, base, offsets.add(2));
+        let first = simd.avx512dq._mm512_insertf64x2::<1>(first, next);
+        let next = two::<BY>(simd, base, offsets.add(4));
+        let first = simd.avx512dq._mm512_insertf64x2::<2>(first, next);
+        let next = two::<BY>(simd, base, offsets.add(6));
+        simd.avx512dq._mm512_insertf64x2::<3>(first, next)
+    }
+}
+
 impl Records for V4 {
     #[inline(always)]
     fn any(self, mask: Self::m64s) -> bool {
@@ -153,9 +209,14 @@ impl Records for V4 {
     #[inline(always)]
     unsafe fn gather3(self, base: *const f64, offsets: *const u32) -> [Self::f64s; 3] {
         // SAFETY: as the caller says.
-        let (low, high) =
-            unsafe { ((*self).gather3(base, offsets), (*self).gather3(base, offsets.add(4))) };
-        [join(self, low[0], high[0]), join(self, low[1], high[1]), join(self, low[2], high[2])]
+        let [a, b, c, d] = unsafe { rows::<{ u32::MAX }>(self, base, offsets) };
+        let ([ac, b], [ac_on, b_on]) =
+            (columns_of_eight(self, [a, b]), columns_of_eight(self, [c, d]));
+        [
+            cast!(chosen(self, [ac, ac_on], FIRST)),
+            cast!(chosen(self, [b, b_on], FIRST)),
+            cast!(chosen(self, [ac, ac_on], THIRD)),
+        ]
     }
 
     #[inline(always)]
@@ -165,15 +226,20 @@ impl Records for V4 {
         offsets: *const u32,
     ) -> [Self::f64s; 4] {
         // SAFETY: as the caller says.
-        let (low, high) = unsafe {
-            let low = (*self).gather4::<WITHIN>(base, offsets);
-            (low, (*self).gather4::<WITHIN>(base, offsets.add(4)))
+        let [a, b, c, d] = unsafe {
+            if WITHIN {
+                rows::<{ !3 }>(self, base, offsets)
+            } else {
+                rows::<{ u32::MAX }>(self, base, offsets)
+            }
         };
+        let ([ac, bd], [ac_on, bd_on]) =
+            (columns_of_eight(self, [a, b]), columns_of_eight(self, [c, d]));
         [
-            join(self, low[0], high[0]),
-            join(self, low[1], high[1]),
-            join(self, low[2], high[2]),
-            join(self, low[3], high[3]),
+            cast!(chosen(self, [ac, ac_on], FIRST)),
+            cast!(chosen(self, [bd, bd_on], FIRST)),
+            cast!(chosen(self, [ac, ac_on], THIRD)),
+            cast!(chosen(self, [bd, bd_on], THIRD)),
         ]
     }
 
@@ -184,29 +250,46 @@ impl Records for V4 {
         offsets: *const u32,
     ) -> [Self::f64s; 2] {
         // SAFETY: as the caller says.
-        let (low, high) = unsafe {
-            ((*self).gather2::<BY>(base, offsets), (*self).gather2::<BY>(base, offsets.add(4)))
+        let halves = unsafe {
+            [
+                every_second::<BY>(self, base, offsets),
+                every_second::<BY>(self, base, offsets.add(1)),
+            ]
         };
-        [join(self, low[0], high[0]), join(self, low[1], high[1])]
+        let [a, b] = columns_of_eight(self, halves);
+        [cast!(a), cast!(b)]
     }
 
     #[inline(always)]
     unsafe fn store4(self, to: *mut f64, [a, b, c, d]: [Self::f64s; 4]) {
-        let (a, b, c, d) = (split(a), split(b), split(c), split(d));
-        // SAFETY: as the caller says.
-        unsafe {
-            (*self).store4(to, [a[0], b[0], c[0], d[0]]);
-            (*self).store4(to.add(16), [a[1], b[1], c[1], d[1]]);
+        let [even, odd] = columns_of_eight(self, [cast!(a), cast!(b)]);
+        let [even_on, odd_on] = columns_of_eight(self, [cast!(c), cast!(d)]);
+        // Lanes 0 and 2, 4 and 6, 1 and 3, 5 and 7.
+        for (lane, pair, places) in [
+            (0, [even, even_on], [0, 1, 8, 9, 2, 3, 10, 11]),
+            (4, [even, even_on], [4, 5, 12, 13, 6, 7, 14, 15]),
+            (1, [odd, odd_on], [0, 1, 8, 9, 2, 3, 10, 11]),
+            (5, [odd, odd_on], [4, 5, 12, 13, 6, 7, 14, 15]),
+        ] {
+            let both = chosen(self, pair, places);
+            let first = self.avx512f._mm512_castpd512_pd256(both);
+            let second = self.avx512f._mm512_extractf64x4_pd::<1>(both);
+            // SAFETY: as the caller says.
+            unsafe {
+                self.avx._mm256_storeu_pd(to.add(4 * lane), first);
+                self.avx._mm256_storeu_pd(to.add(4 * (lane + 2)), second);
+            }
         }
     }
 
     #[inline(always)]
     unsafe fn store2(self, to: *mut f64, [a, b]: [Self::f64s; 2]) {
-        let (a, b) = (split(a), split(b));
+        let pair = columns_of_eight(self, [cast!(a), cast!(b)]);
         // SAFETY: as the caller says.
         unsafe {
-            (*self).store2(to, [a[0], b[0]]);
-            (*self).store2(to.add(8), [a[1], b[1]]);
+            self.avx512f._mm512_storeu_pd(to, chosen(self, pair, [0, 1, 8, 9, 2, 3, 10, 11]));
+            let rest = chosen(self, pair, [4, 5, 12, 13, 6, 7, 14, 15]);
+            self.avx512f._mm512_storeu_pd(to.add(8), rest);
         }
     }
 }
