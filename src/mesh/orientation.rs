@@ -10,8 +10,8 @@ use crate::error::{Error, Result};
 use nalgebra::Vector3;
 use std::collections::HashMap;
 
-/// Validate a mesh and turn its triangles so that each closed component has positive volume. A component with borders
-/// keeps the orientation of its first triangle.
+/// Validate a mesh and turn its triangles so that each closed component has positive volume. A component with borders, or
+/// whose volume is lost in rounding, keeps the orientation of its first triangle.
 ///
 /// Neighbours are made to agree by walking over the surface, so the shape need not be star-shaped;
 /// what remains, one sign for each closed component, is decided by the sign of the component's volume.
@@ -50,9 +50,10 @@ pub fn oriented(
             Error::NonOrientable { edge: [shared[0], shared[1]], triangles }
         })?;
         let (places, spans) = in_one_piece(&component, &corners, vertices, cell)?;
-        let mut volume = 0.0;
+        let (mut six_volumes, mut products) = (0.0, 0.0);
         for (&triangle, [a, b, c]) in component.iter().zip(places) {
-            let normal = (b - a).cross(&(c - a));
+            let sides = [b - a, c - a];
+            let normal = sides[0].cross(&sides[1]);
             if !normal.norm_squared().is_finite() {
                 return Err(Error::OverflownTriangle { triangle, corners: corners[triangle] });
             }
@@ -60,9 +61,12 @@ pub fn oriented(
                 return Err(Error::DegenerateTriangle { triangle, corners: corners[triangle] });
             }
             let sign = if flipped[triangle] == Some(true) { -1.0 } else { 1.0 };
-            volume += sign * a.dot(&normal);
+            six_volumes += sign * a.dot(&normal);
+            products += a.norm() * sides[0].norm() * sides[1].norm();
         }
-        let inward = closed && !spans && volume < 0.0;
+        // More than a sum of so many products may be off.
+        let rounding = (component.len() + 8) as f64 * f64::EPSILON * products;
+        let inward = closed && !spans && six_volumes < -rounding;
         for &triangle in &component {
             if (flipped[triangle] == Some(true)) != inward {
                 result[triangle].swap(1, 2);
@@ -232,6 +236,21 @@ mod tests {
                 mixed[triangle].swap(1, 2);
             }
             assert_eq!(oriented(&vertices, &mixed, None).unwrap(), wanted);
+        }
+    }
+
+    #[test]
+    fn a_component_whose_volume_is_lost_keeps_the_orientation_of_its_first_triangle() {
+        let (mut vertices, good) = icosahedron();
+        let at = |vertex: i64| Vec3::from(vertices[vertex as usize]);
+        let fan = good.iter().filter(|triangle| triangle.contains(&11));
+        let area = fan
+            .fold(Vec3::zeros(), |sum, &[a, b, c]| sum + (at(b) - at(a)).cross(&(at(c) - at(a))));
+        let away = area.cross(&Vec3::new(0.3, -0.5, 0.8)) * 1e12;
+        vertices[11] = away.into();
+        let turned: Vec<_> = good.iter().map(|t| [t[0], t[2], t[1]]).collect();
+        for wanted in [good, turned] {
+            assert_eq!(oriented(&vertices, &wanted, None).unwrap(), wanted);
         }
     }
 

@@ -121,6 +121,18 @@ def test_signalling_nan_is_named_without_a_warning(tmp_path):
     assert "not finite" in refused(tmp_path / "m.stl", data)
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("far", [1e160, 1e308])
+def test_squares_of_long_sides_need_not_be_numbers(tmp_path, far):
+    """Neither where polygons are split nor where borders are looked at; areas may be small."""
+    path = tmp_path / "m.off"
+    path.write_text(f"OFF\n3 1 0\n0 0 0\n1 0 0\n{far} 1 0\n3 0 1 2\n")
+    assert Mesh.read(path).area == 0.5
+    path.write_text(f"OFF\n4 1 0\n0 0 0\n1 0 0\n{far} 1 0\n0 1 0\n4 0 1 2 3\n")
+    with pytest.raises(MeshError, match="face 0 cannot be split"):
+        Mesh.read(path, triangulate=True)
+
+
 # --- configurations ------------------------------------------------------------------------------
 
 
