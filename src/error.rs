@@ -57,6 +57,10 @@ pub enum Error {
     #[error("vertex {vertex} has a coordinate that is not finite ({}, {}, {})", .position[0], .position[1], .position[2])]
     NonFiniteVertex { vertex: usize, position: [f64; 3] },
 
+    /// A coordinate of a mesh whose cube and the sums of such are no numbers.
+    #[error("vertex {vertex} is at ({:e}, {:e}, {:e}) nm; coordinates must be below 1e100, see whether the file is damaged", .position[0], .position[1], .position[2])]
+    FarVertex { vertex: usize, position: [f64; 3] },
+
     /// NaN or infinity among the positions of a running simulation.
     #[error("particle {particle} is at ({}, {}, {}) nm, which is not finite: the simulation has blown up; use a smaller time step or a better relaxed start", .position[0], .position[1], .position[2])]
     NonFinitePosition { particle: u32, position: [f64; 3] },

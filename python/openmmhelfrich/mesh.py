@@ -39,8 +39,9 @@ class Mesh(Generators, Measures, Transformations):
     Triangles of a closed surface are counter-clockwise seen from outside, so that normals point
     outward and the volume is positive. Each connected part is oriented by itself, even if it lies
     inside of another one; one with borders, or one that spans a periodic box, has no outside, and
-    keeps the orientation of its first triangle, as does one whose volume is lost in rounding. Areas and volumes are sums over the parts. A mesh
-    never changes: its arrays are read-only, and transformations return a new mesh.
+    keeps the orientation of its first triangle, as does one whose volume is lost in rounding. Areas
+    and volumes are sums over the parts. A mesh never changes: its arrays are read-only, and
+    transformations return a new mesh.
 
     In a periodic box a vertex stands for all of its images, and a triangle has those corners that
     are nearest to each other. So vertices may be wrapped into the box or not, each by itself. A

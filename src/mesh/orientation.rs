@@ -10,6 +10,9 @@ use crate::error::{Error, Result};
 use nalgebra::Vector3;
 use std::collections::HashMap;
 
+/// Coordinates, nm, whose cubes may overflow.
+const FARTHEST: f64 = 1e100;
+
 /// Validate a mesh and turn its triangles so that each closed component has positive volume. A component with borders, or
 /// whose volume is lost in rounding, keeps the orientation of its first triangle.
 ///
@@ -19,7 +22,7 @@ use std::collections::HashMap;
 /// images of each other, and a component that spans the box keeps the orientation of its first triangle.
 ///
 /// # Errors
-/// All of [`Topology::new`], and: coordinates that are not finite, vertices without triangles or in
+/// All of [`Topology::new`], and: coordinates that are not finite or of 1e100 nm or more, vertices without triangles or in
 /// the same place, triangles without area, surfaces that are not orientable, edges that are not shorter than half the
 /// width of the box.
 pub fn oriented(
@@ -30,6 +33,9 @@ pub fn oriented(
     for (vertex, position) in vertices.iter().enumerate() {
         if !position.iter().all(|x| x.is_finite()) {
             return Err(Error::NonFiniteVertex { vertex, position: *position });
+        }
+        if position.iter().any(|x| x.abs() >= FARTHEST) {
+            return Err(Error::FarVertex { vertex, position: *position });
         }
     }
     let corners = checked_indices(triangles, vertices.len())?;

@@ -43,10 +43,10 @@ def ply(*changes: tuple[str, str], rows=ROWS) -> bytes:
 
 
 @pytest.mark.parametrize("options", [{"merge": 0.1}, {}])
-def test_huge_coordinates_name_the_triangle(tmp_path, options):
+def test_huge_coordinates_name_the_vertex(tmp_path, options):
     rows = ["-1e308 0 0", "1e308 0 0", "0 1e200 0", *ROWS[3:]]
     said = refused(tmp_path / "m.ply", ply(rows=rows), **options)
-    assert said.startswith("Mesh.read: m.ply: ") and "triangle 0" in said
+    assert said.startswith("Mesh.read: m.ply: ") and "vertex 0" in said
 
 
 def test_merging_what_is_in_the_same_place_only(tmp_path):
@@ -122,15 +122,34 @@ def test_signalling_nan_is_named_without_a_warning(tmp_path):
 
 
 @pytest.mark.filterwarnings("error")
-@pytest.mark.parametrize("far", [1e160, 1e308])
-def test_squares_of_long_sides_need_not_be_numbers(tmp_path, far):
-    """Neither where polygons are split nor where borders are looked at; areas may be small."""
-    path = tmp_path / "m.off"
-    path.write_text(f"OFF\n3 1 0\n0 0 0\n1 0 0\n{far} 1 0\n3 0 1 2\n")
-    assert Mesh.read(path).area == 0.5
+@pytest.mark.parametrize("far", [1e100, 1e160, 1e308])
+def test_coordinates_whose_cubes_are_no_numbers_are_named(tmp_path, far):
+    """Areas may be small. Polygons and borders were looked at with a warning."""
+    triangle = f"OFF\n3 1 0\n0 0 0\n1 0 0\n{far} 1 0\n3 0 1 2\n"
+    assert "vertex 2 is at (1e" in refused(tmp_path / "m.off", triangle.encode())
+    path = tmp_path / "n.off"
     path.write_text(f"OFF\n4 1 0\n0 0 0\n1 0 0\n{far} 1 0\n0 1 0\n4 0 1 2 3\n")
     with pytest.raises(MeshError, match="face 0 cannot be split"):
         Mesh.read(path, triangulate=True)
+    with pytest.raises(MeshError, match="below 1e100"):
+        Mesh.icosphere(1, 3.0).translated((0, far, 0))
+    with pytest.raises(MeshError, match=r"below 1e100|is not finite"):
+        Mesh.icosphere(1, 3.0).scaled(far)
+
+
+def test_a_mesh_whose_volume_is_lost_comes_back_as_it_was(tmp_path):
+    sphere = Mesh.icosphere(1, 10.0)
+    vertices = sphere.vertices.copy()
+    vertices[np.flatnonzero(vertices[:, 0] == 0)[0], 0] = 1e12
+    for triangles in (sphere.triangles, sphere.triangles[:, ::-1]):
+        mesh = Mesh(vertices, triangles)
+        mesh.write(tmp_path / "m.ply")
+        assert Mesh.read(tmp_path / "m.ply", merge=0) == mesh
+
+
+def test_a_mode_of_four_thousand_million_is_refused():
+    with pytest.raises(MeshError, match="l must be 1000 or less, got 4294967295"):
+        Mesh.icosphere(1, 10.0).deformed(4294967295, 0, 0.1)
 
 
 # --- configurations ------------------------------------------------------------------------------
@@ -156,6 +175,41 @@ def test_numbers_of_vcm_are_those_of_c(tmp_path, word):
     path.write_text(f"-GeneralParameters\nSeed {word}\nFrictionIninvertPs {word}\n-Membrane 0\n")
     with pytest.raises(vcm.ConfigError, match=r"run\.txt:2: key Seed: expected an integer"):
         vcm.read(path)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(
+    ("lines", "words"),
+    [
+        (
+            "SimulationTimeInPs 1e308\nStepSizeInFs 1e-10\n-Membrane 0",
+            "2: key SimulationTimeInPs: .* time steps",
+        ),
+        ("StepSizeInFs 5e-324\n-Membrane 0", "1: key SimulationTimeInPs .* time steps"),
+        ("-Membrane 0\nMeshFile m.ply\nULM 0.1 4294967295 0", "4: key ULM: .*must be 1000 or less"),
+        (
+            "-Membrane 0\nMeshFile m.ply\nCoordinateTranslateVector 1e19 0 0",
+            "4: key CoordinateTranslateVector: .* are both at",
+        ),
+        ("-Membrane 0\nMeshFile m.ply\nScale 1e308", "3: key MeshFile: .* not finite"),
+    ],
+)
+def test_numbers_beyond_use_are_named(tmp_path, lines, words):
+    Mesh.icosphere(1, 10.0).write(tmp_path / "m.ply")
+    path = tmp_path / "run.txt"
+    path.write_text(f"-GeneralParameters\n{lines}\n")
+    with pytest.raises(vcm.ConfigError, match=rf"run\.txt:(?:{words})"):
+        vcm.read(path)
+
+
+def test_a_duration_of_too_many_steps_is_named(tmp_path):
+    Mesh.icosphere(1, 10.0).write(tmp_path / "m.ply")
+    path = tmp_path / "run.toml"
+    path.write_text(
+        '[simulation]\nduration = 1e300\n[[vesicle]]\nmesh = {file = "m.ply"}\nbending = {}\n'
+    )
+    with pytest.raises(vcm.ConfigError, match=r"run\.toml:2: .*duration.* time steps"):
+        config.read(path)
 
 
 # --- saved states and connectivity ---------------------------------------------------------------

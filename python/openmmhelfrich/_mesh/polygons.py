@@ -18,7 +18,7 @@ import numpy as np
 
 from .._types import Array
 
-__all__ = ["scaled", "split"]
+__all__ = ["split"]
 
 # Least area of a triangle, as a part of its polygon's: less is a sliver, made of rounding.
 _SLIVER = 1e-6
@@ -28,15 +28,6 @@ _CROSSED = (
     "cannot be split into triangles: seen along its normal it crosses itself or has no area; split "
     "it by hand"
 )
-
-
-def scaled(points: Array) -> tuple[Array, int]:
-    """Coordinates of at most 1, whose squares do not overflow, and the power of 2 to take them by.
-
-    They have the digits of before, for 2 to any power is exact.
-    """
-    power = int(np.frexp(np.abs(points).max(initial=0.0))[1])
-    return np.ldexp(points, -power), power
 
 
 def split(points: Array, faces: Sequence[Any], fail: Callable[[int, str], Exception]) -> Array:
@@ -59,7 +50,8 @@ def split(points: Array, faces: Sequence[Any], fail: Callable[[int, str], Except
     sizes = np.array([len(face) for face in faces], dtype=np.int64)
     if (sizes == 3).all():
         return np.array(faces, dtype=np.int64).reshape(-1, 3)
-    points, _ = scaled(points)
+    # Below 1, so that squares do not overflow; by a power of 2, which changes no digit.
+    points = np.ldexp(points, -np.frexp(np.abs(points).max(initial=0.0))[1])
     starts = np.cumsum(sizes - 2) - (sizes - 2)
     triangles = np.empty((int((sizes - 2).sum()), 3), dtype=np.int64)
     kept = np.flatnonzero(sizes == 3)

@@ -9,7 +9,6 @@ from scipy.spatial import cKDTree
 
 from .._types import Array
 from ..errors import MeshError
-from .polygons import scaled
 
 __all__ = ["doubled", "drop", "hints", "merge"]
 
@@ -90,7 +89,6 @@ def hints(points: Array, triangles: Array) -> str:
 
 def doubled(points: Array, triangles: Array) -> str:
     """A hint at vertices that nearly coincide, without an edge between them; empty if none do."""
-    points, power = scaled(points)
     sides = np.concatenate([triangles[:, [k, (k + 1) % 3]] for k in range(3)])
     lengths = np.linalg.norm(points[sides[:, 0]] - points[sides[:, 1]], axis=1)
     pairs = _pairs(points, _NEAR * float(np.median(lengths)))
@@ -102,11 +100,10 @@ def doubled(points: Array, triangles: Array) -> str:
         return ""
     gaps = np.linalg.norm(points[pairs[:, 0]] - points[pairs[:, 1]], axis=1)
     a, b = sorted(pairs[np.argmax(gaps)].tolist())
-    gap = float(np.ldexp(gaps.max(), power))
-    enough = f"{2 * gap:.1g}"
+    enough = f"{2 * gaps.max():.1g}"
     return (
         f"; {len(pairs)} pair(s) of vertices nearly coincide, such as {a} and {b}, "
-        f"{gap:.3g} nm apart: merge={enough} (--merge {enough}) joins them"
+        f"{gaps.max():.3g} nm apart: merge={enough} (--merge {enough}) joins them"
     )
 
 

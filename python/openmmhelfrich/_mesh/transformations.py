@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Transformations"]
 
+# Waves that short need a million vertices.
+_LARGEST_L = 1000
+
 
 class Transformations:
     """What `Mesh` has for moving its vertices; triangles stay connected as they are."""
@@ -50,7 +53,10 @@ class Transformations:
         if box is not None:
             # A box vector may point the other way; its own axis' component is to be above 0.
             box = box * factors * np.sign(factors * np.ones(3))[:, np.newaxis] + 0.0
-        return self._with(self.vertices * factors, box)
+        with np.errstate(over="ignore"):
+            # Those that are not finite are refused by their vertex.
+            vertices = self.vertices * factors
+        return self._with(vertices, box)
 
     def translated(self, displacement: Values) -> Mesh:
         """The mesh moved by a displacement.
@@ -108,7 +114,7 @@ class Transformations:
         Parameters
         ----------
         l, m : int
-            Mode, l ≥ 0 and −l ≤ m ≤ l.
+            Mode, 0 ≤ l ≤ 1000 and −l ≤ m ≤ l.
         amplitude : float
             u, without unit.
 
@@ -121,6 +127,8 @@ class Transformations:
         where = "Mesh.deformed"
         self._refuse_box(where)
         l = integer(l, where, "l", 0)
+        if l > _LARGEST_L:
+            raise MeshError(f"{where}: l must be {_LARGEST_L} or less, got {l}")
         m = integer(m, where, "m", -l)
         if m > l:
             raise MeshError(f"{where}: m must be {l} or less, as l is, got {m}")
@@ -134,10 +142,10 @@ class Transformations:
                 "defined; translate the mesh so that the origin is inside of it"
             )
         # Imported here, because a mesh is of use without the analysis of its fluctuations.
-        from ..analysis import real_harmonics
+        from ..analysis.harmonics import one_harmonic
 
         directions = self.vertices / distance[:, np.newaxis]
-        factor = 1 + amplitude * real_harmonics(directions, l)[:, l * l + l + m]
+        factor = 1 + amplitude * one_harmonic(directions, l, m)
         if not (factor > 0).all():
             raise MeshError(
                 f"{where}: amplitude {amplitude} moves vertex {np.argmin(factor)} to the origin or "

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -61,21 +63,44 @@ def harmonics_of(directions: Any, lmax: int) -> Any:
     """
     x, y, z = np.moveaxis(directions, -1, 0)
     result = np.empty((len(x), (lmax + 1) ** 2, *x.shape[1:]))
-    cosine, sine = np.ones_like(x), np.zeros_like(x)
-    diagonal = np.sqrt(1 / (4 * np.pi))
-    for m in range(lmax + 1):
-        if m > 0:
-            cosine, sine = x * cosine - y * sine, x * sine + y * cosine
-            diagonal *= np.sqrt((2 * m + 1) / (2 * m))
-        before, legendre = 0, np.full_like(x, diagonal)
-        for l in range(m, lmax + 1):
-            if l > m:
-                a = np.sqrt((4 * l**2 - 1) / (l**2 - m**2))
-                b = np.sqrt(((l - 1) ** 2 - m**2) / (4 * (l - 1) ** 2 - 1))
-                before, legendre = legendre, (a * z) * legendre - (a * b) * before
+    for m, (diagonal, cosine, sine) in zip(range(lmax + 1), _orders(x, y), strict=False):
+        for l, legendre in zip(range(m, lmax + 1), _degrees(z, m, diagonal), strict=False):
             if m == 0:
                 result[:, l * l + l] = legendre
             else:
                 result[:, l * l + l + m] = np.sqrt(2) * legendre * cosine
                 result[:, l * l + l - m] = np.sqrt(2) * legendre * sine
     return result
+
+
+def one_harmonic(directions: Any, l: int, m: int) -> Any:
+    """Y_lm for unit vectors of shape (…, 3), shape (…), with the bits of `harmonics_of`."""
+    x, y, z = np.moveaxis(directions, -1, 0)
+    order = abs(m)
+    diagonal, cosine, sine = next(itertools.islice(_orders(x, y), order, None))
+    legendre = next(itertools.islice(_degrees(z, order, diagonal), l - order, None))
+    if m == 0:
+        return legendre
+    return np.sqrt(2) * legendre * (cosine if m > 0 else sine)
+
+
+def _orders(x: Any, y: Any) -> Iterator[tuple[Any, Any, Any]]:
+    """For m = 0, 1 …: the first Legendre function, l = m, sin^m θ cos mφ and sin^m θ sin mφ."""
+    cosine, sine = np.ones_like(x), np.zeros_like(x)
+    diagonal = np.sqrt(1 / (4 * np.pi))
+    yield diagonal, cosine, sine
+    for m in itertools.count(1):
+        cosine, sine = x * cosine - y * sine, x * sine + y * cosine
+        diagonal *= np.sqrt((2 * m + 1) / (2 * m))
+        yield diagonal, cosine, sine
+
+
+def _degrees(z: Any, m: int, diagonal: Any) -> Iterator[Any]:
+    """For l = m, m + 1 …: the Legendre function over sin^m θ."""
+    before, legendre = 0, np.full_like(z, diagonal)
+    yield legendre
+    for l in itertools.count(m + 1):
+        a = np.sqrt((4 * l**2 - 1) / (l**2 - m**2))
+        b = np.sqrt(((l - 1) ** 2 - m**2) / (4 * (l - 1) ** 2 - 1))
+        before, legendre = legendre, (a * z) * legendre - (a * b) * before
+        yield legendre

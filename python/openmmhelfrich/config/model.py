@@ -19,7 +19,7 @@ from ..blowup import Limits
 from ..errors import MeshError
 from ..forces import MonteCarloMembraneTension, SurfaceRepulsionForce
 from ..mesh import Mesh
-from ..simulation.model import Membrane, Model
+from ..simulation.model import Membrane, Model, too_many_steps
 from ..vcm.grammar import GENERAL, MEMBRANE, ConfigError, nearest
 from ..vcm.parsers import Interval
 from ..vcm.settings import Settings
@@ -253,6 +253,8 @@ def _general(simulation: Table, integrator: Table, output: Table, stem: str) -> 
     name = simulation["name"] or stem
     if not re.fullmatch(r"[^/\\\0]+", name) or name in (".", ".."):
         raise simulation.error("name", f"expected a name for files, got {name!r}")
+    if wrong := too_many_steps(simulation["duration"], integrator["time_step"]):
+        raise simulation.error("duration", wrong)
     return {
         **Settings(None, GENERAL),
         "ProjectName": name,

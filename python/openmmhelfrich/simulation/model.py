@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -21,7 +22,7 @@ from ..blowup import Limits
 from ..logs import logger
 from ..mesh import Mesh
 
-__all__ = ["Membrane", "Model"]
+__all__ = ["Membrane", "Model", "too_many_steps"]
 
 _ENERGY = unit.kilojoule_per_mole
 _VELOCITY = unit.nanometer / unit.picosecond
@@ -46,6 +47,17 @@ class Membrane:
     def particles(self) -> range:
         """Indices of its particles."""
         return range(self.offset, self.offset + self.mesh.num_vertices)
+
+
+_MOST_STEPS = 1e15
+
+
+def too_many_steps(duration: float, step_size: float) -> str:
+    """What is wrong with a time to simulate in such time steps, ps; empty if nothing is."""
+    steps = duration / step_size if step_size > 0 else math.inf
+    if steps < _MOST_STEPS:
+        return ""
+    return f"{duration:g} ps are {steps:.3g} time steps, and {_MOST_STEPS:.0e} would take millennia"
 
 
 class Model(ABC):

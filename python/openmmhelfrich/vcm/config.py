@@ -15,7 +15,7 @@ from .._types import Array, File
 from ..analysis import theory
 from ..errors import MeshError
 from ..mesh import Mesh
-from ..simulation.model import Membrane, Model
+from ..simulation.model import Membrane, Model, too_many_steps
 from . import build, interactions
 from .grammar import GENERAL, MEMBRANE, TABLE, Section, read_sections
 from .settings import Settings
@@ -59,6 +59,8 @@ class Config(Model):
         self.vcm_compatible = compatible
         found = [section for section in sections if section.kind == GENERAL]
         self.general = Settings(found[0] if found else None, GENERAL, ignore)
+        if wrong := too_many_steps(self.general["SimulationTimeInPs"], self.step_size):
+            raise self.general.error("SimulationTimeInPs", wrong)
         self.seed = seed or self.general["Seed"] or secrets.randbelow(_MAX_SEED) + 1
         random = np.random.default_rng(self.seed)
         membranes: list[Membrane] = []
@@ -183,11 +185,13 @@ def _start_mesh(settings: Settings, folder: Path, random) -> tuple[Mesh, int]:
         for _ in range(count if amplitude else 0):
             l = int(random.integers(2, lmax + 1))
             mesh = mesh.deformed(l, int(random.integers(-l, l + 1)), amplitude)
+        if settings["InitRandomRotation"]:
+            mesh = mesh.rotated(Rotation.random(random_state=random))
+        key = "CoordinateTranslateVector"
+        mesh = mesh.translated(settings[key])
     except MeshError as reason:
         raise settings.error(key, str(reason)) from None
-    if settings["InitRandomRotation"]:
-        mesh = mesh.rotated(Rotation.random(random_state=random))
-    return mesh.translated(settings["CoordinateTranslateVector"]), num_reversed
+    return mesh, num_reversed
 
 
 def _reversals(before: Array, after: Array) -> int:
