@@ -2,6 +2,9 @@
 
 __all__ = ["table"]
 
+# How contenders that evaluate one number at a time are called.
+_SCALAR = ("plain", "no lanes")
+
 
 def table(results, used, evaluations):
     """Lines of Markdown, one for each figure that is asked for."""
@@ -84,7 +87,7 @@ def _evaluations(found):
             (value, name)
             for (scheme, name, size), value in cost.items()
             if scheme == "Julicher" and size == n and name.endswith(threads)
-            and name not in scalar
+            and not name.startswith(_SCALAR)
         ]  # fmt: skip
         if not known or not ours:
             yield what, "≤", most, None, "cargo bench has no figure"
@@ -94,7 +97,11 @@ def _evaluations(found):
     for n in (1002, 4002):
         best = {}
         for (scheme, name, size), value in cost.items():
-            if size == n and name.endswith("1 thread") and not name.startswith("plain"):
+            if (
+                size == n
+                and name.endswith("1 thread")
+                and not name.startswith(_SCALAR)
+            ):
                 best[scheme] = min(value, best.get(scheme, value))
         what = f"slowest other scheme / Jülicher, 1 thread, N = {n}"
         if len(best) < 2 or "Julicher" not in best:

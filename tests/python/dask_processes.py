@@ -15,7 +15,7 @@ def dask_cluster(folder, num_workers):
 
     file = folder / "scheduler.json"
     # A worker that was killed is looked for that long, by default half a minute.
-    environment = dict(os.environ, DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT="5s")
+    environment = dict(os.environ, DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT="10s")
     common = {
         "stdout": subprocess.DEVNULL,
         "stderr": subprocess.DEVNULL,

@@ -151,6 +151,7 @@ def test_verdicts(scripts):
         ("Julicher", "fused, 1 thread", 1002): 20.0,
         ("Espriu", "fused, 1 thread", 1002): 36.0,
         ("Julicher", "plain, 1 thread", 4002): 400.0,
+        ("Julicher", "plain, 2 threads", 4002): 1.0,
         ("Julicher", "fused, 1 thread", 4002): 120.0,
         ("Julicher", "fused, 2 threads", 4002): 48.0,
     }

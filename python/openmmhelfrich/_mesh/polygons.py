@@ -50,7 +50,7 @@ def split(points: Array, faces: Sequence[Any], fail: Callable[[int, str], Except
     sizes = np.array([len(face) for face in faces], dtype=np.int64)
     if (sizes == 3).all():
         return np.array(faces, dtype=np.int64).reshape(-1, 3)
-    # Below 1, so that squares do not overflow; by a power of 2, which changes no digit.
+    # Below 1, so that squares do not overflow; by a power of 2, which changes no digit that counts.
     points = np.ldexp(points, -np.frexp(np.abs(points).max(initial=0.0))[1])
     starts = np.cumsum(sizes - 2) - (sizes - 2)
     triangles = np.empty((int((sizes - 2).sum()), 3), dtype=np.int64)

@@ -50,11 +50,11 @@ class Transformations:
                 f"got {factor!r}"
             )
         box = self.box
-        if box is not None:
-            # A box vector may point the other way; its own axis' component is to be above 0.
-            box = box * factors * np.sign(factors * np.ones(3))[:, np.newaxis] + 0.0
+        # What is not finite then is refused by name.
         with np.errstate(over="ignore"):
-            # Those that are not finite are refused by their vertex.
+            if box is not None:
+                # A box vector may point the other way; its own axis' component is to be above 0.
+                box = box * factors * np.sign(factors * np.ones(3))[:, np.newaxis] + 0.0
             vertices = self.vertices * factors
         return self._with(vertices, box)
 

@@ -57,7 +57,10 @@ def too_many_steps(duration: float, step_size: float) -> str:
     steps = duration / step_size if step_size > 0 else math.inf
     if steps < _MOST_STEPS:
         return ""
-    return f"{duration:g} ps are {steps:.3g} time steps, and {_MOST_STEPS:.0e} would take millennia"
+    return (
+        f"{duration:g} ps are {steps:.3g} time steps of {step_size:g} ps, more than "
+        f"{_MOST_STEPS:.0e}; make the one shorter or the other longer"
+    )
 
 
 class Model(ABC):
