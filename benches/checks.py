@@ -97,11 +97,7 @@ def _evaluations(found):
     for n in (1002, 4002):
         best = {}
         for (scheme, name, size), value in cost.items():
-            if (
-                size == n
-                and name.endswith("1 thread")
-                and not name.startswith(_SCALAR)
-            ):
+            if size == n and name.endswith("1 thread") and not name.startswith(_SCALAR):
                 best[scheme] = min(value, best.get(scheme, value))
         what = f"slowest other scheme / Jülicher, 1 thread, N = {n}"
         if len(best) < 2 or "Julicher" not in best:

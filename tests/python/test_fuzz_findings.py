@@ -320,6 +320,20 @@ def test_points_that_python_takes_for_numbers(point):
         Expression(f"distance(p1,{point})", 2)
 
 
+@pytest.mark.filterwarnings("error")
+def test_energies_that_nothing_can_be_divided_by_are_left_alone():
+    mesh = Mesh.icosphere(1, 3.0)
+    force = mm.CustomCompoundBondForce(3, "5e-324")
+    for triangle in mesh.triangles.tolist():
+        force.addBond(triangle, [])
+    system = mm.System()
+    for _ in range(mesh.num_vertices):
+        system.addParticle(50)
+    system.addForce(force)
+    found, _ = vcm.accelerate(system)
+    assert isinstance(found.getForce(0), mm.CustomCompoundBondForce)
+
+
 @pytest.mark.parametrize(
     "line",
     [

@@ -16,6 +16,8 @@ __all__ = ["TOLERANCE", "Scalar", "fit_rows", "resolve", "solve", "spread", "tri
 TOLERANCE = 1e-10
 # What adds less than this may be rounding.
 _SUSPICIOUS = 1e-5
+# Energies that nothing can be divided by, kJ/mol, and that no membrane has.
+_SMALLEST = 1e-200
 # Within this a fitted value is a number that stands in the expression.
 _SAME = 1e-11
 _SAME_IN_TRIALS = 1e-9
@@ -66,6 +68,8 @@ def solve(features: Array, energy: Array) -> Array | None:
         return None
     if not energy.any():
         return result
+    if np.abs(energy[energy != 0]).min() < _SMALLEST:
+        return None
     active = list(range(features.shape[1]))
     found, weight, error = _squares(features, energy, active)
     if found is None or error > TOLERANCE:
