@@ -61,7 +61,7 @@ class Mesh(Generators, Measures, Transformations):
     Raises
     ------
     MeshError
-        If a shape, a type or a unit is wrong; if a coordinate is not finite or an index out of
+        If a shape, a type or a unit is wrong; if a coordinate is not below 1e100 or an index out of
         range; if a triangle repeats a vertex, repeats another triangle or has no area; if an edge
         belongs to more than two triangles; if the triangles at a vertex form more than one fan; if
         a vertex is unused or lies exactly on another one; if the surface cannot be oriented or is

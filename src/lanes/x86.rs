@@ -178,6 +178,10 @@ unsafe fn rows<const KEEP: u32>(simd: V4, base: *const f64, offsets: *const u32)
 const FIRST: [i64; 8] = [0, 1, 8, 9, 4, 5, 12, 13];
 const THIRD: [i64; 8] = [2, 3, 10, 11, 6, 7, 14, 15];
 
+/// Pairs of numbers in turns, of the lower half of each register and of the upper one.
+const LOWER: [i64; 8] = [0, 1, 8, 9, 2, 3, 10, 11];
+const UPPER: [i64; 8] = [4, 5, 12, 13, 6, 7, 14, 15];
+
 /// Two numbers of a record.
 #[inline(always)]
 unsafe fn two<const BY: u32>(simd: V4, base: *const f64, from: *const u32) -> __m128d {
@@ -204,19 +208,6 @@ impl Records for V4 {
     #[inline(always)]
     fn any(self, mask: Self::m64s) -> bool {
         mask.0 != 0
-    }
-
-    #[inline(always)]
-    unsafe fn gather3(self, base: *const f64, offsets: *const u32) -> [Self::f64s; 3] {
-        // SAFETY: as the caller says.
-        let [a, b, c, d] = unsafe { rows::<{ u32::MAX }>(self, base, offsets) };
-        let ([ac, b], [ac_on, b_on]) =
-            (columns_of_eight(self, [a, b]), columns_of_eight(self, [c, d]));
-        [
-            cast!(chosen(self, [ac, ac_on], FIRST)),
-            cast!(chosen(self, [b, b_on], FIRST)),
-            cast!(chosen(self, [ac, ac_on], THIRD)),
-        ]
     }
 
     #[inline(always)]
@@ -266,10 +257,10 @@ impl Records for V4 {
         let [even_on, odd_on] = columns_of_eight(self, [cast!(c), cast!(d)]);
         // Lanes 0 and 2, 4 and 6, 1 and 3, 5 and 7.
         for (lane, pair, places) in [
-            (0, [even, even_on], [0, 1, 8, 9, 2, 3, 10, 11]),
-            (4, [even, even_on], [4, 5, 12, 13, 6, 7, 14, 15]),
-            (1, [odd, odd_on], [0, 1, 8, 9, 2, 3, 10, 11]),
-            (5, [odd, odd_on], [4, 5, 12, 13, 6, 7, 14, 15]),
+            (0, [even, even_on], LOWER),
+            (4, [even, even_on], UPPER),
+            (1, [odd, odd_on], LOWER),
+            (5, [odd, odd_on], UPPER),
         ] {
             let both = chosen(self, pair, places);
             let first = self.avx512f._mm512_castpd512_pd256(both);
@@ -287,8 +278,8 @@ impl Records for V4 {
         let pair = columns_of_eight(self, [cast!(a), cast!(b)]);
         // SAFETY: as the caller says.
         unsafe {
-            self.avx512f._mm512_storeu_pd(to, chosen(self, pair, [0, 1, 8, 9, 2, 3, 10, 11]));
-            let rest = chosen(self, pair, [4, 5, 12, 13, 6, 7, 14, 15]);
+            self.avx512f._mm512_storeu_pd(to, chosen(self, pair, LOWER));
+            let rest = chosen(self, pair, UPPER);
             self.avx512f._mm512_storeu_pd(to.add(8), rest);
         }
     }

@@ -25,10 +25,16 @@ from running import Running, running
 
 SLOW = os.environ.get("HELFRICH_SLOW_TESTS") == "1"
 SINGLE, DOUBLE = ON_GPU
-# OpenMM has 32 force groups.
 # Borders and contacts are for the processor.
 CLOSED = [case for case in PRESENT if case.surface != "open" and not case.is_contact]
-BATCHES = [CLOSED[first : first + 32] for first in range(0, len(CLOSED), 32)]
+
+
+def in_batches(cases: list[Case]) -> list[list[Case]]:
+    """As many as OpenMM has force groups together."""
+    return [cases[first : first + 32] for first in range(0, len(cases), 32)]
+
+
+BATCHES = in_batches(CLOSED)
 
 every_case = pytest.mark.parametrize("case", CLOSED, ids=str)
 on_device = pytest.mark.parametrize("target", ON_DEVICE, ids=str)
@@ -104,9 +110,7 @@ def test_size_and_place_do_not_matter(radius: float, distance: float, target: Ta
     positions = radius / 160 * base.positions + shift
     # Differences of coordinates near 1e6 nm have lost the digits that they have lost.
     m = Membrane("moved", positions, base.triangles)
-    cases = CLOSED if SLOW else CLOSED[::3]
-    for first in range(0, len(cases), 32):
-        batch = cases[first : first + 32]
+    for batch in in_batches(CLOSED if SLOW else CLOSED[::3]):
         found, reference = (
             Running([case.make(m) for case in batch], m.num_particles, platform)
             for platform in (target, REFERENCE)
