@@ -248,6 +248,27 @@ class TestSeries:
             ExtendedXYZSeries(path).add(frames_of(1))
         assert path.read_bytes() == text
 
+    def test_gsd_that_is_written_while_it_is_read(self, tmp_path, monkeypatch):
+        # What gsd sees of it is a file whose index is newer than its size.
+        import gsd.hoomd
+
+        path = tmp_path / "a.gsd"
+        written_at_once(path, frames_of(3))
+        whole, open_file = path.read_bytes(), gsd.hoomd.open
+        states = []
+
+        def meanwhile(**words):
+            path.write_bytes(states.pop(0) if states else whole)
+            return open_file(**words)
+
+        monkeypatch.setattr(gsd.hoomd, "open", meanwhile)
+        for read in (GSDSeries(path).steps, lambda: analysis.read_gsd(path)):
+            states[:] = [whole[:-1000]] * 2
+            assert len(read()) == 3
+            states[:] = [whole[:-1000]] * 100
+            with pytest.raises(ValueError, match=r"damaged \(Corrupt GSD file"):
+                read()
+
     def test_gsd_of_another_program_is_left_as_it_is(self, tmp_path):
         import gsd.hoomd
 

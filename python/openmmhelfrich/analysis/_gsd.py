@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
@@ -10,7 +11,10 @@ import numpy as np
 
 from .._types import Array
 
-__all__ = ["GSDFrame", "frames_in", "import_gsd", "read_gsd"]
+__all__ = ["GSDFrame", "frames_in", "import_gsd", "open_gsd", "read_gsd"]
+
+# How often a file that looks damaged is looked at, and after how many seconds again.
+_LOOKS, _PAUSE = 5, 0.01
 
 
 class GSDFrame(NamedTuple):
@@ -65,13 +69,44 @@ def frames_in(path: Path, where: str) -> Iterator[GSDFrame]:
     """The frames of a GSD file, one at a time; errors as for `read_gsd`, which name `where`."""
     hoomd = import_gsd(where)
     try:
-        with hoomd.open(name=str(path), mode="r") as file:
+        with open_gsd(hoomd, path) as file:
             for frame in file:
                 yield _read(frame)
     except (OSError, RuntimeError, KeyError) as reason:
         raise ValueError(
             f"{where}: {path} is no GSD file of particles, or is damaged ({reason}); write it anew"
         ) from None
+
+
+def open_gsd(hoomd, path: Path):
+    """A GSD file opened for reading, which a simulation may be writing.
+
+    gsd reads the head, the size, the names and the index one after the other: what is written
+    meanwhile can name data beyond that size, which looks damaged and is not, a moment later.
+
+    Raises
+    ------
+    OSError, RuntimeError
+        gsd's, if it is no GSD file, or if its beginning or its last frame is damaged.
+    """
+    for _ in range(_LOOKS - 1):
+        try:
+            return _open_whole(hoomd, path)
+        except RuntimeError:
+            time.sleep(_PAUSE)
+    return _open_whole(hoomd, path)
+
+
+def _open_whole(hoomd, path: Path):
+    """A GSD file whose last frame can be read."""
+    file = hoomd.open(name=str(path), mode="r")
+    try:
+        if len(file):
+            _ = file[len(file) - 1]
+    except BaseException:
+        file.close()
+        raise
+    return file
 
 
 def _vectors(box: Array) -> Array:

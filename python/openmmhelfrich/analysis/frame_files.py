@@ -14,7 +14,7 @@ import numpy as np
 
 from .._writing import in_memory, naming, replace
 from ._growing import GrowingFile
-from ._gsd import import_gsd
+from ._gsd import import_gsd, open_gsd
 from ._surface_frames import Types, fresh_file
 from .extended_xyz import FORMAT, text_of
 from .gsd_files import Frames, masses_of
@@ -139,7 +139,7 @@ class GSDSeries(FrameFile):
             )
 
     def _steps(self) -> list[int]:
-        with _readable(self.path), self._hoomd.open(name=str(self.path), mode="r") as file:
+        with _readable(self.path), open_gsd(self._hoomd, self.path) as file:
             raw, name = file.file, "configuration/step"
             if len(file):
                 self._require_ours(file)
@@ -153,7 +153,7 @@ class GSDSeries(FrameFile):
     def _shorten(self, num_frames: int) -> None:
         with (
             fresh_file(self.path) as fresh,
-            self._hoomd.open(name=str(self.path), mode="r") as old,
+            open_gsd(self._hoomd, self.path) as old,
             self._hoomd.open(name=str(fresh), mode="w") as new,
         ):
             for number in range(num_frames):
