@@ -95,7 +95,8 @@ def equilibrate(vesicle, options):
     integrator.setRandomNumberSeed(options.seed)
     simulation = vesicle.simulation(integrator, options.platform)
     print(f", platform {simulation.context.getPlatform().getName()}\n")
-    simulation.minimizeEnergy()
+    # OpenMM's own tolerance is above all forces of a membrane.
+    simulation.minimizeEnergy(tolerance=0.01)
     simulation.context.setVelocitiesToTemperature(TEMPERATURE, options.seed)
     simulation.step(min(20_000, options.steps))
     state = simulation.context.getState(getPositions=True, getVelocities=True)

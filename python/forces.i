@@ -33,6 +33,17 @@ using namespace HelfrichPlugin;
 }
 
 %apply int& OUTPUT { int& particle1, int& particle2, int& particle3 };
+/* SWIG takes Python's own int only; NumPy's have an index, too. */
+%typemap(in) int {
+    PyObject* number = PyNumber_Index($input);
+    long value = number == NULL ? -1 : PyLong_AsLong(number);
+    Py_XDECREF(number);
+    bool isNone = PyErr_Occurred() != NULL;
+    PyErr_Clear();
+    if (isNone || value != (long) (int) value)
+        SWIG_exception_fail(SWIG_TypeError, "in method '$symname', argument $argnum must be an integer of 32 bits");
+    $1 = (int) value;
+}
 /* Not SWIG's pybuffer.i: before Python 3.11 the stable ABI has no buffers. */
 %typemap(in) (const char* data, size_t size) (char* bytes, Py_ssize_t length) {
     if (PyBytes_AsStringAndSize($input, &bytes, &length) != 0)

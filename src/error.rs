@@ -213,7 +213,9 @@ pub enum Error {
     DeviceFailure { adapter: String, reason: String },
 
     /// A name that is none of the backends.
-    #[error("there is no backend \"{name}\"; known are: auto, cpu, gpu, gpu:single, gpu:double")]
+    #[error(
+        "there is no backend \"{name}\"; known are: auto, cpu, native, gpu, gpu:single, gpu:double"
+    )]
     UnknownBackend { name: String },
 
     /// Forces that share an evaluation ask for different backends.

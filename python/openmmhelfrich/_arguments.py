@@ -65,7 +65,7 @@ def accept_units(force: type) -> None:
         for s in known:
             given = arguments[s.name]
             where = f"{name}: {s.name}"
-            if s.element_setter is not None and np.ndim(plain_value(where, s, given)) > 0:
+            if s.element_setter is not None and _are_many(plain_value(where, s, given)):
                 elements[s] = element_values(name, s, given)
                 # Any scalar is allowed to be 1, until the values themselves are accepted.
                 given = 1.0
@@ -103,6 +103,11 @@ def accept_units(force: type) -> None:
     if numbers is not None:
         accept_vertex_numbers(force, numbers, give_method)
     own_what_is_cast(force)
+
+
+def _are_many(value) -> bool:
+    """Whether there is a value for each element; lists may hold Quantities, or no numbers."""
+    return isinstance(value, (list, tuple)) or np.ndim(value) > 0
 
 
 def accept_in_constructor(force: type, parameters: list[inspect.Parameter], start) -> None:

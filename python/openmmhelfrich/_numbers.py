@@ -19,6 +19,7 @@ from ._types import Array
 from .errors import MeshError
 
 __all__ = [
+    "FARTHEST",
     "checked_field",
     "checked_number",
     "finite_array",
@@ -30,6 +31,10 @@ __all__ = [
     "values_in",
     "whole_number",
 ]
+
+
+FARTHEST = 1e100
+"""Lengths, nm, whose cubes may overflow, so that no mesh has them."""
 
 
 def whole_number(value, where: str, name: str, least: int, most: int | None = None) -> int:
@@ -182,7 +187,7 @@ def length(value, where: str, name: str) -> float:
     Raises
     ------
     MeshError
-        If the value is not one finite number, or a Quantity of another dimension.
+        If the value is not one number below 1e100, or a Quantity of another dimension.
     """
     plain = _strip_length(value, where, name)
     try:
@@ -191,6 +196,8 @@ def length(value, where: str, name: str) -> float:
         raise MeshError(f"{where}: {name} must be one number in nm, got {plain!r}") from None
     if not np.isfinite(number):
         raise MeshError(f"{where}: {name} must be finite, got {number}")
+    if abs(number) >= FARTHEST:
+        raise MeshError(f"{where}: {name} must be below {FARTHEST:g} nm, got {number}")
     return number
 
 
@@ -228,6 +235,8 @@ def length_array(value, where: str, name: str) -> np.ndarray:
 
 def checked_field(name, value, dimension, mesh, negative=False):
     """One number, or an array of one for each vertex of the mesh."""
+    if isinstance(value, (list, tuple)) and any(_is_quantity(one) for one in value):
+        value = [checked_number(name, one, dimension, negative=negative) for one in value]
     bare = value.value_in_unit(value.unit) if _is_quantity(value) else value
     try:
         single = np.ndim(bare) == 0

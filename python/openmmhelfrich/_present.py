@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from openmm import unit
+from openmm import Context, unit
 
 from ._types import Array
 from .forces import (
@@ -15,10 +15,21 @@ from .forces import (
     SurfaceViscosityThermostat,
 )
 
-__all__ = ["is_periodic", "present_box", "present_triangles", "surfaces_of"]
+__all__ = ["context_of", "is_periodic", "present_box", "present_triangles", "surfaces_of"]
 
 _MOVERS = (MonteCarloBondFlip, MonteCarloDomainSwap)
 _CLASSES = [*_MOVERS, *MembraneForce.__subclasses__(), SurfaceViscosityThermostat]
+
+
+def context_of(where: str, given) -> Context:
+    """A Context, or that of a Simulation; TypeError for anything else."""
+    found = getattr(given, "context", given)
+    if not isinstance(found, Context):
+        raise TypeError(
+            f"{where}: context needs an openmm.Context, or a Simulation that has one, got "
+            f"{type(given).__name__}"
+        )
+    return found
 
 
 def is_periodic(context, force) -> bool:

@@ -331,6 +331,8 @@ class Mesh(Generators, Measures, Transformations):
         ------
         MeshError
             If the mesh has a box and the force is one on triangles that does not use it.
+        TypeError
+            No Force.
         """
         return on_openmm.energy(self._vertices, force, self._box)
 

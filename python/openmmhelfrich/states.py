@@ -15,7 +15,7 @@ from openmm import unit
 
 from . import _blocks, _writing
 from ._mesh.inputs import box_array
-from ._present import surfaces_of
+from ._present import context_of, surfaces_of
 from ._snapshots import all_of, tensions_of, thermostats_of
 from ._types import File
 from .forces import MonteCarloMembraneTension, SurfaceViscosityThermostat
@@ -50,7 +50,7 @@ def save_state(context: Any, path: File) -> None:
 
     Parameters
     ----------
-    context : openmm.Context
+    context : openmm.Context or openmm.app.Simulation
     path : str or path-like
         The file; it is replaced in one go, so that there is always a whole one. It has a checksum
         and a version.
@@ -60,6 +60,7 @@ def save_state(context: Any, path: File) -> None:
     OSError
         If the file cannot be written.
     """
+    context = context_of("save_state", context)
     state = context.getState(getPositions=True, getVelocities=True, getParameters=True)
     arrays = {
         "positions": state.getPositions(asNumpy=True),
@@ -95,7 +96,7 @@ def load_state(context: Any, path: File) -> None:
 
     Parameters
     ----------
-    context : openmm.Context
+    context : openmm.Context or openmm.app.Simulation
         With as many particles, with forces on the same surfaces, and with all parameters that were
         saved; on any platform.
     path : str or path-like
@@ -112,7 +113,7 @@ def load_state(context: Any, path: File) -> None:
         If the connectivity is not one of these particles, or is not allowed by a
         MonteCarloBondFlip. Nothing has changed then.
     """
-    name = Path(path)
+    context, name = context_of("load_state", context), Path(path)
     try:
         blocks = _blocks.unpack(name.read_bytes(), _KIND, _KNOWN)
     except _blocks.BlockError as reason:

@@ -16,6 +16,7 @@ from openmm import unit
 from ._in_systems import InSystems
 from ._numbers import checked_field, checked_number
 from ._types import Scalar, Values
+from ._values import form_number
 from ._vesicle_flips import checked_flips, mover_of
 from ._vesicle_parameters import Parameters
 from ._vesicle_skeleton import checked_skeleton, skeleton_of
@@ -199,7 +200,7 @@ class Vesicle(InSystems, Parameters, TimeScales):
         self._softness = checked_number("softness", softness, unit.dimensionless)
         self._epsilon = checked_number("epsilon", epsilon, _ENERGY)
         self._mass = checked_number("mass", mass, unit.dalton, zero=False)
-        self._scheme = scheme
+        self._scheme = form_number("BendingForce", "scheme", scheme)
         self._spontaneous_curvature = checked_field(
             "spontaneous_curvature", spontaneous_curvature, nm**-1, mesh, negative=True
         )

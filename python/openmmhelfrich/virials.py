@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ._present import surfaces_of
+from ._present import context_of, surfaces_of
 from ._types import Array
 
 __all__ = ["virial"]
@@ -26,7 +26,7 @@ def virial(context: Any, groups: int | Iterable[int] = -1) -> Array:
 
     Parameters
     ----------
-    context : openmm.Context
+    context : openmm.Context or openmm.app.Simulation
         One with positions. All membrane forces in it count, of all surfaces.
     groups : int or iterable of int
         The force groups that count, as `Context.getState` takes them: bits of an integer, or the
@@ -39,6 +39,8 @@ def virial(context: Any, groups: int | Iterable[int] = -1) -> Array:
 
     Raises
     ------
+    TypeError
+        No Context, or groups that are no integers.
     openmm.OpenMMException
         Where an evaluation of the energy would raise it.
 
@@ -46,10 +48,16 @@ def virial(context: Any, groups: int | Iterable[int] = -1) -> Array:
     -----
     It costs as much as some evaluations of the energy on one thread, on the processor.
     """
-    if isinstance(groups, Iterable):
-        groups = sum(1 << group for group in set(groups))
-    # OpenMM's C++ has the 32 groups in an int, the last of which is its sign.
-    bits = ctypes.c_int32(groups).value
+    context = context_of("virial", context)
+    try:
+        if isinstance(groups, Iterable):
+            groups = sum(1 << group for group in set(groups))
+        # OpenMM's C++ has the 32 groups in an int, the last of which is its sign.
+        bits = ctypes.c_int32(groups).value
+    except (TypeError, ValueError):
+        raise TypeError(
+            f"virial: groups needs force groups from 0 to 31, or bits of an integer, got {groups!r}"
+        ) from None
     surfaces = surfaces_of(context)
     if not surfaces:
         return np.zeros((3, 3))

@@ -13,6 +13,9 @@ use std::collections::HashMap;
 /// Coordinates, nm, whose cubes may overflow.
 const FARTHEST: f64 = 1e100;
 
+/// How much of a triangle's height rounding may have made, as a share of the coordinates.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
 /// Validate a mesh and turn its triangles so that each closed component has positive volume. A component with borders, or
 /// whose volume is lost in rounding, keeps the orientation of its first triangle.
 ///
@@ -63,7 +66,10 @@ pub fn oriented(
             if !normal.norm_squared().is_finite() {
                 return Err(Error::OverflownTriangle { triangle, corners: corners[triangle] });
             }
-            if normal.norm_squared() == 0.0 {
+            // A height that is lost in the rounding of coordinates is none.
+            let given = corners[triangle].map(|vertex| Vec3::from(vertices[vertex as usize]));
+            let (far, longest) = (largest(given), largest([sides[0], sides[1], c - b]));
+            if normal.norm() <= ROUNDING * far * longest {
                 return Err(Error::DegenerateTriangle { triangle, corners: corners[triangle] });
             }
             let sign = if flipped[triangle] == Some(true) { -1.0 } else { 1.0 };
@@ -104,6 +110,10 @@ pub fn is_inside_out(mesh: &Triangulation, positions: &[f64]) -> Option<(bool, T
     // π d³ / 6 of a sphere of area π d².
     let sphere = totals.area.powf(1.5) / (36.0 * std::f64::consts::PI).sqrt();
     sphere.is_finite().then_some((totals.volume < -NOTHING * sphere, totals))
+}
+
+fn largest(vectors: [Vec3; 3]) -> f64 {
+    vectors.iter().fold(0.0, |most: f64, vector| most.max(vector.norm()))
 }
 
 /// Visit the component of `seed` and note which of its triangles must be flipped to agree with it. Returns the
@@ -346,10 +356,18 @@ mod tests {
     fn a_triangle_on_a_line_is_refused() {
         let (mut vertices, triangles) = octahedron();
         let [a, b, c] = triangles[0].map(|v| v as usize);
-        vertices[c] = std::array::from_fn(|k| 3.0 * vertices[a][k] - 2.0 * vertices[b][k]);
-        assert!(matches!(
-            oriented(&vertices, &triangles, None),
-            Err(Error::DegenerateTriangle { triangle: 0, .. })
-        ));
+        for (along, push) in [(3.0, [0.0; 3]), (0.3, [0.0; 3]), (0.3, [2e-16, -1e-16, 3e-16])] {
+            vertices[c] = std::array::from_fn(|k| {
+                along * vertices[a][k] + (1.0 - along) * vertices[b][k] + push[k]
+            });
+            assert!(matches!(
+                oriented(&vertices, &triangles, None),
+                Err(Error::DegenerateTriangle { triangle: 0, .. })
+            ));
+        }
+        vertices[c][0] += 1e-14;
+        vertices[c][1] += 1e-14;
+        vertices[c][2] += 1e-14;
+        assert!(oriented(&vertices, &triangles, None).is_ok());
     }
 }

@@ -36,6 +36,20 @@ def test_clockwise_triangles_are_refused(target: Target, bending_first: bool):
             run.evaluate(mesh.vertices)
 
 
+def test_clockwise_triangles_turn_the_sign():
+    """Of a spontaneous curvature, an area difference and angles at rest, as the headers say."""
+    mesh = sphere()
+    clockwise = mesh.triangles[:, [0, 2, 1]]
+    for make in (
+        lambda corners, sign: helfrich.BendingForce(corners, 50.0, sign * 0.02),
+        lambda corners, sign: helfrich.AreaDifferenceForce(corners, 1.0, sign * 120.0),
+        lambda corners, sign: helfrich.DihedralForce(corners, 1.0, "Cosine", sign * 0.2),
+    ):
+        energy = mesh.energy(make(mesh, 1))
+        assert mesh.energy(make(clockwise, -1)) == pytest.approx(energy, rel=1e-12)
+        assert mesh.energy(make(clockwise, 1)) > 1.1 * energy
+
+
 def test_a_mesh_turns_them():
     mesh = sphere()
     turned = helfrich.Mesh(mesh.vertices, mesh.triangles[:, [0, 2, 1]])

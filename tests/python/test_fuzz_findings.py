@@ -144,7 +144,10 @@ def test_coordinates_whose_cubes_are_no_numbers_are_named(tmp_path, far):
 def test_a_mesh_whose_volume_is_lost_comes_back_as_it_was(tmp_path):
     sphere = Mesh.icosphere(1, 10.0)
     vertices = sphere.vertices.copy()
-    vertices[np.flatnonzero(vertices[:, 0] == 0)[0], 0] = 1e12
+    # Along the plane of what is around it, so that the volume stays, but not along a side.
+    a, b, c = np.moveaxis(vertices[sphere.triangles[(sphere.triangles == 0).any(axis=1)]], 1, 0)
+    around = np.cross(b - a, c - a).sum(axis=0)
+    vertices[0] = 1e12 * np.cross(around / np.linalg.norm(around), [3.0, -5.0, 8.0])
     for triangles in (sphere.triangles, sphere.triangles[:, ::-1]):
         mesh = Mesh(vertices, triangles)
         mesh.write(tmp_path / "m.ply")
@@ -154,6 +157,32 @@ def test_a_mesh_whose_volume_is_lost_comes_back_as_it_was(tmp_path):
 def test_a_mode_of_four_thousand_million_is_refused():
     with pytest.raises(MeshError, match="l must be 1000 or less, got 4294967295"):
         Mesh.icosphere(1, 10.0).deformed(4294967295, 0, 0.1)
+
+
+@pytest.mark.filterwarnings("error")
+def test_lengths_beyond_use_are_refused():
+    with pytest.raises(
+        MeshError, match=r"Mesh\.disk: radius must be below 1e\+100 nm, got 1e\+308"
+    ):
+        Mesh.disk(8, 1e308)
+    sphere = Mesh.icosphere(1, 10.0)
+    with pytest.raises(MeshError, match=r"Mesh: box must be below 1e\+100 nm"):
+        Mesh(sphere.vertices, sphere.triangles, np.eye(3) * 1e308)
+    with pytest.raises(MeshError, match=r"deformed: amplitude 1e\+308 moves vertex"):
+        sphere.deformed(2, 0, 1e308)
+
+
+@pytest.mark.parametrize("merge", [None, 0.1])
+def test_gmsh_files_that_count_more_nodes_than_they_have(tmp_path, merge):
+    """meshio makes room for all, and leaves those that do not come as the memory was."""
+    Mesh.icosphere(1, 10.0).write(tmp_path / "m.msh")
+    data = (tmp_path / "m.msh").read_bytes()
+    begin = data.index(b"$Nodes\n") + len(b"$Nodes\n") + 8
+    assert data[begin : begin + 8] == (12).to_bytes(8, "little")
+    damaged = data[:begin] + (7_200_000).to_bytes(8, "little") + data[begin + 8 :]
+    (tmp_path / "m.msh").write_bytes(damaged)
+    with pytest.raises(MeshError, match=r"m\.msh: says that it has 7200000 nodes, .* too short"):
+        Mesh.read(tmp_path / "m.msh", merge=merge)
 
 
 # --- configurations ------------------------------------------------------------------------------
@@ -196,6 +225,11 @@ def test_numbers_of_vcm_are_those_of_c(tmp_path, word):
             "4: key CoordinateTranslateVector: .* are both at",
         ),
         ("-Membrane 0\nMeshFile m.ply\nScale 1e308", "3: key MeshFile: .* not finite"),
+        ("-Membrane 0\nMeshFile m.ply\nULM 1e308 2 0", "4: key ULM: .*amplitude 1e\\+308"),
+        (
+            "-Membrane 0\nMeshFile m.ply\nNUL 1 0.1 9223372036854775807",
+            "4: key NUL: expected .* lmax from 2 to 1000",
+        ),
     ],
 )
 def test_numbers_beyond_use_are_named(tmp_path, lines, words):

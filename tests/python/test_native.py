@@ -7,6 +7,8 @@ that platform.
 
 from __future__ import annotations
 
+import copy
+
 import numpy as np
 import openmm as mm
 import openmmhelfrich as helfrich
@@ -130,6 +132,14 @@ def test_derivatives_need_it():
     force = helfrich.BendingForce(m.triangles, 50)
     force.setContextParameter("rigidity", "kappa")
     force.addEnergyParameterDerivative("kappa")
+    run = Running([copy.deepcopy(force)], m.num_particles, UNASKED)
+    with counting() as made:
+        run.context.setPositions(m.positions)
+        state = run.context.getState(energy=True, parameterDerivatives=True)
+    assert made == {"native": 1}
+    energy = state.getPotentialEnergy().value_in_unit(unit.kilojoule_per_mole)
+    assert state.getEnergyParameterDerivatives()["kappa"] == pytest.approx(energy / 50, rel=1e-5)
+    force.setBackend("cpu")
     with pytest.raises(mm.OpenMMException, match=r'energy parameter derivatives need .*"native"'):
         Running([force], m.num_particles, UNASKED)
 

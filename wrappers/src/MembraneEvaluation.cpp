@@ -48,8 +48,9 @@ bool SharedMembrane::startNative(const MembraneForce& force, ContextImpl& contex
             throw OpenMMException(force.getTypeName() + ": the backend \"native\" cannot be had here: " + reason);
         return false;
     }
-    // An OpenCL driver that computes on the processor is slower there than our own code.
-    if (!isMust && NativeMembrane::isOnProcessor(context))
+    // An OpenCL driver that computes on the processor is slower there than our own code, which has no derivatives
+    // there.
+    if (!isMust && force.getNumEnergyParameterDerivatives() == 0 && NativeMembrane::isOnProcessor(context))
         return false;
     // Contacts and volumes in a periodic box are for the processor, whatever evaluates the rest.
     if (!Helfrich_Native_canEvaluate(potential, force.usesPeriodicBoundaryConditions()))

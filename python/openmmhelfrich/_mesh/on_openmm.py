@@ -37,6 +37,8 @@ def energy(vertices: Array, force, box: Array | None) -> float:
     import openmm
     from openmm import unit
 
+    if not isinstance(force, openmm.Force):
+        raise TypeError(f"Mesh.energy: force needs an openmm.Force, got {type(force).__name__}")
     if box is not None:
         _check_periodic(force)
     system = openmm.System()

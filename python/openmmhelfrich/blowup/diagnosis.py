@@ -249,7 +249,8 @@ def _beginning(replay: Replay) -> list[str]:
         f"Start: it was never normal. At step {first.step} the largest force, {first.force:.4g} "
         f"kJ/mol/nm on particle {first.particle}, moves it by {moved:.3g} nm in a step, where the "
         f"least high triangle has {first.height:.4g} nm: minimise the energy first "
-        "(simulation.minimizeEnergy(), minimise = true in TOML), or start from another mesh"
+        "(simulation.minimizeEnergy(tolerance=0.01), minimise = true in TOML), or start from "
+        "another mesh"
     ]
 
 

@@ -63,6 +63,14 @@ def accelerate(
     Report
         What was replaced, what was left alone and why. It can be printed.
 
+    Raises
+    ------
+    TypeError
+        No System.
+    ValueError
+        Positions of another shape; a parameter to freeze that no force has, or of which forces have
+        different defaults.
+
     Notes
     -----
     Without positions and without a volume force, nothing says which side of a surface is outside;
@@ -79,6 +87,11 @@ def accelerate(
     >>> print(report)
     >>> faster, report = accelerate(system, positions, freeze=["hc"])
     """
+    if not isinstance(system, mm.System):
+        raise TypeError(
+            f"accelerate: system needs an openmm.System, got {type(system).__name__}; that of a "
+            "Simulation is simulation.system"
+        )
     if positions is not None:
         if unit.is_quantity(positions):
             positions = positions.value_in_unit(unit.nanometer)
