@@ -736,7 +736,7 @@ BAD = [
     ("membrane", "LockOnPotential", "Spere", "did you mean Sphere?"),
     ("membrane", "LockOnPotential", "ULM2_0", "expected 2 values, got 'ULM2_0'"),
     ("membrane", "ULM", "0.1 2 3", "-l ≤ m ≤ l, got l 2, m 3"),
-    ("membrane", "NUL", "1 0.1 1", "lmax ≥ 2"),
+    ("membrane", "NUL", "1 0.1 1", "lmax from 2 to 1000"),
 ]
 
 

@@ -6,7 +6,7 @@ import operator
 
 import numpy as np
 
-from .._numbers import length_array
+from .._numbers import FARTHEST, length_array
 from .._types import Array
 from ..errors import MeshError
 
@@ -63,6 +63,8 @@ def triangle_array(triangles) -> Array:
 def box_array(box, where: str) -> Array:
     """Box vectors as a read-only float64 array of shape (3, 3), nm, in OpenMM's reduced form."""
     rows = length_array(box, where, "box")
+    if rows.shape == (3, 3) and (abs(rows) >= FARTHEST).any():
+        raise MeshError(f"{where}: box must be below {FARTHEST:g} nm, got {rows.tolist()} nm")
     if rows.shape != (3, 3) or not np.isfinite(rows).all():
         raise MeshError(f"{where}: box must be three vectors a, b, c, shape (3, 3), got {box!r}")
     (ax, *ay), (bx, by, bz), (cx, cy, cz) = rows

@@ -25,6 +25,8 @@ __all__ = ["meshio_extensions", "read_meshio", "read_trimesh", "trimesh_extensio
 # Cells of no area, such as the points and lines of a Gmsh model, do not matter to a surface.
 _IGNORED = ("vertex", "line")
 _FACES = ("triangle", "quad", "polygon")
+# The fewest bytes of a node in a Gmsh file: a number and three coordinates with what parts them.
+_LEAST_NODE = 8
 
 
 def meshio_extensions() -> set[str]:
@@ -55,6 +57,11 @@ def read_meshio(source: Source) -> tuple[Array, Array]:
     """
     mesh = _load(source)
     source.by_line = False
+    if _is_gmsh(source) and len(mesh.points) * _LEAST_NODE > len(source.data):
+        # meshio makes room for as many as the file says, and leaves what does not come as it is.
+        raise source.error(
+            f"says that it has {len(mesh.points)} nodes, for which it is too short; write it anew"
+        )
     faces: list[Any] = []
     ignored = [np.empty(0, dtype=np.int64)]
     points = np.asarray(mesh.points, dtype=np.float64)
@@ -121,12 +128,16 @@ def read_trimesh(path: Path) -> tuple[Array, Array]:
     return vertices, numbers.reshape(-1, 3)
 
 
+def _is_gmsh(source: Source) -> bool:
+    return source.data.startswith((b"$MeshFormat", b"$Comments"))
+
+
 def _load(source: Source):
     """The file as meshio's mesh; any failure becomes a MeshError, with the line if it is known."""
     import meshio
     from meshio.gmsh.main import read_buffer as read_gmsh
 
-    is_gmsh = source.data.startswith((b"$MeshFormat", b"$Comments"))
+    is_gmsh = _is_gmsh(source)
     printed = io.StringIO()
     # An open file, rather than a path, tells afterwards how far meshio came; numpy's reader needs
     # a real one, and this one begins without a byte-order mark.

@@ -7,6 +7,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from .._numbers import FARTHEST
 from .._types import Array
 from ..errors import MeshError
 
@@ -14,8 +15,6 @@ __all__ = ["doubled", "drop", "hints", "merge"]
 
 # Vertices of no common edge that are nearer than this part of the median edge are worth a hint.
 _NEAR = 1e-2
-# Squares of longer coordinates, nm, overflow soon; no mesh is valid with them.
-_HUGE = 1e100
 # Neighbours per vertex beyond which a distance is no tolerance; pairs would fill the memory.
 _MANY = 100
 
@@ -125,4 +124,4 @@ def _in_range(points: Array, triangles: Array) -> bool:
 
 def _sound(points: Array, triangles: Array) -> bool:
     """Whether distances and indices mean something; if not, the validation says why."""
-    return len(points) > 0 and bool((abs(points) < _HUGE).all()) and _in_range(points, triangles)
+    return len(points) > 0 and bool((abs(points) < FARTHEST).all()) and _in_range(points, triangles)

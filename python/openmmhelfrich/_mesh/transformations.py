@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 
     from ..mesh import Mesh
 
-__all__ = ["Transformations"]
+__all__ = ["LARGEST_L", "Transformations"]
 
 # Waves that short need a million vertices.
-_LARGEST_L = 1000
+LARGEST_L = 1000
 
 
 class Transformations:
@@ -127,8 +127,8 @@ class Transformations:
         where = "Mesh.deformed"
         self._refuse_box(where)
         l = integer(l, where, "l", 0)
-        if l > _LARGEST_L:
-            raise MeshError(f"{where}: l must be {_LARGEST_L} or less, got {l}")
+        if l > LARGEST_L:
+            raise MeshError(f"{where}: l must be {LARGEST_L} or less, got {l}")
         m = integer(m, where, "m", -l)
         if m > l:
             raise MeshError(f"{where}: m must be {l} or less, as l is, got {m}")
@@ -145,7 +145,9 @@ class Transformations:
         from ..analysis.harmonics import one_harmonic
 
         directions = self.vertices / distance[:, np.newaxis]
-        factor = 1 + amplitude * one_harmonic(directions, l, m)
+        with np.errstate(over="ignore"):
+            # What is beyond all numbers is refused below, or by the mesh.
+            factor = 1 + amplitude * one_harmonic(directions, l, m)
         if not (factor > 0).all():
             raise MeshError(
                 f"{where}: amplitude {amplitude} moves vertex {np.argmin(factor)} to the origin or "

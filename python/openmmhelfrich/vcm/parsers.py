@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from .._mesh.transformations import LARGEST_L
 from .._types import Array
 from .grammar import nearest
 
@@ -279,6 +280,9 @@ def random_deformation(words: tuple[str, ...]) -> tuple[int, float, int]:
     """Number n of random harmonics, their amplitude u, and the largest degree."""
     _count(words, 3)
     count, amplitude, lmax = _int(words[0]), _float(words[1]), _int(words[2])
-    if count < 0 or lmax < 2:
-        raise ValueError(f"expected n u lmax with n ≥ 0 and lmax ≥ 2, got n {count}, lmax {lmax}")
+    if count < 0 or not 2 <= lmax <= LARGEST_L:
+        raise ValueError(
+            f"expected n u lmax with n ≥ 0 and lmax from 2 to {LARGEST_L}, got n {count}, "
+            f"lmax {lmax}"
+        )
     return count, amplitude, lmax
