@@ -18,7 +18,7 @@
 #![allow(clippy::too_many_arguments, reason = "a class has as many as it has")]
 
 use super::shim;
-use crate::openmm::{OpenMM_Context, OpenMM_Force};
+use crate::openmm::{OpenMM_Context, OpenMM_Force, OpenMM_Integrator};
 use crate::potentials::codes::Status as Helfrich_Status;
 use std::ffi::{c_char, c_double, c_int};
 

@@ -145,6 +145,13 @@ def test_c_reports_what_is_wrong(tmp_path):
     assert lines[2] == "7"
 
 
+def test_c_reads_what_it_has_set_and_goes_on_elsewhere(tmp_path):
+    """Forms, switches, values of elements, integrators, and connectivity of another Context."""
+    compiler, source = os.environ.get("CC", "cc").split(), PROJECT / "tests/cpp/octahedron.c"
+    lines = compile_and_run(compiler, source, [], tmp_path, tmp_path).splitlines()
+    assert lines == ["2 1 0 6 6 1", "300 7 1", "0 1 1 1"]
+
+
 def test_every_force_class_has_its_c_functions():
     """A force that is added to the C++ list must come to C programs, too."""
     header = (Path(helfrich.include_path()) / "OpenMMHelfrichCForces.h").read_text()

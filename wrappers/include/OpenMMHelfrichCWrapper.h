@@ -46,6 +46,10 @@ extern Helfrich_Status Helfrich_MembraneForce_setParameterValue(OpenMM_Force* fo
 /** One value for each vertex (in ascending order of particle index) or triangle; count 0 goes back. */
 extern Helfrich_Status Helfrich_MembraneForce_setElementValues(OpenMM_Force* force, const char* parameter,
                                                                const double* values, int count);
+/** Returns how many values of single elements a scalar has: 0 without, or -1 for failure. */
+extern int Helfrich_MembraneForce_getNumElementValues(OpenMM_Force* force, const char* parameter);
+extern Helfrich_Status Helfrich_MembraneForce_getElementValues(OpenMM_Force* force, const char* parameter,
+                                                               double* values);
 /**
  * Set where the vertices are at rest: three numbers for each, nm, in ascending order of particle index. `boxVectors`
  * are the nine numbers of the periodic box in which that is, nm, or null. Forces with a reference need it after their
@@ -55,9 +59,14 @@ extern Helfrich_Status Helfrich_MembraneForce_setReference(OpenMM_Force* force, 
                                                            int numVertices, const double* boxVectors);
 /** Choose a bending scheme or a form of the dihedral potential or of springs. */
 extern Helfrich_Status Helfrich_MembraneForce_setForm(OpenMM_Force* force, int form);
+/** Returns -1 for failure. */
+extern int Helfrich_MembraneForce_getForm(OpenMM_Force* force);
 /** Switch something on or off: "unsignedSpontaneousCurvature" of a BendingForce. */
 extern Helfrich_Status Helfrich_MembraneForce_setSwitch(OpenMM_Force* force, const char* name, int on);
-/** What computes the force: "cpu", "gpu", "gpu:single", "gpu:double", "auto", or "" for what the process has chosen. */
+/** Returns 1, 0, or -1 for failure. */
+extern int Helfrich_MembraneForce_getSwitch(OpenMM_Force* force, const char* name);
+/** What computes the force: "cpu", "native", "gpu", "gpu:single", "gpu:double", "auto", or "" for the choice of the
+ * process. */
 extern Helfrich_Status Helfrich_MembraneForce_setBackend(OpenMM_Force* force, const char* backend);
 /** Say whether the surface lives in the periodic box of the Context. */
 extern Helfrich_Status Helfrich_MembraneForce_setUsesPeriodicBoundaryConditions(OpenMM_Force* force, int periodic);
@@ -83,6 +92,15 @@ extern Helfrich_Status Helfrich_MembraneForce_getPermutationInContext(OpenMM_For
                                                                       int* permutation);
 extern Helfrich_Status Helfrich_MembraneForce_setPermutationInContext(OpenMM_Force* force, OpenMM_Context* context,
                                                                       const int* permutation, int numVertices);
+/**
+ * Copy all that is needed to go on with the same triangles and bits, but positions, if the buffer has room for it;
+ * returns its length, or -1 for failure.
+ */
+extern int64_t Helfrich_MembraneForce_saveConnectivity(OpenMM_Force* force, OpenMM_Context* context, char* buffer,
+                                                       int64_t size);
+/** Go on with what Helfrich_MembraneForce_saveConnectivity() has copied. */
+extern Helfrich_Status Helfrich_MembraneForce_restoreConnectivity(OpenMM_Force* force, OpenMM_Context* context,
+                                                                  const char* saved, int64_t size);
 
 /* What some forces have beside their scalars. */
 
@@ -213,6 +231,28 @@ extern Helfrich_Status Helfrich_SurfaceViscosityThermostat_setRandomNumberSeed(O
 extern Helfrich_Status Helfrich_SurfaceViscosityThermostat_setFrictionParameter(OpenMM_Force* force, const char* name);
 extern Helfrich_Status Helfrich_SurfaceViscosityThermostat_updateParametersInContext(OpenMM_Force* force,
                                                                                      OpenMM_Context* context);
+
+/*
+ * Integrators of membranes whose vertices carry the mass of their plaquettes. The functions of OpenMM_Integrator are
+ * for these, too. Getters return NaN or -1 for failure. A density of 0 stands for surfaces of constant mass.
+ */
+extern OpenMM_Integrator* Helfrich_VariableMassVerletIntegrator_create(double stepSize, double density);
+extern double Helfrich_VariableMassVerletIntegrator_getDensity(OpenMM_Integrator* integrator);
+extern Helfrich_Status Helfrich_VariableMassVerletIntegrator_setDensity(OpenMM_Integrator* integrator, double density);
+extern OpenMM_Integrator* Helfrich_VariableMassLangevinIntegrator_create(double temperature, double frictionCoeff,
+                                                                         double stepSize, double density);
+extern double Helfrich_VariableMassLangevinIntegrator_getDensity(OpenMM_Integrator* integrator);
+extern Helfrich_Status Helfrich_VariableMassLangevinIntegrator_setDensity(OpenMM_Integrator* integrator,
+                                                                          double density);
+extern double Helfrich_VariableMassLangevinIntegrator_getTemperature(OpenMM_Integrator* integrator);
+extern Helfrich_Status Helfrich_VariableMassLangevinIntegrator_setTemperature(OpenMM_Integrator* integrator,
+                                                                              double temperature);
+extern double Helfrich_VariableMassLangevinIntegrator_getFriction(OpenMM_Integrator* integrator);
+extern Helfrich_Status Helfrich_VariableMassLangevinIntegrator_setFriction(OpenMM_Integrator* integrator,
+                                                                           double friction);
+extern int Helfrich_VariableMassLangevinIntegrator_getRandomNumberSeed(OpenMM_Integrator* integrator);
+extern Helfrich_Status Helfrich_VariableMassLangevinIntegrator_setRandomNumberSeed(OpenMM_Integrator* integrator,
+                                                                                   int randomNumberSeed);
 
 #ifdef __cplusplus
 }

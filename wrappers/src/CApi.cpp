@@ -28,6 +28,14 @@ Wanted& as(const string& name, void* force) {
     return *found;
 }
 
+template <class Wanted>
+Wanted& asIntegrator(const string& name, void* integrator) {
+    auto* found = dynamic_cast<Wanted*>(static_cast<OpenMM::Integrator*>(integrator));
+    if (found == nullptr)
+        throw OpenMMException(name + ": the integrator is of another class");
+    return *found;
+}
+
 MembraneForce& asForce(void* force) {
     return as<MembraneForce>("MembraneForce", force);
 }
@@ -77,6 +85,12 @@ Value valueOr(Value nothing, Body body) {
 template <class Body>
 OpenMM_Force* made(Body body) {
     return reinterpret_cast<OpenMM_Force*>(valueOr<OpenMM::Force*>(nullptr, body));
+}
+
+/** A new integrator, or null. */
+template <class Body>
+OpenMM_Integrator* madeIntegrator(Body body) {
+    return reinterpret_cast<OpenMM_Integrator*>(valueOr<OpenMM::Integrator*>(nullptr, body));
 }
 
 /** The corners of so many triangles. */
@@ -141,6 +155,18 @@ Helfrich_Status helfrich_shim_MembraneForce_setElementValues(OpenMM_Force* force
     return guarded([&] { asForce(force).setElementValues(parameter, vector<double>(values, values + count)); });
 }
 
+int helfrich_shim_MembraneForce_getNumElementValues(OpenMM_Force* force, const char* parameter) {
+    return valueOr<int>(-1, [&] { return (int) asForce(force).getElementValues(parameter).size(); });
+}
+
+Helfrich_Status helfrich_shim_MembraneForce_getElementValues(OpenMM_Force* force, const char* parameter,
+                                                             double* values) {
+    return guarded([&] {
+        const vector<double>& found = asForce(force).getElementValues(parameter);
+        std::copy(found.begin(), found.end(), values);
+    });
+}
+
 Helfrich_Status helfrich_shim_ParticleSurfaceForce_setParticles(OpenMM_Force* force, const int* particles, int count) {
     return guarded([&] {
         auto& owner = as<ParticleSurfaceForce>("ParticleSurfaceForce", force);
@@ -172,6 +198,14 @@ Helfrich_Status helfrich_shim_LineTensionForce_setDomains(OpenMM_Force* force, c
 
 Helfrich_Status helfrich_shim_MembraneForce_setForm(OpenMM_Force* force, int form) {
     return guarded([&] { asForce(force).setForm(form); });
+}
+
+int helfrich_shim_MembraneForce_getForm(OpenMM_Force* force) {
+    return valueOr<int>(-1, [&] { return asForce(force).getForm(); });
+}
+
+int helfrich_shim_MembraneForce_getSwitch(OpenMM_Force* force, const char* name) {
+    return valueOr<int>(-1, [&] { return asForce(force).getSwitch(name); });
 }
 
 Helfrich_Status helfrich_shim_MembraneForce_setSwitch(OpenMM_Force* force, const char* name, int on) {
@@ -241,6 +275,26 @@ Helfrich_Status helfrich_shim_MembraneForce_setPermutationInContext(OpenMM_Force
         if (numVertices < 0)
             throw OpenMMException(surface.getTypeName() + ": the number of vertices is negative");
         surface.setPermutationInContext(asContext(context), vector<int>(permutation, permutation + numVertices));
+    });
+}
+
+int64_t helfrich_shim_MembraneForce_saveConnectivity(OpenMM_Force* force, OpenMM_Context* context, char* buffer,
+                                                     int64_t size) {
+    return valueOr<int64_t>(-1, [&] {
+        string saved = asTriangulated(force).saveConnectivity(asContext(context));
+        if ((int64_t) saved.size() <= size)
+            std::copy(saved.begin(), saved.end(), buffer);
+        return (int64_t) saved.size();
+    });
+}
+
+Helfrich_Status helfrich_shim_MembraneForce_restoreConnectivity(OpenMM_Force* force, OpenMM_Context* context,
+                                                                const char* saved, int64_t size) {
+    return guarded([&] {
+        TriangulatedForce& surface = asTriangulated(force);
+        if (size < 0)
+            throw OpenMMException(surface.getTypeName() + ": the number of bytes is negative");
+        surface.restoreConnectivity(asContext(context), string(saved, (size_t) size));
     });
 }
 
@@ -378,4 +432,28 @@ MOVER_VALUE(SurfaceViscosityThermostat, double, DefaultTemperature, std::nan("")
 MOVER_VALUE(SurfaceViscosityThermostat, int, Frequency, -1, int)
 MOVER_VALUE(SurfaceViscosityThermostat, int, RandomNumberSeed, -1, int)
 #undef MOVER_VALUE
+
+OpenMM_Integrator* helfrich_shim_VariableMassVerletIntegrator_create(double stepSize, double density) {
+    return madeIntegrator([&] { return new VariableMassVerletIntegrator(stepSize, density); });
+}
+
+OpenMM_Integrator* helfrich_shim_VariableMassLangevinIntegrator_create(double temperature, double frictionCoeff,
+                                                                       double stepSize, double density) {
+    return madeIntegrator(
+        [&] { return new VariableMassLangevinIntegrator(temperature, frictionCoeff, stepSize, density); });
+}
+
+#define INTEGRATOR_VALUE(Owner, Type, Name, Nothing)                                                                   \
+    Type helfrich_shim_##Owner##_get##Name(OpenMM_Integrator* integrator) {                                            \
+        return valueOr<Type>(Nothing, [&] { return asIntegrator<Owner>(#Owner, integrator).get##Name(); });            \
+    }                                                                                                                  \
+    Helfrich_Status helfrich_shim_##Owner##_set##Name(OpenMM_Integrator* integrator, Type value) {                     \
+        return guarded([&] { asIntegrator<Owner>(#Owner, integrator).set##Name(value); });                             \
+    }
+INTEGRATOR_VALUE(VariableMassVerletIntegrator, double, Density, std::nan(""))
+INTEGRATOR_VALUE(VariableMassLangevinIntegrator, double, Density, std::nan(""))
+INTEGRATOR_VALUE(VariableMassLangevinIntegrator, double, Temperature, std::nan(""))
+INTEGRATOR_VALUE(VariableMassLangevinIntegrator, double, Friction, std::nan(""))
+INTEGRATOR_VALUE(VariableMassLangevinIntegrator, int, RandomNumberSeed, -1)
+#undef INTEGRATOR_VALUE
 }
