@@ -7,7 +7,7 @@ The energy is that of bending and of an `AreaDifferenceForce`, at given area and
 (L. Miao, U. Seifert, M. Wortis and H.-G. Döbereiner, Phys. Rev. E 49, 5389 (1994),
 doi:10.1103/PhysRevE.49.5389). From small to large Δa0 the shape of least energy is a stomatocyte,
 an oblate, a prolate, a pear, and one with a bud. α is 10, so that Δa follows Δa0 over this range;
-of lipids it is about 1.4, and buds come at larger Δa0.
+of lipids it is about 1, and buds come at larger Δa0.
 
 A run begins with a prolate, an oblate or two spheres with a wide neck, at ν already, and bonds flip
 while it is cooled from 300 K to 1 K; another one begins with the shape of theory itself, at 30 K.

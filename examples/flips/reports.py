@@ -37,9 +37,6 @@ class Report:
         parser.add_argument(
             "--workers", type=int, default=0, help="processes; default 0, this one, without Dask"
         )
-        parser.add_argument(
-            "--stored", action="store_true", help="compute nothing, and leave out what is missing"
-        )
         if add_arguments:
             add_arguments(parser)
         self.options = parser.parse_args()
@@ -50,27 +47,25 @@ class Report:
         self._name = name
 
     def runs(self, function, points, version):
-        """Results of a function at points; with --stored only those that are there."""
-        if not self.options.stored:
-            return self._sweep(function, points, version)
-        found = []
-        for point in points:
-            try:
-                found += self._sweep(function, [point], version, compute=False)
-            except SweepError:
-                continue
-        return found
-
-    def _sweep(self, function, points, version, compute=True):
+        """Results of a function at points."""
         return sweep(
             function,
             points,
             cache=self.results / "cache",
             version=version,
             workers=self.options.workers,
-            compute=compute,
-            progress=compute,
+            progress=True,
         )
+
+    def survivors(self, function, points, version):
+        """Results at points, without those of runs that break down, which are printed."""
+        found = []
+        for point in points:
+            try:
+                found += self.runs(function, [point], version)
+            except SweepError as error:
+                print(error)
+        return found
 
     def table(self, columns, rows, suffix=""):
         """Write NAMESUFFIX.csv, and print it."""

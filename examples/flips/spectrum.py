@@ -39,7 +39,7 @@ def main():
     for softness in options.softness:
         for flips in (True, False):
             points = points_of(softness, flips, options.vertices, report.quick)
-            runs = report.runs(flow, points, VERSION)
+            runs = report.survivors(flow, points, VERSION)
             if runs:
                 found[softness, flips] = ratios_of(runs), runs
     fluid = {softness: each[0] for (softness, flips), each in found.items() if flips}

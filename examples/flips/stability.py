@@ -7,7 +7,6 @@ kV = 0; several runs of 10⁸ vertex-steps each. Runs that break down are counte
 import numpy as np
 from fluid_run import VERSION, flow, vesicle_of
 from openmmhelfrich.analysis import mean_with_error
-from openmmhelfrich.sweep import SweepError
 from reports import Report
 from settings import SETTINGS, with_flips
 
@@ -29,12 +28,7 @@ def main():
                 time = steps / num_vertices * point["time_step"]
                 point["periods"] = time / vesicle_of(num_vertices, softness, 1).tau_2
                 point["frames_per_period"] = FRAMES
-            runs = []
-            for point in points:
-                try:
-                    runs += report.runs(flow, [point], VERSION)
-                except SweepError as error:
-                    print(error)
+            runs = report.survivors(flow, points, VERSION)
             row = row_of(runs, points[0]["time_step"])
             rows.append((softness, points[0]["time_step"], len(points) - len(runs), *row))
     report.table(["Ξ", "Δt", "failed", "vertex_steps", "acceptance", "T", "T_error", "p9_up"], rows)

@@ -172,7 +172,7 @@ def let_go(n, gaussian, tension, seed, duration):
     Returns
     -------
     dict
-        "share", x from the length of the border, over time, and "energy".
+        "share", x from the length of the border, over time.
     """
     radius = n * EDGE
     mesh = cap(n, 0.02)

@@ -182,7 +182,7 @@ def dispersion(size, frame=None):
 
 
 def fitted(run, size):
-    """κ with and without the logarithm, kBT, their error, and χ² per mode."""
+    """κ with and without the logarithm, and the error of the first, kBT."""
     q, laplacian, response = dispersion(size, run["frame"].mean())
     m, n = np.indices(q.shape)
     # Of q and −q, which are one wave, one; and no q = 0.

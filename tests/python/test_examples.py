@@ -165,6 +165,18 @@ def test_integrators():
         assert word in text
 
 
+def test_friction_of_undulations(tmp_path):
+    run(EXAMPLES / "flips/undulation_friction.py", "--quick", "--results", tmp_path)
+    with (tmp_path / "undulation_friction.csv").open(encoding="utf-8") as file:
+        without, flipping = list(csv.DictReader(file))
+    assert float(without["flips"]) == 0 < float(flipping["flips"])
+    for l in range(2, 7):
+        for row in (without, flipping):
+            # From the discrete mesh's frequency to that of the continuum, and no mode overdamped.
+            assert 0 < float(row[f"γ_{l}/ω_{l}"]) < 1
+            assert 0.7 < float(row[f"ω/ω_{l}"]) < 1.3
+
+
 @pytest.mark.parametrize(
     ("script", "quick", "said"),
     [
