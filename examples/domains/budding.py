@@ -27,7 +27,7 @@ times the length of the line over 2πL, at the start: a line on a mesh goes in z
 energies alone, without any dynamics, the λL at which the energy of a mesh has no curvature along f;
 it tends to the theory as 1/n². "runs": nearly flat domains are let go at 30 K, κ = 200 kT, with
 bonds that flip, at several λL in units of that of their own mesh. They end flat, or as buds, with
-an x above 0.7: by then the vertices of the line, as many as at the start, are as near each other as
+an x above 0.6: by then the vertices of the line, as many as at the start, are as near each other as
 the TriangleHeightForce lets them.
 """
 
