@@ -354,6 +354,14 @@ def test_points_that_python_takes_for_numbers(point):
         Expression(f"distance(p1,{point})", 2)
 
 
+def test_digits_and_spaces_are_those_of_openmm():
+    """To OpenMM those of other scripts are letters."""
+    assert Expression("\u0661*x1", 1).variables == {"\u0661", "x1"}
+    for text in ("x1*2\u0660", "2\u00a0*x1"):
+        with pytest.raises(ExpressionError, match="unexpected"):
+            Expression(text, 1)
+
+
 @pytest.mark.filterwarnings("error")
 def test_energies_that_nothing_can_be_divided_by_are_left_alone():
     mesh = Mesh.icosphere(1, 3.0)

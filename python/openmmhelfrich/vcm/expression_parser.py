@@ -10,6 +10,8 @@ if TYPE_CHECKING:
 
 __all__ = ["ExpressionError", "Parser", "tokens"]
 
+# OpenMM knows no others: what else is white, or a digit of another script, is a part of a name.
+_SPACES, _DIGITS = " \t\n\v\f\r", "0123456789"
 _NUM_POINTS = {"distance": 2, "angle": 3, "dihedral": 4}
 _NUM_ARGUMENTS = {"atan2": 2, "min": 2, "max": 2, "select": 3}
 
@@ -23,23 +25,23 @@ def tokens(text: str) -> list[str]:
     tokens, at, end = [], 0, len(text)
     while at < end:
         c = text[at]
-        if c.isspace():
+        if c in _SPACES:
             at += 1
             continue
         start = at
         if c in "+-*/^(),":
             at += 1
-        elif c.isdigit() or c == ".":
-            while at < end and (text[at].isdigit() or text[at] == "."):
+        elif c in _DIGITS or c == ".":
+            while at < end and (text[at] in _DIGITS or text[at] == "."):
                 at += 1
             if at < end and text[at] in "eE":
                 after = at + 1 + (at + 1 < end and text[at + 1] in "+-")
-                if after < end and text[after].isdigit():
+                if after < end and text[after] in _DIGITS:
                     at = after
-                    while at < end and text[at].isdigit():
+                    while at < end and text[at] in _DIGITS:
                         at += 1
         else:
-            while at < end and not text[at].isspace() and text[at] not in "+-*/^(),":
+            while at < end and text[at] not in _SPACES and text[at] not in "+-*/^(),":
                 at += 1
         tokens.append(text[start:at])
     return tokens
@@ -97,7 +99,7 @@ class Parser:
             inner = self._operation(0)
             self._expect(")")
             return inner
-        if token[0].isdigit() or token[0] == ".":
+        if token[0] in _DIGITS or token[0] == ".":
             try:
                 return self._target.add("number", float(token))
             except ValueError:
