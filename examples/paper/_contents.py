@@ -11,8 +11,7 @@
 
 or, in place of figure and rows, `test = "tests/python/test_x.py"`, a test of it that `make test`
 runs, `script = "examples/paper/x.py"`, which makes what has no numbers, or `status = "not run"`
-with `why = "..."`. `until` says why rows may lack that a later run of the figure has; `remark` adds
-a sentence to any.
+with `why = "..."`. `remark` adds a sentence to any.
 """
 
 from __future__ import annotations
@@ -32,7 +31,7 @@ ROOT = HERE.parents[1]
 # Failed rows of one cause that the table has in figures; the section of the figure has all.
 SHOWN = 3
 
-WORKS, DIFFERS, NOT_RUN = "works", "**differs**", "not run"
+WORKS, MADE, DIFFERS, NOT_RUN = "works", "can be made", "**differs**", "not run"
 
 # Both are what the report of a full run must not say.
 NO_ROW = "no such row"
@@ -51,7 +50,6 @@ class Entry:
     script: str = ""
     status: str = ""
     why: str | dict[str, str] = field(default_factory=dict)
-    until: str = ""
     remark: str = ""
 
     def __post_init__(self):
@@ -143,7 +141,7 @@ class Contents:
             return WORKS, f"`{entry.test}`"
         if entry.script:
             made = (ROOT / entry.script).is_file()
-            return (WORKS, f"`{entry.script}`") if made else (NOT_RUN, f"no `{entry.script}` yet")
+            return (MADE, f"`{entry.script}`") if made else (NOT_RUN, f"no `{entry.script}` yet")
         if entry.figure not in known:
             return NOT_RUN, f"the numbers of `{entry.figure}` are not there"
         figure = known[entry.figure]
@@ -158,9 +156,6 @@ class Contents:
             if not any(row["what"].startswith(name) for row in figure["rows"])
         ]
         status, where = self._measured(figure, chosen, link)
-        if lost and entry.until:
-            where = f"{where}. " if chosen else ""
-            return status if chosen else NOT_RUN, f"{where}{entry.until}"
         if lost and figure["quick"]:
             where += f"; not in the quick version: {', '.join(lost)}"
             return status if chosen else NOT_RUN, where

@@ -6,7 +6,7 @@ last third gives the averages. `analysis.crossings`, which knows nothing of the 
 triangles that pass through each other. Classes as in the paper: green is settled and intact, yellow
 intact but still drifting or strained, red failed or crossing itself; see `oblates.class_of`.
 
---seeds N runs N random meshes for each point (default 3), one after the other.
+--seeds N runs N random meshes for each point (default 1), one after the other.
 """
 
 import argparse
@@ -42,9 +42,9 @@ SOFT, INTACT_FROM = 0.15, 0.6
 def number_of_seeds():
     """The number of random meshes for each point, and the other arguments of the command line."""
     parser = argparse.ArgumentParser(add_help=False)
-    parser.add_argument("--seeds", type=int, default=None)
+    parser.add_argument("--seeds", type=int, default=1)
     options, rest = parser.parse_known_args()
-    if options.seeds is not None and options.seeds < 1:
+    if options.seeds < 1:
         parser.error(f"--seeds: need 1 or more, got {options.seeds}")
     return options.seeds, rest
 
@@ -52,7 +52,6 @@ def number_of_seeds():
 def main():
     seeds, rest = number_of_seeds()
     figure = Figure("fig07", "Fig. 7, SM 8", "Vesicles of reduced volume 1 to 0.1", __doc__, rest)
-    seeds = seeds or figure.choose(3, 1)
     volumes = figure.choose(np.arange(10, 0, -1) / 10, [1.0, 0.6, 0.3])
     softnesses = figure.choose([0.037, 0.15, 0.33, 0.59], [0.037, 0.59])
     periods, count = figure.choose((160, 1002), (2, 1002))
@@ -75,8 +74,8 @@ def main():
     meshes = "One random mesh" if seeds == 1 else f"{seeds} random meshes"
     figure.parameters(
         f"{meshes} of N = {count}, κ = {RIGIDITY:g} kJ/mol, GKB, kA and kV of the "
-        f"paper, LangevinMiddle, γ = {FRICTION:g}/ps, 300 K, {periods:g} τ_2, of which {RAMP:g} "
-        f"are the ramp of d, Δt = {steps}."
+        f"paper, LangevinMiddle, γ = {FRICTION:g}/ps, 300 K, {periods:g} τ_2, the first "
+        f"{RAMP * periods:g} of which are the ramp of d, Δt = {steps}."
     )
     classes = classes_of(vesicles, max(volumes))
     check(figure, vesicles, classes, count)
@@ -139,16 +138,19 @@ def check(figure, vesicles, classes, count):
     )
     rises = {}
     for volume in sorted({volume for volume, _ in vesicles}):
-        rises[volume] = late_energy(vesicles[volume, hard], 3)
+        # One that passes through itself is not flat any more.
+        if "red" not in classes[volume, hard]:
+            rises[volume] = late_energy(vesicles[volume, hard], 3)
     (sphere, error, _), roundest = rises[max(rises)], max(rises)
     flat = max((v for v in rises if rises[v][2] and v != roundest), key=lambda v: rises[v][0])
     value, uncertain, _ = rises[flat]
-    share = value / sphere - 1
+    share, known = value / sphere - 1, np.hypot(error, uncertain)
     figure.claim(
-        f"⟨U_h⟩ of Ξ = {hard:g} rises where vesicles are flat: most at ν = {flat:g}",
+        f"⟨U_h⟩ of Ξ = {hard:g} rises where vesicles are flat and whole: most at ν = {flat:g}",
         f"{sphere / count:.3f} to {value / count:.3f} kJ/mol per vertex, {100 * share:.0f} %",
-        "a rise of more than 5 % and three standard errors",
-        share > 0.05 and not value - sphere <= 3 * np.hypot(error, uncertain),
+        "a rise of more than 5 %"
+        + (" and three standard errors" if np.isfinite(known) else "; of one mesh, without error"),
+        share > 0.05 and (not np.isfinite(known) or value - sphere > 3 * known),
     )
     order = list(CLASSES)
     mean = {

@@ -228,12 +228,18 @@ def check(figure, key, found):
     )
     figure.claim(
         f"{name}: E_b relaxes",
-        f"{'settles' if still else 'drifts; is near its last values'} after {settled:.2f} τ_2, "
-        f"from {mean[0]:.0f} to {plateau:.0f} kJ/mol",
+        f"{_settling(settled, still)}, from {mean[0]:.0f} to {plateau:.0f} kJ/mol",
         f"within {band:.0f} kJ/mol from τ_2 on, without a drift",
         settled < 1 and still,
         why,
     )
+
+
+def _settling(settled, still):
+    """When an energy has settled, τ_2, in words."""
+    if not np.isfinite(settled):
+        return "does not stay near its last values"
+    return f"{'settles' if still else 'drifts; is near its last values'} after {settled:.2f} τ_2"
 
 
 def late_mean(results):

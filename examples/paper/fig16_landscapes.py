@@ -134,7 +134,9 @@ def main():
                 )
             figure.claim(
                 f"{surface}, {label}: total energy outside of the plaquette",
-                f"at least {deepest:.3g} kJ/mol above the mesh's",
+                f"down to {-deepest:.3g} kJ/mol below the mesh's"
+                if deepest < 0
+                else f"at least {deepest:.3g} kJ/mol above the mesh's",
                 "pits below the mesh's" if voronoi else "nowhere below the mesh's",
                 (deepest < 0) if voronoi else (deepest > 0),
             )

@@ -27,18 +27,18 @@ this library. `examples/paper/` has a script for each figure.
 | command | what it makes | time |
 | --- | --- | --- |
 | `make paper` | small versions of all figures | some minutes |
-| `make paper SIZE=full` | all at the size shown | SPENT of one processor core |
+| `make paper SIZE=full` | all at the size shown | at most SPENT of one processor core |
 
 Each result is stored as soon as there is one, so either command goes on where it was stopped; only
 the timings of Table III are taken anew. Runs are spread over the cores. Times are those of a busy
-machine, up to twice those of an idle one; figures that show the same runs have the same time.
+machine, up to twice those of an idle one; runs that several figures show count in each of them.
 
 This page is written by `examples/paper/report.py` from the numbers of the scripts and from
 `examples/paper/contents.toml`, which has what the paper says. "Works" means that all checks are
-within their tolerance, or that a test passes; "differs" has the size of the difference and its
-cause. What is behind the fluctuations, and which sentences of the paper hold for a mesh that keeps
-its neighbours and which for a fluid one, is told in
-[reproduction_fluctuations.md](reproduction_fluctuations.md).
+within their tolerance, or that a test passes, "can be made" that a script draws what has no
+numbers; "differs" has the size of the difference and its cause. What is behind the fluctuations,
+and which sentences of the paper hold for a mesh that keeps its neighbours and which for a fluid
+one, is told in [reproduction_fluctuations.md](reproduction_fluctuations.md).
 """
 
 
@@ -172,8 +172,8 @@ def _time(seconds):
 
 
 def _spent(figures):
-    """Time of all figures; those that show the same runs have the same time, which counts once."""
-    return sum({figure["seconds"] for figure in figures})
+    """Time of all figures, with that of runs which several of them show in each."""
+    return sum(figure["seconds"] for figure in figures)
 
 
 def _order(name):
