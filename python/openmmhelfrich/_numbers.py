@@ -187,7 +187,7 @@ def length(value, where: str, name: str) -> float:
     Raises
     ------
     MeshError
-        If the value is not one number below 1e100, or a Quantity of another dimension.
+        If the value is not one finite number, or a Quantity of another dimension.
     """
     plain = _strip_length(value, where, name)
     try:
@@ -196,8 +196,6 @@ def length(value, where: str, name: str) -> float:
         raise MeshError(f"{where}: {name} must be one number in nm, got {plain!r}") from None
     if not np.isfinite(number):
         raise MeshError(f"{where}: {name} must be finite, got {number}")
-    if abs(number) >= FARTHEST:
-        raise MeshError(f"{where}: {name} must be below {FARTHEST:g} nm, got {number}")
     return number
 
 

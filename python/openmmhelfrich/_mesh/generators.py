@@ -4,14 +4,23 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .._numbers import length as _length
+from .._numbers import FARTHEST, length
 from .._types import Scalar
+from ..errors import MeshError
 from . import lattices, spheres
 
 if TYPE_CHECKING:
     from ..mesh import Mesh
 
 __all__ = ["Generators"]
+
+
+def _length(value: Scalar, where: str, name: str) -> float:
+    """The size of a mesh, nm."""
+    size = length(value, where, name)
+    if abs(size) >= FARTHEST:
+        raise MeshError(f"{where}: {name} must be below {FARTHEST:g} nm, got {size}")
+    return size
 
 
 class Generators:
