@@ -16,7 +16,7 @@ def scripts_importable(monkeypatch):
     monkeypatch.syspath_prepend(str(EXAMPLES))
     monkeypatch.syspath_prepend(str(EXAMPLES / "flips"))
     yield
-    for name in ("ade_shapes", "axisymmetric", "constrained", "reports"):
+    for name in ("ade_buds", "ade_shapes", "axisymmetric", "constrained", "reports"):
         sys.modules.pop(name, None)
 
 
@@ -80,3 +80,30 @@ def test_a_bud_stays_where_theory_has_it():
     # Δa follows that of the bud, which a prolate of this volume cannot: 1.023.
     assert row[3] > 1.04
     assert abs(row[-1]) < 4
+
+
+def test_the_limit_of_fine_meshes():
+    from ade_buds import limit
+
+    numbers = np.array([502, 502, 1002, 2002, 4002])
+    energies = 2.5 + 7.0 / np.sqrt(numbers)
+    energy, error = limit(numbers, energies)
+    assert energy == pytest.approx(2.5, rel=1e-12)
+    assert error < 1e-12
+    noise = np.random.default_rng(1).normal(0, 0.01, (2000, 5))
+    found = np.array([limit(numbers, energies + each) for each in noise])
+    assert found[:, 0].mean() == pytest.approx(2.5, abs=0.002)
+    assert np.sqrt(np.mean(found[:, 1] ** 2)) == pytest.approx(found[:, 0].std(), rel=0.1)
+
+
+def test_buds_are_set_beside_two_spheres(monkeypatch, tmp_path):
+    import ade_buds
+
+    monkeypatch.setattr("sys.argv", ["ade_buds.py", "--quick", "--results", str(tmp_path)])
+    ade_buds.main()
+    head, *rows = (tmp_path / "ade_buds.csv").read_text(encoding="utf-8").splitlines()
+    assert head.startswith("N,ν,Δa0,shape")
+    assert [row.split(",")[0] for row in rows] == ["132", "192", "252"]
+    # Above theory, the less the finer.
+    above = [float(row.split(",")[-1]) for row in rows]
+    assert 20 > above[0] > above[-1] > 5
