@@ -36,12 +36,17 @@ using namespace HelfrichPlugin;
 /* SWIG takes Python's own int only; NumPy's have an index, too. */
 %typemap(in) int {
     PyObject* number = PyNumber_Index($input);
-    long value = number == NULL ? -1 : PyLong_AsLong(number);
-    Py_XDECREF(number);
-    bool isNone = PyErr_Occurred() != NULL;
-    PyErr_Clear();
-    if (isNone || value != (long) (int) value)
-        SWIG_exception_fail(SWIG_TypeError, "in method '$symname', argument $argnum must be an integer of 32 bits");
+    if (number == NULL) {
+        if (PyErr_ExceptionMatches(PyExc_TypeError))
+            PyErr_SetString(PyExc_TypeError, "in method '$symname', argument $argnum must be an integer");
+        SWIG_fail;
+    }
+    long value = PyLong_AsLong(number);
+    Py_DECREF(number);
+    if (PyErr_Occurred() != NULL || value != (long) (int) value) {
+        PyErr_SetString(PyExc_OverflowError, "in method '$symname', argument $argnum must be of 32 bits");
+        SWIG_fail;
+    }
     $1 = (int) value;
 }
 /* Not SWIG's pybuffer.i: before Python 3.11 the stable ABI has no buffers. */

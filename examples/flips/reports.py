@@ -1,6 +1,7 @@
 """The command line of these scripts, and the tables that they write."""
 
 import argparse
+import contextlib
 import csv
 from pathlib import Path
 
@@ -46,26 +47,32 @@ class Report:
         self.tables = self.options.tables or self.results
         self._name = name
 
+    def survivors(self, function, points, version):
+        """Results at points, without those of runs that break down, which are printed."""
+        try:
+            return self.runs(function, points, version)
+        except SweepError as error:
+            print(error)
+            found = []
+            for point in points:
+                with contextlib.suppress(SweepError):
+                    found += self._sweep(function, [point], version, compute=False)
+            return found
+
     def runs(self, function, points, version):
         """Results of a function at points."""
+        return self._sweep(function, points, version, compute=True)
+
+    def _sweep(self, function, points, version, compute):
         return sweep(
             function,
             points,
             cache=self.results / "cache",
             version=version,
             workers=self.options.workers,
-            progress=True,
+            compute=compute,
+            progress=compute,
         )
-
-    def survivors(self, function, points, version):
-        """Results at points, without those of runs that break down, which are printed."""
-        found = []
-        for point in points:
-            try:
-                found += self.runs(function, [point], version)
-            except SweepError as error:
-                print(error)
-        return found
 
     def table(self, columns, rows, suffix=""):
         """Write NAMESUFFIX.csv, and print it."""

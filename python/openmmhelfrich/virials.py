@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import operator
 from collections.abc import Iterable
 from typing import Any
 
@@ -12,6 +13,24 @@ from ._present import context_of, surfaces_of
 from ._types import Array
 
 __all__ = ["virial"]
+
+
+def _bits_of(groups: int | Iterable[int]) -> int:
+    """Groups as bits of an integer, which may be negative."""
+    try:
+        if not isinstance(groups, Iterable):
+            bits = operator.index(groups)
+        else:
+            groups = list(groups)
+            bits = sum(1 << operator.index(group) for group in set(groups))
+    except (TypeError, ValueError):
+        bits = 1 << 32
+    if not -(1 << 31) <= bits < 1 << 32:
+        raise TypeError(
+            "virial: groups needs force groups from 0 to 31, or their bits in an integer, got "
+            f"{groups!r}"
+        )
+    return bits
 
 
 def virial(context: Any, groups: int | Iterable[int] = -1) -> Array:
@@ -49,15 +68,8 @@ def virial(context: Any, groups: int | Iterable[int] = -1) -> Array:
     It costs as much as some evaluations of the energy on one thread, on the processor.
     """
     context = context_of("virial", context)
-    try:
-        if isinstance(groups, Iterable):
-            groups = sum(1 << group for group in set(groups))
-        # OpenMM's C++ has the 32 groups in an int, the last of which is its sign.
-        bits = ctypes.c_int32(groups).value
-    except (TypeError, ValueError):
-        raise TypeError(
-            f"virial: groups needs force groups from 0 to 31, or bits of an integer, got {groups!r}"
-        ) from None
+    # OpenMM's C++ has the 32 groups in an int, the last of which is its sign.
+    bits = ctypes.c_int32(_bits_of(groups)).value
     surfaces = surfaces_of(context)
     if not surfaces:
         return np.zeros((3, 3))

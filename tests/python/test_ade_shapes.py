@@ -104,6 +104,9 @@ def test_buds_are_set_beside_two_spheres(monkeypatch, tmp_path):
     head, *rows = (tmp_path / "ade_buds.csv").read_text(encoding="utf-8").splitlines()
     assert head.startswith("N,ν,Δa0,shape")
     assert [row.split(",")[0] for row in rows] == ["132", "192", "252"]
-    # Above theory, the less the finer.
-    above = [float(row.split(",")[-1]) for row in rows]
+    # Above theory, the less the finer, and none through itself.
+    above, crossings = zip(*[map(float, row.split(",")[-2:]) for row in rows], strict=True)
     assert 20 > above[0] > above[-1] > 5
+    assert not any(crossings)
+    [row] = (tmp_path / "ade_buds_limit.csv").read_text(encoding="utf-8").splitlines()[1:]
+    assert row.startswith("0.85,1.4,3,")

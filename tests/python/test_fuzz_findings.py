@@ -161,10 +161,9 @@ def test_a_mode_of_four_thousand_million_is_refused():
 
 @pytest.mark.filterwarnings("error")
 def test_lengths_beyond_use_are_refused():
-    with pytest.raises(
-        MeshError, match=r"Mesh\.disk: radius must be below 1e\+100 nm, got 1e\+308"
-    ):
+    with pytest.raises(MeshError, match=r"Mesh\.disk: radius must be below 1e\+70 nm, got 1e\+308"):
         Mesh.disk(8, 1e308)
+    assert Mesh.disk(8, 0.99e70).num_triangles == 384
     sphere = Mesh.icosphere(1, 10.0)
     with pytest.raises(MeshError, match=r"Mesh: box must be below 1e\+100 nm"):
         Mesh(sphere.vertices, sphere.triangles, np.eye(3) * 1e308)
@@ -173,16 +172,30 @@ def test_lengths_beyond_use_are_refused():
 
 
 @pytest.mark.parametrize("merge", [None, 0.1])
-def test_gmsh_files_that_count_more_nodes_than_they_have(tmp_path, merge):
+@pytest.mark.parametrize("counted", [13, 44, 7_200_000])
+def test_gmsh_files_that_count_more_nodes_than_they_have(tmp_path, merge, counted):
     """meshio makes room for all, and leaves those that do not come as the memory was."""
     Mesh.icosphere(1, 10.0).write(tmp_path / "m.msh")
     data = (tmp_path / "m.msh").read_bytes()
     begin = data.index(b"$Nodes\n") + len(b"$Nodes\n") + 8
     assert data[begin : begin + 8] == (12).to_bytes(8, "little")
-    damaged = data[:begin] + (7_200_000).to_bytes(8, "little") + data[begin + 8 :]
+    damaged = data[:begin] + counted.to_bytes(8, "little") + data[begin + 8 :]
     (tmp_path / "m.msh").write_bytes(damaged)
-    with pytest.raises(MeshError, match=r"m\.msh: says that it has 7200000 nodes, .* too short"):
+    with pytest.raises(
+        MeshError,
+        match=rf"m\.msh.*: counts {counted} nodes, more than it",
+    ):
         Mesh.read(tmp_path / "m.msh", merge=merge)
+
+
+@pytest.mark.parametrize(
+    "head",
+    ["4.1 0 8\n$EndMeshFormat\n$Nodes\n1 {0} 1 {0}\n", "2.2 0 8\n$EndMeshFormat\n$Nodes\n{0}\n"],
+)
+def test_gmsh_text_that_counts_more_nodes_than_it_has(tmp_path, head):
+    (tmp_path / "m.msh").write_text("$MeshFormat\n" + head.format(10**9) + "1 0 0 0\n$EndNodes\n")
+    with pytest.raises(MeshError, match=r"m\.msh.*: counts 1000000000 nodes, more than it"):
+        Mesh.read(tmp_path / "m.msh")
 
 
 # --- configurations ------------------------------------------------------------------------------

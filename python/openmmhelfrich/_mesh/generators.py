@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .._numbers import FARTHEST, length
+from .._numbers import length
 from .._types import Scalar
 from ..errors import MeshError
 from . import lattices, spheres
@@ -14,12 +14,15 @@ if TYPE_CHECKING:
 
 __all__ = ["Generators"]
 
+# Squares of areas of larger meshes, nm, overflow.
+_LARGEST = 1e70
+
 
 def _length(value: Scalar, where: str, name: str) -> float:
     """The size of a mesh, nm."""
     size = length(value, where, name)
-    if abs(size) >= FARTHEST:
-        raise MeshError(f"{where}: {name} must be below {FARTHEST:g} nm, got {size}")
+    if size >= _LARGEST:
+        raise MeshError(f"{where}: {name} must be below {_LARGEST:g} nm, got {size}")
     return size
 
 

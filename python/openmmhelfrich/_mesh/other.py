@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import contextlib
 import io
+import re
+import struct
 import tempfile
 import warnings
 from pathlib import Path
@@ -25,8 +27,6 @@ __all__ = ["meshio_extensions", "read_meshio", "read_trimesh", "trimesh_extensio
 # Cells of no area, such as the points and lines of a Gmsh model, do not matter to a surface.
 _IGNORED = ("vertex", "line")
 _FACES = ("triangle", "quad", "polygon")
-# The fewest bytes of a node in a Gmsh file: a number and three coordinates with what parts them.
-_LEAST_NODE = 8
 
 
 def meshio_extensions() -> set[str]:
@@ -55,13 +55,10 @@ def read_meshio(source: Source) -> tuple[Array, Array]:
     MeshError
         If meshio cannot read the file, or it has cells that are no faces.
     """
+    if _is_gmsh(source):
+        _check_nodes(source)
     mesh = _load(source)
     source.by_line = False
-    if _is_gmsh(source) and len(mesh.points) * _LEAST_NODE > len(source.data):
-        # meshio makes room for as many as the file says, and leaves what does not come as it is.
-        raise source.error(
-            f"says that it has {len(mesh.points)} nodes, for which it is too short; write it anew"
-        )
     faces: list[Any] = []
     ignored = [np.empty(0, dtype=np.int64)]
     points = np.asarray(mesh.points, dtype=np.float64)
@@ -130,6 +127,33 @@ def read_trimesh(path: Path) -> tuple[Array, Array]:
 
 def _is_gmsh(source: Source) -> bool:
     return source.data.startswith((b"$MeshFormat", b"$Comments"))
+
+
+def _check_nodes(source: Source) -> None:
+    """Refuse a Gmsh file that counts more nodes than it has.
+
+    meshio makes room for as many as the file says, and leaves what does not come as the memory was.
+    """
+    data = source.data
+    begin = re.search(rb"\$Nodes *\r?\n", data)
+    if begin is None:
+        return
+    form = re.match(rb"\$MeshFormat\s+4\.1\s+1\s+8\s", data)
+    if form is not None and begin.end() + 32 <= len(data):
+        # Blocks: three numbers of four bytes, how many nodes, and four numbers of eight bytes each.
+        blocks, counted = struct.unpack_from("=QQ", data, begin.end())
+        at, there = begin.end() + 32, 0
+        while blocks and at + 20 <= len(data):
+            (count,) = struct.unpack_from("=Q", data, at + 12)
+            there, at, blocks = there + count, at + 20 + 32 * count, blocks - 1
+    else:
+        words = data[begin.end() : begin.end() + 100].split(b"\n", 1)[0].split()
+        word = words[1] if len(words) == 4 else words[0] if len(words) == 1 else b""
+        counted = int(word) if word.isdigit() else 0
+        # A number and three coordinates with what parts them.
+        there = len(data) // 8
+    if counted > there:
+        raise source.error(f"counts {counted} nodes, more than it has; write it anew")
 
 
 def _load(source: Source):
