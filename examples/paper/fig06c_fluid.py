@@ -31,8 +31,12 @@ SHEAR = (
     "displacements within the surface, and bond flips remove it"
 )
 SHORT = (
-    "waves near the spacing of the vertices are softer on any mesh: divided by what "
-    "mesh_corrections.py has for them, the same values with flips pass χ² below"
+    "waves near the spacing of the vertices are softer on any mesh: with flips the same values, "
+    "divided by what mesh_corrections.py has for them, are within 0.04 of (A17), see below"
+)
+FOLDS = (
+    "folded edges: five of twelve runs lost their shape by them and are left out, and what comes "
+    "before that is in the others; l = 3 is 0.96 and l = 8 1.03, each ± 0.01"
 )
 
 
@@ -117,7 +121,7 @@ def check_spectra(figure, found):
         most = chi2.isf(CHANCE, freedom)
         for what, column, why in (
             ("(A17)", "ratio", SHORT),
-            ("(A17) with short waves", "corrected", SHEAR),
+            ("(A17) with short waves", "corrected", FOLDS if bonds == "flips" else SHEAR),
         ):
             if column == "ratio" and softness != 0.037:
                 continue
