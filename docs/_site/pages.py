@@ -218,7 +218,7 @@ def _other_languages(name: str, known: headers.Class) -> list[str]:
         values = [s.name for s in _values.scalars_of(name)]
         call = f'MembraneForce::new("{name}", &triangles, &[{", ".join(values)}])?'
         lines += ["In Rust (:doc:`/rust`):", "", *code(call, "rust")]
-    elif functions:
+    elif functions and not name.endswith("Integrator"):
         target = f"../rust/openmm_helfrich/force/struct.{name}.html"
         lines += [f"In Rust: `openmm_helfrich::force::{name} <{target}>`__", ""]
     return lines
