@@ -376,9 +376,10 @@ def test_digits_and_spaces_are_those_of_openmm():
 
 
 @pytest.mark.filterwarnings("error")
-def test_energies_that_nothing_can_be_divided_by_are_left_alone():
+@pytest.mark.parametrize("energy", ["5e-324", "-1e308", "1e1-1e308"])
+def test_energies_that_nothing_can_be_divided_by_are_left_alone(energy):
     mesh = Mesh.icosphere(1, 3.0)
-    force = mm.CustomCompoundBondForce(3, "5e-324")
+    force = mm.CustomCompoundBondForce(3, energy)
     for triangle in mesh.triangles.tolist():
         force.addBond(triangle, [])
     system = mm.System()

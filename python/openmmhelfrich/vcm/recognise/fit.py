@@ -90,18 +90,20 @@ def _squares(features: Array, energy: Array, active: list[int]):
     chosen = features[:, active]
     size = np.abs(energy)
     size = np.maximum(size, size[size > 0].min())
-    # Several times, because only the result tells how much cancels at each place.
-    for _ in range(3):
-        scaled = chosen / size[:, None]
-        columns = np.abs(scaled[:half]).max(axis=0)
-        if not (np.isfinite(columns).all() and (columns > 0).all()):
-            return None, None, np.inf
-        z = np.linalg.lstsq(scaled[:half] / columns, (energy / size)[:half], rcond=None)[0]
-        if not np.isfinite(z).all():
-            return None, None, np.inf
-        found = z / columns
-        size = np.maximum(np.abs(chosen * found).sum(axis=1), np.abs(energy))
-    error = np.abs(chosen @ found - energy) / size
+    # What overflows, or is nothing by nothing, is no fit.
+    with np.errstate(over="ignore", invalid="ignore"):
+        # Several times, because only the result tells how much cancels at each place.
+        for _ in range(3):
+            scaled = chosen / size[:, None]
+            columns = np.abs(scaled[:half]).max(axis=0)
+            if not (np.isfinite(columns).all() and (columns > 0).all()):
+                return None, None, np.inf
+            z = np.linalg.lstsq(scaled[:half] / columns, (energy / size)[:half], rcond=None)[0]
+            found = z / columns
+            size = np.maximum(np.abs(chosen * found).sum(axis=1), np.abs(energy))
+            if not (np.isfinite(found).all() and np.isfinite(size).all()):
+                return None, None, np.inf
+        error = np.abs(chosen @ found - energy) / size
     return found, np.abs(z), float(error.max())
 
 
