@@ -18,14 +18,14 @@ __all__ = ["virial"]
 def _bits_of(groups: int | Iterable[int]) -> int:
     """Groups as bits of an integer, which may be negative."""
     try:
-        if not isinstance(groups, Iterable):
-            bits = operator.index(groups)
+        if isinstance(groups, Iterable):
+            groups = {operator.index(group) for group in groups}
+            bits = sum(1 << group for group in groups) if groups <= set(range(32)) else None
         else:
-            groups = list(groups)
-            bits = sum(1 << operator.index(group) for group in set(groups))
-    except (TypeError, ValueError):
-        bits = 1 << 32
-    if not -(1 << 31) <= bits < 1 << 32:
+            bits = operator.index(groups)
+    except TypeError:
+        bits = None
+    if bits is None or not -(1 << 31) <= bits < 1 << 32:
         raise TypeError(
             "virial: groups needs force groups from 0 to 31, or their bits in an integer, got "
             f"{groups!r}"
@@ -59,7 +59,7 @@ def virial(context: Any, groups: int | Iterable[int] = -1) -> Array:
     Raises
     ------
     TypeError
-        No Context, or groups that are no integers.
+        No Context, or other groups.
     openmm.OpenMMException
         Where an evaluation of the energy would raise it.
 

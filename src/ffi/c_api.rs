@@ -2,7 +2,7 @@
 //!
 //! The build makes these functions of their declarations in `wrappers/include/OpenMMHelfrichCWrapper.h` and
 //! `OpenMMHelfrichCForces.h` (`wrappers/declarations.rs`). They are Rust's, because a Rust library exports only Rust's own
-//! symbols; what they do is in `wrappers/src/CApi.cpp`.
+//! symbols; what they do is in `wrappers/src/CApi.cpp` and `CApiMovers.cpp`.
 //!
 //! A force is an `OpenMM_Force` that `OpenMM_System_addForce` takes. Functions that can fail return a
 //! [`Status`](crate::ffi::Status), or a null pointer; [`crate::ffi::Helfrich_lastError`] has the message.

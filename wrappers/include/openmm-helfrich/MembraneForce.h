@@ -13,17 +13,14 @@ namespace HelfrichPlugin {
  * The common part of all forces on a membrane: a triangulated surface, and named scalars.
  *
  * The triangles refer to particles of the System. They must form one or several oriented 2-manifold surfaces, of any
- * genus, closed or with borders, each triangle counter-clockwise seen from outside. When a Context is created it is
- * checked that they do and that neighbours agree. Which side is outside positions tell: forces on the volume refuse
- * triangles that all run clockwise at the first evaluation, and to others their inside is the outside, so that a
- * spontaneous curvature, an area difference and angles at rest count the other way round. Particles that no triangle
- * mentions feel no force. A border is pinned where its particles have no mass.
+ * genus, closed or with borders, each triangle counter-clockwise seen from outside; that neighbours agree is checked
+ * when a Context is created. If all run clockwise, forces on the volume refuse them, and to others the inside is the
+ * outside. Particles that no triangle mentions feel no force. A border is pinned where its particles have no mass.
  *
- * Forces on the same triangles in one Context share one evaluation of the geometry.
- *
- * If a triangle loses all its area during a simulation, its normal and with it the energy's gradient
- * are undefined; the evaluation then throws an OpenMMException that names the triangle, and so it does
- * for a particle at a position that is not finite. The Context stays usable with other positions.
+ * Forces on the same triangles in one Context share one evaluation of the geometry. If a triangle loses all its area
+ * during a simulation, its normal and with it the energy's gradient are undefined; the evaluation then throws an
+ * OpenMMException that names the triangle, as it does for a particle at a position that is not finite. The Context
+ * stays usable with other positions.
  */
 class MembraneForce : public TriangulatedForce {
 public:
