@@ -24,7 +24,8 @@ pub use surface_viscosity::SurfaceViscosityThermostat;
 /// use openmm_helfrich::force::MembraneForce;
 /// let octahedron =
 ///     [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
-/// let mut bending = MembraneForce::new("BendingForce", &octahedron, &[50.0, 0.0])?;
+/// let mut bending = MembraneForce::new("BendingForce", &octahedron, &[50.0])?;
+/// assert_eq!(bending.get("spontaneousCurvature")?, 0.0);
 /// bending.set("rigidity", 40.0)?.set_form("GompperKrollBarycentric")?;
 /// assert_eq!(bending.get("rigidity")?, 40.0);
 /// assert!(bending.set("rigidity", f64::NAN).is_err());
@@ -57,10 +58,11 @@ fn c_text(text: &str) -> Result<CString> {
 
 impl MembraneForce {
     /// A force of a class ("BendingForce") on triangles of particle indices, counter-clockwise seen from
-    /// outside, with the scalars of the class in the order of its C++ constructor.
+    /// outside, with the scalars of the class in the order of its C++ constructor. The last ones may be left out if
+    /// they have a default.
     ///
     /// # Errors
-    /// An unknown class, a wrong number of scalars, or a scalar outside its domain.
+    /// An unknown class, a scalar that is missing, too many, or one outside its domain.
     pub fn new(class: &str, triangles: &[[c_int; 3]], values: &[f64]) -> Result<Self> {
         let known = potentials::find(class)?.name();
         let count = |length: usize| {
@@ -111,7 +113,7 @@ impl MembraneForce {
         Ok(self)
     }
 
-    /// Give a scalar its own value for each vertex or triangle.
+    /// Give a scalar its own value for each vertex, triangle, edge or particle, whichever the class has.
     ///
     /// # Errors
     /// An unknown name, a scalar that cannot have them, or a value outside its domain.
@@ -138,6 +140,21 @@ impl MembraneForce {
         // SAFETY: the force is alive, and the particles are as many as is said.
         check(unsafe {
             c_api::Helfrich_ParticleSurfaceForce_setParticles(force, particles.as_ptr(), count)
+        })?;
+        Ok(self)
+    }
+
+    /// Say whether the surface lives in the periodic box of the Context.
+    ///
+    /// # Errors
+    /// None that is known.
+    pub fn set_uses_periodic_boundary_conditions(&mut self, periodic: bool) -> Result<&mut Self> {
+        // SAFETY: the force is alive.
+        check(unsafe {
+            c_api::Helfrich_MembraneForce_setUsesPeriodicBoundaryConditions(
+                self.force.as_ptr(),
+                c_int::from(periodic),
+            )
         })?;
         Ok(self)
     }
@@ -177,14 +194,17 @@ impl MembraneForce {
     /// Choose a form by its name, such as a bending scheme.
     ///
     /// # Errors
-    /// An unknown name.
+    /// A form that the class does not have.
     pub fn set_form(&mut self, name: &str) -> Result<&mut Self> {
         let (_, names) = potentials::find(self.class)?.forms().unwrap_or((c"form", &[]));
         let form = names.iter().position(|known| known.to_bytes() == name.as_bytes());
-        let form = form.ok_or_else(|| Error::UnknownName {
-            what: "form",
-            name: name.to_owned(),
-            known: names.iter().map(|name| name.to_string_lossy()).collect::<Vec<_>>().join(", "),
+        let form = form.ok_or_else(|| {
+            let known: Vec<_> = names.iter().map(|name| name.to_string_lossy()).collect();
+            let known = match known.is_empty() {
+                true => "it has none".to_owned(),
+                false => format!("known are: {}", known.join(", ")),
+            };
+            Error::Contract(format!("{}: there is no form {name:?}; {known}", self.class))
         })?;
         // SAFETY: the force is alive.
         check(unsafe {

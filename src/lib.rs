@@ -1,9 +1,9 @@
 //! Fluid membranes in OpenMM: energies and forces of triangulated vesicles.
 //!
-//! The crate has three layers. [`mesh`] validates a triangulated surface, closed or with borders,
-//! and holds its geometry; [`potentials`] state energies of geometric quantities; [`evaluator`] runs both over a
-//! mesh and turns the potentials' partial derivatives into forces. [`membrane`] lets the forces of one
-//! OpenMM Context that live on the same mesh share one evaluation, and [`ffi`] hands it all to C++.
+//! [`mesh`] validates a triangulated surface, closed or with borders, and holds its geometry; [`potentials`] state
+//! energies of geometric quantities; [`evaluator`] runs both over a mesh and turns the potentials' partial derivatives
+//! into forces. [`membrane`] lets the forces of one OpenMM Context that live on the same mesh share one evaluation, and
+//! [`ffi`] hands it all to C++. ARCHITECTURE.md has a picture of all modules.
 //!
 //! Rust programs use the forces through [`force`], beside OpenMM's C API in [`openmm`].
 //!

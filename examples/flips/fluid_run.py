@@ -107,6 +107,7 @@ def flow(
     settle_periods=3,
     friction=2.0,
     dihedrals=0.0,
+    lmax=LMAX,
 ):
     """Equilibrium fluctuations under LangevinMiddle.
 
@@ -134,11 +135,13 @@ def flow(
         γ / ω_2.
     dihedrals : float
         See `vesicle_of`.
+    lmax : int
+        Of the modes.
 
     Returns
     -------
     dict
-        "modes", u_lm of shape (num_frames, (LMAX+1)²); "bending", kJ/mol, "kinetic", K, and
+        "modes", u_lm of shape (num_frames, (lmax+1)²); "bending", kJ/mol, "kinetic", K, and
         "degrees", counts of vertices of shape (num_frames, COUNTED + 1), of each frame; "cosine",
         the mean over vertices and frames of the cosine of the angle through which a vertex has
         moved after 0, 1, 2 … frames, with the rotation of the whole removed; "interval", ps between
@@ -152,7 +155,7 @@ def flow(
 
     stride = max(1, round(vesicle.tau_2 / frames_per_period / time_step))
     num_frames = round(periods * frames_per_period)
-    modes = np.empty((num_frames, (LMAX + 1) ** 2), dtype=np.float32)
+    modes = np.empty((num_frames, (lmax + 1) ** 2), dtype=np.float32)
     bending, kinetic = np.empty((2, num_frames))
     degrees = np.empty((num_frames, COUNTED + 1), dtype=np.int32)
     directions = np.empty((num_frames, num_vertices, 3), dtype=np.float32)
@@ -165,7 +168,7 @@ def flow(
         positions = state.getPositions(asNumpy=True).value_in_unit(unit.nanometer)
         if attempts:
             triangles = mover.getTrianglesInContext(context)
-        modes[frame] = mode_amplitudes(positions, triangles, LMAX)
+        modes[frame] = mode_amplitudes(positions, triangles, lmax)
         bending[frame] = state.getPotentialEnergy().value_in_unit(unit.kilojoule_per_mole)
         kinetic[frame] = state.getKineticEnergy().value_in_unit(unit.kilojoule_per_mole)
         degrees[frame] = np.bincount(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import openmm
 from openmm import Context, unit
 
 from ._types import Array
@@ -12,13 +13,32 @@ from .forces import (
     MembraneForce,
     MonteCarloBondFlip,
     MonteCarloDomainSwap,
+    MonteCarloMembraneTension,
     SurfaceViscosityThermostat,
 )
 
-__all__ = ["context_of", "is_periodic", "present_box", "present_triangles", "surfaces_of"]
+__all__ = [
+    "context_of",
+    "has_energy",
+    "is_periodic",
+    "present_box",
+    "present_triangles",
+    "surfaces_of",
+]
 
 _MOVERS = (MonteCarloBondFlip, MonteCarloDomainSwap)
 _CLASSES = [*_MOVERS, *MembraneForce.__subclasses__(), SurfaceViscosityThermostat]
+#: What is a Force to OpenMM, and has no energy.
+_WITHOUT_ENERGY = (*_MOVERS, MonteCarloMembraneTension, SurfaceViscosityThermostat)
+_OPENMM_WITHOUT_ENERGY = (
+    openmm.AndersenThermostat,
+    openmm.CMMotionRemover,
+    openmm.MonteCarloAnisotropicBarostat,
+    openmm.MonteCarloBarostat,
+    openmm.MonteCarloFlexibleBarostat,
+    openmm.MonteCarloMembraneBarostat,
+    openmm.RPMDMonteCarloBarostat,
+)
 
 
 def context_of(where: str, given) -> Context:
@@ -30,6 +50,13 @@ def context_of(where: str, given) -> Context:
             f"{type(given).__name__}"
         )
     return found
+
+
+def has_energy(force: openmm.Force) -> bool:
+    """Whether a force of a System has an energy: movers, thermostats and barostats have none."""
+    if isinstance(force, _OPENMM_WITHOUT_ENERGY):
+        return False
+    return not any(cls.isinstance(force) for cls in _WITHOUT_ENERGY)
 
 
 def is_periodic(context, force) -> bool:

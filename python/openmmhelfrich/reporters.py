@@ -11,10 +11,10 @@ from openmm import unit
 
 from ._frame_reporters import ExtendedXYZReporter, GSDReporter, VTKHDFReporter
 from ._numbers import whole_number
+from ._present import has_energy
 from ._surface_reporters import TableReporter
 from ._types import File
 from .analysis import mode_amplitudes, shape
-from .forces import MonteCarloBondFlip, MonteCarloDomainSwap, MonteCarloMembraneTension
 from .virials import virial
 
 __all__ = [
@@ -274,13 +274,7 @@ def _group_names(system):
     """The names of the forces of each force group, joined, by group in ascending order."""
     names = {}
     for force in system.getForces():
-        # These have no energy.
-        if not (
-            isinstance(force, openmm.CMMotionRemover)
-            or MonteCarloBondFlip.isinstance(force)
-            or MonteCarloDomainSwap.isinstance(force)
-            or MonteCarloMembraneTension.isinstance(force)
-        ):
+        if has_energy(force):
             names.setdefault(force.getForceGroup(), []).append(force.getName())
     joined, taken = {}, set()
     for group, parts in sorted(names.items()):

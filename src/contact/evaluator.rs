@@ -192,27 +192,40 @@ impl Contacts {
 
     /// An upper bound of the energy that a flip can set free, kJ/mol: that of the contacts around it. `quad` is the
     /// quadrilateral before the flip.
-    pub fn most(&mut self, mesh: &Triangulation, terms: &[Term], quad: &Quad) -> f64 {
+    pub fn most(
+        &mut self,
+        mesh: &Triangulation,
+        terms: &[Term],
+        positions: &[f64],
+        quad: &Quad,
+    ) -> f64 {
         let [surface, particles] = sorted(terms);
-        let quiet = particles.iter().zip(&self.particles).all(|(_, contacts)| contacts.is_quiet());
+        let quiet = self.particles[..particles.len()].iter().all(|one| one.is_quiet(quad));
         let attracts = |(_, term): &(usize, &Term)| particle_surface::attracts(term);
         if (surface.is_empty() || self.surface.is_quiet(mesh, quad)) && quiet {
             0.0
         } else if particles.iter().any(attracts) && !quiet {
             f64::INFINITY
         } else {
-            self.around(mesh, terms, quad)
+            self.around(mesh, terms, positions, quad)
         }
     }
 
     /// The energy, kJ/mol, of all that a flip changes: of the two triangles and their edge, before the flip or after it.
-    pub fn around(&mut self, mesh: &Triangulation, terms: &[Term], quad: &Quad) -> f64 {
+    /// `positions` are those of [`Self::prepare_flips`].
+    pub fn around(
+        &mut self,
+        mesh: &Triangulation,
+        terms: &[Term],
+        positions: &[f64],
+        quad: &Quad,
+    ) -> f64 {
         let [surface, particles] = sorted(terms);
         let only: SmallVec<[&Term; 4]> = surface.iter().map(|(_, term)| *term).collect();
         let surface = self.surface.around(mesh, &only, quad);
         let pairs = particles.iter().zip(&self.particles);
         let of = |((_, term), contacts): (&(usize, &Term), &ParticleContacts)| {
-            contacts.around(mesh, term, quad.triangles())
+            contacts.around(mesh, term, positions, quad.triangles())
         };
         surface + pairs.map(of).sum::<f64>()
     }

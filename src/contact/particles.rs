@@ -9,6 +9,7 @@ use crate::error::{Error, Result};
 use crate::mesh::cell::{check_places, nowhere};
 use crate::mesh::closest::{Arms, difference, in_one_piece};
 use crate::mesh::geometry::Vec3;
+use crate::mesh::triangulation::Quad;
 use crate::mesh::{Cell, Triangulation};
 use crate::potentials::particle_surface::{self, RADIUS};
 use crate::potentials::{Contribution, Term};
@@ -26,13 +27,19 @@ pub struct ParticleContacts {
     spheres: Vec<(Vec3, f64)>,
     /// For particles of similar reach, from that of the smallest on by factors of two.
     maps: Vec<Map>,
+    /// How far a corner is from the middle of its triangle at most.
+    largest: f64,
     /// One for each thread.
     found: Vec<Found>,
+    /// For flips, which make triangles where none has been.
+    flip_map: Map,
     /// Particles near the surface when flips began, with their radii.
     near: Vec<(Vec3, f64)>,
     near_grid: Grid,
     /// How far from its middle a particle may act.
     farthest: f64,
+    /// How much farther from the triangles particles have been looked for.
+    slack: f64,
 }
 
 /// What one thread has found; all, one after the other, are in the order of particles and then triangles.
@@ -175,7 +182,7 @@ impl ParticleContacts {
         self.positions.clear();
         self.positions.extend(mesh.particles().iter().map(|particle| at(*particle)));
         check_places(cell, mesh.particles(), &self.positions)?;
-        let mut largest = 0.0;
+        let mut largest: f64 = 0.0;
         self.spheres.clear();
         self.spheres.extend(mesh.triangles().iter().map(|corners| {
             let [a, b, c] = corners.map(|corner| &self.positions[corner as usize]);
@@ -186,6 +193,7 @@ impl ParticleContacts {
             largest = far.max(largest);
             (a + middle, far)
         }));
+        self.largest = largest;
         let reach = Reach::new(term);
         let farthest = reach.of_class(reach.classes.len() - 1);
         if let Some(cell) = cell
@@ -280,13 +288,14 @@ impl ParticleContacts {
     ) -> Result<()> {
         let reach = self.prepare(mesh, cell, term, positions)?;
         self.farthest = reach.of_class(reach.classes.len() - 1);
+        self.slack = 2.0 * self.largest;
+        self.flip_map.refresh(mesh, cell, self.farthest + self.slack, &self.positions);
+        let grid = &self.flip_map.grid;
         let mut near = std::mem::take(&mut self.near);
         near.clear();
         for place in 0..term.particles.len() as u32 {
             let (at, radius) = of(term, positions, place);
-            // New triangles may come nearer than old ones, so all whose box knows a triangle are noted.
-            let map = &self.maps[reach.class(radius)];
-            if map.grid.home(&at).is_some_and(|home| !map.grid.items(home).is_empty()) {
+            if grid.home(&at).is_some_and(|home| !grid.items(home).is_empty()) {
                 near.push((at, radius));
             }
         }
@@ -301,27 +310,57 @@ impl ParticleContacts {
     }
 
     /// The energy, kJ/mol, between all particles and two triangles as the mesh has them now.
-    pub fn around(&self, mesh: &Triangulation, term: &Term, changed: [usize; 2]) -> f64 {
-        if self.near.is_empty() {
-            return 0.0;
-        }
+    pub fn around(
+        &self,
+        mesh: &Triangulation,
+        term: &Term,
+        positions: &[f64],
+        changed: [usize; 2],
+    ) -> f64 {
+        let cell = self.cell.as_ref();
         let mut energy = 0.0;
         for triangle in changed {
-            let corners = mesh.triangles()[triangle].map(|corner| &self.positions[corner as usize]);
-            let cell = self.cell.as_ref();
-            let frame = in_one_piece(cell, corners);
-            self.near_grid.near(&frame, self.farthest, |item| {
-                let (at, radius) = &self.near[item as usize];
+            let corners = mesh.triangles()[triangle];
+            let knows_all = self.knows_all_near(corners);
+            let corners = corners.map(|corner| &self.positions[corner as usize]);
+            let mut add = |at: &Vec3, radius: f64| {
                 let arms = Arms::new(cell, at, corners);
-                energy += particle_surface::pair(term, *radius, &arms).contribution.energy;
-            });
+                energy += particle_surface::pair(term, radius, &arms).contribution.energy;
+            };
+            if !knows_all {
+                for place in 0..term.particles.len() as u32 {
+                    let (at, radius) = of(term, positions, place);
+                    add(&at, radius);
+                }
+            } else if !self.near.is_empty() {
+                let frame = in_one_piece(cell, corners);
+                self.near_grid.near(&frame, self.farthest, |item| {
+                    let (at, radius) = &self.near[item as usize];
+                    add(at, *radius);
+                });
+            }
         }
         energy
     }
 
-    /// Whether no particle is near the surface.
-    pub fn is_quiet(&self) -> bool {
+    /// Whether all particles near three vertices, as corners of a triangle, have been noted. From no point of a triangle
+    /// is the next corner farther than the longest side over √3, and corners are in triangles that were there.
+    #[inline]
+    fn knows_all_near(&self, corners: [u32; 3]) -> bool {
+        let [a, b, c] = corners.map(|corner| &self.positions[corner as usize]);
+        let most = 3.0 * self.slack * self.slack;
+        [(a, b), (b, c), (c, a)]
+            .iter()
+            .all(|(a, b)| difference(self.cell.as_ref(), a, b).norm_squared() <= most)
+    }
+
+    /// Whether no particle is near the triangles of a quadrilateral, nor near those that a flip makes.
+    pub fn is_quiet(&self, quad: &Quad) -> bool {
+        let [i, j, k, l] = quad.vertices;
         self.near.is_empty()
+            && [[i, j, k], [j, i, l], [k, i, l], [l, j, k]]
+                .iter()
+                .all(|corners| self.knows_all_near(*corners))
     }
 }
 

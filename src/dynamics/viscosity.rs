@@ -220,8 +220,9 @@ impl Group {
         let slots = self.inverse_mass.iter_mut().zip(&mut self.damping);
         for (&[i, j], (inverse_mass, loss)) in edges.iter().zip(slots) {
             let (i, j) = (i as usize, j as usize);
-            // Of two vertices that do not move both losses are zero, and nothing happens.
-            *inverse_mass = (velocities[i][3] + velocities[j][3]).max(f64::MIN_POSITIVE);
+            // Of two vertices that do not move both losses are zero, and nothing happens, whatever stands here.
+            let sum = velocities[i][3] + velocities[j][3];
+            *inverse_mass = if sum == 0.0 { 1.0 } else { sum };
             *loss = losses[i] + losses[j] - losses[i] * losses[j];
         }
     }

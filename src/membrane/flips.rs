@@ -48,7 +48,7 @@ impl Membrane {
         if terms.iter().any(is_contact) {
             let contacts = &mut self.contacts;
             contacts.prepare_flips(mesh, cell, terms, positions)?;
-            touched.push(Touched { contacts, terms, mesh: None, first_half: 0 });
+            touched.push(Touched { contacts, terms, positions, mesh: None, first_half: 0 });
         }
         for Follower { membrane, first_triangle, terms } in &mut *followers {
             let (contacts, mesh) = (&mut membrane.contacts, &mut membrane.surface.mesh);
@@ -61,7 +61,7 @@ impl Membrane {
             }
             contacts.prepare_flips(mesh, cell, terms, positions)?;
             let first_half = 3 * *first_triangle as u32;
-            touched.push(Touched { contacts, terms, mesh: Some(mesh), first_half });
+            touched.push(Touched { contacts, terms, positions, mesh: Some(mesh), first_half });
         }
 
         let mesh = &mut self.surface.mesh;

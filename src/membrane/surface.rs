@@ -76,7 +76,14 @@ impl Surface {
     /// Those of [`Unfolding::unfold`].
     pub fn place<'a>(&'a mut self, at: Configuration<'a>) -> Result<Placed<'a>> {
         let (positions, has_new_images) = match at.cell {
-            None => (at.positions, self.mesh.set_images(Vec::new())),
+            None => {
+                let has_new_images = self.mesh.set_images(Vec::new());
+                if has_new_images {
+                    // In a box again, it would take the images for those that it has found before.
+                    self.unfolding.connectivity_changed();
+                }
+                (at.positions, has_new_images)
+            }
             Some(cell) => {
                 let found = self.unfolding.unfold(&mut self.mesh, at.positions, cell)?;
                 (found.positions, found.has_new_images)

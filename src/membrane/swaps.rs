@@ -14,7 +14,8 @@ impl Membrane {
     /// alone if there were none. `version` is what terms will have for theirs that have been changed.
     ///
     /// # Errors
-    /// A term as [`Self::evaluate`] refuses it, a mesh without geometry: the sources are to be forgotten then.
+    /// A term as [`Self::evaluate`] refuses it, a mesh without geometry, a GPU that was asked for and fails: the round's
+    /// state is as it was, and the sources are to be forgotten.
     pub fn swap(
         &mut self,
         terms: &[Term],
@@ -25,14 +26,16 @@ impl Membrane {
     ) -> Result<u64> {
         self.look_around(terms, at, force_change.is_some())?;
         let SwapRound { rules, attempts, state, kinds, sources } = round;
-        let round = SwapRound { rules, attempts, state, kinds, sources: &mut *sources };
+        let before = *state;
+        let round =
+            SwapRound { rules, attempts, state: &mut *state, kinds, sources: &mut *sources };
         let made = swaps::attempt(&self.surface.mesh, &self.local, terms, round);
         if let (true, Some(change)) = (made > 0, force_change) {
             let moved: Vec<_> =
                 terms.iter().map(|term| Moved::new(term, sources, version)).collect();
             let pairs = terms.iter().zip(&moved);
             let terms: SmallVec<[Term; 8]> = pairs.map(|(term, moved)| moved.apply(term)).collect();
-            self.compare_forces(&terms, at, change)?;
+            self.compare_forces(&terms, at, change).inspect_err(|_| *state = before)?;
         }
         Ok(made)
     }

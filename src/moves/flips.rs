@@ -3,8 +3,9 @@
 //! The edge ij of two triangles (i, j, k) and (j, i, l) becomes kl. An edge is chosen uniformly among all, with one of
 //! two ways to turn it, which decides which triangle keeps which index; the number of edges never changes, so proposals
 //! are symmetric. A flip is refused if it would leave a vertex with fewer neighbours than
-//! allowed (on a border, one fewer) or give it more, if kl would be too long or exists already, or if a new triangle would have no area: all of
-//! these limit the set of states, and a move out of it is a move that is not made. Otherwise it is accepted with
+//! allowed (on a border, one fewer) or give it more, if kl would be too long or exists already, or if a new triangle would have no area:
+//! these limit the set of states, and a move out of it is a move that is not made. (An edge that vertices have stretched
+//! beyond the longest may still flip, but not come back: at fixed positions it is outside of the set.) Otherwise it is accepted with
 //! probability min(1, exp(−ΔE / kT)) (N. Metropolis et al., doi:10.1063/1.1699114), or, without a bath, if a demon can
 //! pay for it (M. Creutz, doi:10.1103/PhysRevLett.50.1411). Either leaves the weight of positions, momenta and
 //! connectivity in its ensemble unchanged; with a thermostat of the same temperature the joint Boltzmann
@@ -85,6 +86,8 @@ pub struct Touched<'a, 't> {
     pub contacts: &'a mut Contacts,
     /// and what they are evaluated with, among other terms.
     pub terms: &'a [Term<'t>],
+    /// Of all particles, nm, one after the other.
+    pub positions: &'a [f64],
     /// The mesh that they are of, if it is not the one that flips but has its triangles among its own; it makes the same
     /// flips then.
     pub mesh: Option<&'a mut Triangulation>,
@@ -101,13 +104,14 @@ impl Touched<'_, '_> {
     /// The most that a flip can gain, kJ/mol.
     fn most(&mut self, mesh: &Triangulation, half: u32) -> f64 {
         let quad = self.quad(mesh, half);
-        self.contacts.most(self.mesh.as_deref().unwrap_or(mesh), self.terms, &quad)
+        let mesh = self.mesh.as_deref().unwrap_or(mesh);
+        self.contacts.most(mesh, self.terms, self.positions, &quad)
     }
 
     /// The energy of all that a flip changes, before it or after it, kJ/mol.
     fn around(&mut self, mesh: &Triangulation, quad: &Quad) -> f64 {
         let mesh = self.mesh.as_deref().unwrap_or(mesh);
-        self.contacts.around(mesh, self.terms, quad)
+        self.contacts.around(mesh, self.terms, self.positions, quad)
     }
 
     fn flip(&mut self, quad: &Quad, turn: Turn) {

@@ -149,7 +149,7 @@ impl MadeOf {
                         "{name} has vertex {vertex} at ({x}, {y}, {z}) nm, which is not finite"
                     ));
                 }
-                [domain] if domain.trunc() != *domain => {
+                [domain] if !domain.is_finite() || domain.trunc() != *domain => {
                     return refuse(format!(
                         "{name} must be whole numbers, but vertex {vertex} has {domain}"
                     ));

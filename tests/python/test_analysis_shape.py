@@ -7,6 +7,7 @@ from numpy_energies import Geometry
 from openmm import unit
 from openmmhelfrich import analysis
 from openmmhelfrich.analysis.curvature import SCHEMES
+from openmmhelfrich.errors import MeshError
 from openmmhelfrich.forces import (
     BendingForce,
     EnclosedVolumeForce,
@@ -150,6 +151,20 @@ class TestLandscape:
                     assert found[name][i, j] == pytest.approx(moved.energy(force), rel=1e-10)
             single = analysis.landscape(rough, forces["heights"], 7, grid.points[1])
             np.testing.assert_array_equal(single, found["heights"][1])
+
+    def test_of_a_sheet_in_its_box(self):
+        sheet = Mesh.sheet(8, 8, 6.0, periodic=True)
+        force = BendingForce(sheet, 50)
+        points = sheet.vertices[9] + [[0, 0, 0], [0, 0, 0.5], [0.2, -0.1, 1.0]]
+        found = analysis.landscape(sheet, force, 9, points)
+        for energy, point in zip(found, points, strict=True):
+            vertices = sheet.vertices.copy()
+            vertices[9] = point
+            moved = Mesh(vertices, sheet.triangles, box=sheet.box)
+            assert energy == pytest.approx(moved.energy(force), rel=1e-10, abs=1e-10)
+        assert found[2] > 1
+        with pytest.raises(MeshError, match="^landscape: the mesh has a periodic box"):
+            analysis.landscape(sheet, BendingForce(sheet.triangles, 50), 9, points)
 
     def test_grids(self, rough):
         centre, vertex = rough.vertices.mean(axis=0), rough.vertices[7]

@@ -9,13 +9,14 @@ import subprocess
 import sys
 import time
 from itertools import islice
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from openmm.app.internal.xtc_utils import read_xtc
 from openmmhelfrich import Mesh, vcm
 from openmmhelfrich.analysis import mean_curvature
-from openmmhelfrich.simulation.outputs import report_steps
+from openmmhelfrich.simulation.outputs import Frame, Outputs, report_steps
 from openmmhelfrich.simulation.runner import Run, RunError
 from openmmhelfrich.vcm.parsers import Interval
 from run_files import config, contents, invoke, results
@@ -136,6 +137,19 @@ class TestFiles:
         assert np.allclose(times, [0.4 * n for n in range(FRAMES)])
         for found, state in zip(np.moveaxis(coordinates, -1, 0), frames, strict=True):
             assert np.abs(found - positions_of(state)).max() < 6e-4
+
+    def test_xtc_after_more_steps_than_it_can_count(self, finished, frames, tmp_path):
+        cfg, _, _ = finished
+        state, step = frames[0], 2**31 + 7
+        frame = Frame(
+            step, 1e9, 0, 0, positions_of(state), positions_of(state), None, {}, 10 * np.eye(3), ()
+        )
+        path = tmp_path / "late.xtc"
+        path.write_bytes(Outputs._xtc(SimpleNamespace(_cfg=cfg), frame))
+        coordinates, _, times, steps = read_xtc(os.fsencode(path))
+        assert list(steps) == [7]
+        assert list(times) == [1e9]
+        assert np.abs(coordinates[..., 0] - positions_of(state)).max() < 6e-4
 
     def test_ply(self, finished, frames, lumpy):
         cfg, out, _ = finished

@@ -116,6 +116,26 @@ def test_a_demon_pays_for_contacts():
     assert all(mover.getStatistics(context)["accepted"] > 50 for mover in movers)
 
 
+def test_flips_see_particles_that_only_new_triangles_reach():
+    """A folded sheet of two triangles, and a bead where the other diagonal would be."""
+    corners = [[0, 0, 0], [0, 10, 0], [10, 5, 0], [0, 5, 10]]
+    mesh = helfrich.Mesh(corners, [[0, 1, 2], [1, 0, 3]])
+    for bead, passes in ([5.02, 5, 5], False), ([5.5, 5, 5], True):
+        system = mm.System()
+        for _ in range(5):
+            system.addParticle(0.0)
+        system.addForce(helfrich.ParticleSurfaceForce(mesh, [4], 0.2, 3.0))
+        mover = helfrich.MonteCarloBondFlip(mesh, 300.0, frequency=1, attemptsPerEdge=20.0)
+        mover.setRandomNumberSeed(5)
+        system.addForce(mover)
+        context = REFERENCE.context(system, mm.VerletIntegrator(0.001))
+        context.setPositions([*corners, bead])
+        assert energy(context) == 0
+        context.getIntegrator().step(4)
+        assert energy(context) == 0
+        assert (mover.getStatistics(context)["accepted"] > 10) == passes
+
+
 def test_what_does_not_follow_is_refused():
     vesicles, positions, triangles = pressed()
     system = mm.System()

@@ -84,6 +84,24 @@ class TestCheckpoints:
         np.testing.assert_array_equal(flips.getPermutationInContext(context), np.arange(COUNT))
         np.testing.assert_array_equal(flips.getTrianglesInContext(context), triangles)
 
+    def test_of_a_system_without_the_mover(self):
+        """What the mover has exchanged is as it was then, and the Context's parameters say so."""
+        without = HELFRICH.context(system_of(*forces_of(start(), domains_of(COUNT))), langevin())
+        without.setPositions(start().vertices)
+        old = without.createCheckpoint()
+        context, mover = mixing(HELFRICH)
+        assert mover.getStatistics(step(context, 20))["accepted"] > 20
+        assert context.getParameter("DomainSwapPermutation0") != 0
+        context.loadCheckpoint(old)
+        np.testing.assert_array_equal(mover.getPermutationInContext(context), np.arange(COUNT))
+        assert context.getParameter("DomainSwapPermutation0") == 0
+        assert measure(context)[0] == pytest.approx(measure(without)[0], rel=1e-12)
+        state = context.getState(positions=True, parameters=True, energy=True)
+        other, _ = mixing(HELFRICH)
+        other.setState(state)
+        assert measure(other)[0] == pytest.approx(measure(without)[0], rel=1e-12)
+        assert_as_fresh(step(context, 4), HELFRICH, 1e-9)
+
     def test_that_are_damaged(self):
         context, swaps, _ = both()
         saved = bytearray(swaps._saveConnectivity(step(context, 10)))
@@ -166,6 +184,16 @@ class TestMadeAnew:
         again, *others = both(target, mm.VerletIntegrator(0.2))
         step(context, 13).reinitialize(preserveState=True)
         assert all_of(step(context, 20), *movers) == all_of(step(again, 33), *others)
+
+    @pytest.mark.parametrize("target", [REFERENCE, HELFRICH], ids=str)
+    def test_under_an_integrator_of_variable_masses(self, target):
+        def made():
+            return mixing(target, helfrich.VariableMassVerletIntegrator(0.2))
+
+        (context, mover), (again, other) = made(), made()
+        step(context, 13).reinitialize(preserveState=True)
+        assert all_of(step(context, 20), mover) == all_of(step(again, 33), other)
+        assert mover.getStatistics(context)["accepted"] > 20
 
     @pytest.mark.parametrize("target", [HELFRICH, *ELSEWHERE], ids=str)
     def test_whatever_asks_first(self, target):

@@ -11,6 +11,7 @@ import sys
 import zipfile
 
 import meshes
+import meshio
 import numpy as np
 import openmm as mm
 import openmmhelfrich as helfrich
@@ -186,6 +187,29 @@ def test_gmsh_files_that_count_more_nodes_than_they_have(tmp_path, merge, counte
         match=rf"m\.msh.*: counts {counted} nodes, more than it",
     ):
         Mesh.read(tmp_path / "m.msh", merge=merge)
+
+
+@pytest.mark.parametrize("file_format", ["gmsh22", "gmsh"])
+@pytest.mark.parametrize("binary", [True, False])
+def test_gmsh_files_whose_nodes_have_enormous_numbers(tmp_path, file_format, binary):
+    """meshio makes a list up to the largest: it took ten seconds and some GiB."""
+    mesh, path = Mesh.icosphere(2, 10.0), tmp_path / "m.msh"
+    plain = meshio.Mesh(1e8 * np.round(mesh.vertices), [("triangle", mesh.triangles)])
+    plain.write(path, file_format=file_format, binary=binary)
+    # Coordinates may be large.
+    np.testing.assert_allclose(Mesh.read(path).vertices, plain.points)
+    data, number = path.read_bytes(), 2_000_000_017
+    nodes = data.index(b"$Nodes")
+    if binary:
+        written = struct.pack("<i" if file_format == "gmsh22" else "<q", 33)
+        place = data.index(written, nodes + 60)
+        data = data[:place] + struct.pack("<i", number) + data[place + 4 :]
+    else:
+        place = data.index(b"\n33", nodes) + 1
+        data = data[:place] + str(number).encode() + data[place + 2 :]
+    path.write_bytes(data)
+    with pytest.raises(MeshError, match=rf"m\.msh.*: gives a node the number {number};"):
+        Mesh.read(path)
 
 
 @pytest.mark.parametrize(

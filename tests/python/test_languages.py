@@ -100,13 +100,13 @@ def test_cpp_with_cmake(tmp_path, mesh_file, expected):
     (tmp_path / "CMakeLists.txt").write_text(
         "cmake_minimum_required(VERSION 3.15)\n"
         "project(vesicle CXX)\n"
-        "find_package(OpenMMHelfrich REQUIRED)\n"
+        f"find_package(OpenMMHelfrich {helfrich.__version__} REQUIRED)\n"
         f"add_executable(vesicle {PROJECT / 'examples' / 'vesicle.cpp'})\n"
         "target_link_libraries(vesicle OpenMMHelfrich::OpenMMHelfrich)\n"
     )
     build = tmp_path / "build"
-    where = f"-DOpenMMHelfrich_DIR={helfrich.cmake_path()}"
-    run([cmake, "-S", tmp_path, "-B", build, where], env=dict(os.environ, OPENMM_DIR=str(OPENMM)))
+    where = [f"-DOpenMMHelfrich_DIR={helfrich.cmake_path()}", f"-DOPENMM_DIR={OPENMM}"]
+    run([cmake, "-S", tmp_path, "-B", build, *where])
     run([cmake, "--build", build])
     check(run([build / "vesicle", mesh_file]), expected)
 

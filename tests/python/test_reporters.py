@@ -88,6 +88,21 @@ class TestFiles:
         for name, value in analysis.shape(now, mesh)._asdict().items():
             assert table[name][-1] == pytest.approx(value, rel=1e-12)
 
+    def test_what_has_no_energy_has_no_column(self, mesh, tmp_path, suffix):
+        vesicle = Vesicle(mesh, viscosity=20, flips=0.01)
+        system = vesicle.system()
+        system.addForce(openmm.AndersenThermostat(300, 1))
+        system.addForce(openmm.CMMotionRemover())
+        integrator = openmm.VerletIntegrator(0.01)
+        simulation = openmm.app.Simulation(mesh.topology(), system, integrator)
+        simulation.context.setPositions(mesh.vertices)
+        path = tmp_path / f"membrane.{suffix}"
+        simulation.reporters.append(MembraneReporter(path, 1, mesh))
+        simulation.step(2)
+        found = {name for name in analysis.read_table(path) if name.endswith("_energy")}
+        named = {f"{name}_energy" for name in vesicle.placement.forces}
+        assert found == named | {"potential_energy", "kinetic_energy"}
+
     def test_forces_of_any_name(self, mesh, tmp_path, suffix):
         """Parentheses, commas and quotes in names, and one name twice."""
         names = ["bending (inner)", "bending (outer)", 'a "b", c', "x", "x"]

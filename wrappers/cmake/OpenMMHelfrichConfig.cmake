@@ -5,11 +5,14 @@
 #     find_package(OpenMMHelfrich REQUIRED)
 #     target_link_libraries(program OpenMMHelfrich::OpenMMHelfrich)
 #
-# The target brings OpenMM along: the one in $OPENMM_DIR (a folder with include and lib) if that is
-# set, else the one beside which the plugin was installed. Programs find both libraries where they are now.
+# The target brings OpenMM along: the one in OPENMM_DIR (a folder with include and lib), a variable of
+# CMake or of the environment, if that is set, else the one beside which the plugin was installed. Programs find both
+# libraries where they are now.
 
 get_filename_component(_helfrich_package "${CMAKE_CURRENT_LIST_DIR}/.." ABSOLUTE)
-if(DEFINED ENV{OPENMM_DIR})
+if(DEFINED OPENMM_DIR)
+    set(_helfrich_openmm "${OPENMM_DIR}")
+elseif(DEFINED ENV{OPENMM_DIR})
     set(_helfrich_openmm "$ENV{OPENMM_DIR}")
 else()
     get_filename_component(_helfrich_openmm "${_helfrich_package}/../OpenMM.libs" ABSOLUTE)
@@ -23,7 +26,7 @@ include(FindPackageHandleStandardArgs)
 find_package_handle_standard_args(
     OpenMMHelfrich
     REQUIRED_VARS _helfrich_library OpenMMHelfrich_OPENMM_INCLUDE OpenMMHelfrich_OPENMM_LIBRARY
-    REASON_FAILURE_MESSAGE "OpenMM was not found in ${_helfrich_openmm}. Set OPENMM_DIR in the environment.")
+    REASON_FAILURE_MESSAGE "OpenMM was not found in ${_helfrich_openmm}. Give -DOPENMM_DIR=…, a folder with include and lib.")
 
 if(OpenMMHelfrich_FOUND AND NOT TARGET OpenMMHelfrich::OpenMMHelfrich)
     add_library(OpenMMHelfrich::OpenMMHelfrich SHARED IMPORTED)

@@ -8,7 +8,11 @@
  * System owns is deleted with Helfrich_MembraneForce_destroy(). The C++ headers in openmm-helfrich/ have the formulas.
  *
  * The create functions return null for failure, most others a Helfrich_Status; Helfrich_lastError() then has the
- * message. (OpenMM's own C functions end the program instead.)
+ * message. (OpenMM's own C functions end the program instead.) What results are written to must not be null and have
+ * room for them.
+ *
+ * Units are OpenMM's: nm, ps, amu, kJ/mol, K, radians. The environment variable HELFRICH_BACKEND chooses what computes
+ * membranes in the whole process, as setBackend does for one force.
  */
 
 #include "OpenMMHelfrichCForces.h"
@@ -27,8 +31,9 @@ extern int64_t Helfrich_lastError(char* buffer, int64_t size);
 extern const char* Helfrich_openmmVersion(void);
 
 /**
- * Register the platform Helfrich, which OpenMM then chooses for membranes where no other is named, and the readers
- * of XML. OpenMM does so itself where it loads the library as a plugin.
+ * Register the platform Helfrich, which OpenMM then chooses for membranes where no other is named, readers and writers
+ * of XML, and the steps of the integrators of variable masses. Call it first. OpenMM does so itself where it loads the
+ * library as a plugin.
  */
 extern void Helfrich_register(void);
 
@@ -43,7 +48,11 @@ extern Helfrich_Status Helfrich_MembraneForce_getParameterValue(OpenMM_Force* fo
                                                                 double* value);
 extern Helfrich_Status Helfrich_MembraneForce_setParameterValue(OpenMM_Force* force, const char* parameter,
                                                                 double value);
-/** One value for each vertex (in ascending order of particle index) or triangle; count 0 goes back. */
+/**
+ * One value for each vertex (in ascending order of particle index), triangle, edge (in ascending order of the particles
+ * at its ends, of a DihedralForce) or particle (in the order of setParticles, the radii of a ParticleSurfaceForce);
+ * count 0 goes back to the scalar.
+ */
 extern Helfrich_Status Helfrich_MembraneForce_setElementValues(OpenMM_Force* force, const char* parameter,
                                                                const double* values, int count);
 /** Returns how many values of single elements a scalar has: 0 without, or -1 for failure. */
@@ -57,16 +66,17 @@ extern Helfrich_Status Helfrich_MembraneForce_getElementValues(OpenMM_Force* for
  */
 extern Helfrich_Status Helfrich_MembraneForce_setReference(OpenMM_Force* force, const double* positions,
                                                            int numVertices, const double* boxVectors);
-/** Choose a bending scheme or a form of the dihedral potential or of springs. */
+/** Choose a bending scheme, or a form of the dihedral potential, of springs, of Lim's law or of attraction. */
 extern Helfrich_Status Helfrich_MembraneForce_setForm(OpenMM_Force* force, int form);
 /** Returns -1 for failure. */
 extern int Helfrich_MembraneForce_getForm(OpenMM_Force* force);
-/** Switch something on or off: "unsignedSpontaneousCurvature" of a BendingForce. */
+/** Switch on or off: "unsignedSpontaneousCurvature" of a BendingForce, "onlyBetweenParts" of a SurfaceRepulsionForce.
+ */
 extern Helfrich_Status Helfrich_MembraneForce_setSwitch(OpenMM_Force* force, const char* name, int on);
 /** Returns 1, 0, or -1 for failure. */
 extern int Helfrich_MembraneForce_getSwitch(OpenMM_Force* force, const char* name);
-/** What computes the force: "cpu", "native", "gpu", "gpu:single", "gpu:double", "auto", or "" for the choice of the
- * process. */
+/** What computes the force: "cpu", "native", "gpu", "gpu:single", "gpu:double", "gpu@1" (the second adapter), "auto",
+ * or "" for the choice of the process. */
 extern Helfrich_Status Helfrich_MembraneForce_setBackend(OpenMM_Force* force, const char* backend);
 /** Say whether the surface lives in the periodic box of the Context. */
 extern Helfrich_Status Helfrich_MembraneForce_setUsesPeriodicBoundaryConditions(OpenMM_Force* force, int periodic);
@@ -119,8 +129,9 @@ typedef enum {
 } Helfrich_MonteCarloBondFlip_Ensemble;
 
 /*
- * Bond flips. The functions of Helfrich_MembraneForce for triangles and destroy() are for this class too. Getters
- * return NaN or -1 for failure.
+ * Bond flips: the temperature in K, which is the Context parameter "BondFlipTemperature", every how many steps,
+ * attempts for each edge then, least and most neighbours, and nm, or 0 for no bound. The functions of
+ * Helfrich_MembraneForce for triangles and destroy() are for this class too. Getters return NaN or -1 for failure.
  */
 extern OpenMM_Force* Helfrich_MonteCarloBondFlip_create(const int* triangles, int numTriangles, double temperature,
                                                         int frequency, double attemptsPerEdge, int minDegree,
@@ -154,6 +165,7 @@ typedef enum {
     Helfrich_MonteCarloDomainSwap_Microcanonical = 1
 } Helfrich_MonteCarloDomainSwap_Ensemble;
 
+/* The same of exchanges; the Context parameter is "DomainSwapTemperature". */
 extern OpenMM_Force* Helfrich_MonteCarloDomainSwap_create(const int* triangles, int numTriangles, double temperature,
                                                           int frequency, double attemptsPerEdge);
 extern double Helfrich_MonteCarloDomainSwap_getDefaultTemperature(OpenMM_Force* force);
@@ -181,7 +193,11 @@ typedef enum {
     Helfrich_MonteCarloMembraneTension_ZOnly = 3
 } Helfrich_MonteCarloMembraneTension_Axes;
 
-/* Constant tension. Helfrich_MembraneForce_destroy() is for this class too. Getters return NaN or -1 for failure. */
+/*
+ * Constant tension: K, kJ/mol/nm^2, every how many steps, axes, and kJ/mol/nm, which are the Context parameters
+ * "MembraneTensionTemperature", "MembraneTension" and "MembranePullingForce" (those that the axes use).
+ * Helfrich_MembraneForce_destroy() is for this class too. Getters return NaN or -1 for failure.
+ */
 extern OpenMM_Force* Helfrich_MonteCarloMembraneTension_create(double temperature, double tension, int frequency,
                                                                int axes, double pullingForce);
 extern double Helfrich_MonteCarloMembraneTension_getDefaultTemperature(OpenMM_Force* force);
@@ -209,10 +225,17 @@ extern Helfrich_Status Helfrich_MonteCarloMembraneTension_updateParametersInCont
 /** `name` is "attempts", "accepted" or another that MonteCarloMembraneTension.h tells. */
 extern Helfrich_Status Helfrich_MonteCarloMembraneTension_getStatistic(OpenMM_Force* force, OpenMM_Context* context,
                                                                        const char* name, double* value);
+/** Copy what is needed to go on with the same moves, if the buffer has room for it; the length, or -1 for failure. */
+extern int64_t Helfrich_MonteCarloMembraneTension_saveState(OpenMM_Force* force, OpenMM_Context* context, char* buffer,
+                                                            int64_t size);
+/** Go on with what Helfrich_MonteCarloMembraneTension_saveState() has copied. */
+extern Helfrich_Status Helfrich_MonteCarloMembraneTension_restoreState(OpenMM_Force* force, OpenMM_Context* context,
+                                                                       const char* saved, int64_t size);
 
 /*
- * Friction and noise along edges. The functions of Helfrich_MembraneForce for triangles and destroy() are for this
- * class too. Getters return NaN or -1 for failure.
+ * Friction and noise along edges: amu/ps, K, which are the Context parameters "SurfaceViscosityFriction" and
+ * "SurfaceViscosityTemperature", and every how many steps. The functions of Helfrich_MembraneForce for triangles and
+ * destroy() are for this class too. Getters return NaN or -1 for failure.
  */
 extern OpenMM_Force* Helfrich_SurfaceViscosityThermostat_create(const int* triangles, int numTriangles, double friction,
                                                                 double temperature, int frequency);
@@ -231,19 +254,29 @@ extern Helfrich_Status Helfrich_SurfaceViscosityThermostat_setRandomNumberSeed(O
 extern Helfrich_Status Helfrich_SurfaceViscosityThermostat_setFrictionParameter(OpenMM_Force* force, const char* name);
 extern Helfrich_Status Helfrich_SurfaceViscosityThermostat_updateParametersInContext(OpenMM_Force* force,
                                                                                      OpenMM_Context* context);
+/** Copy what is needed to go on with the same noise, if the buffer has room for it; the length, or -1 for failure. */
+extern int64_t Helfrich_SurfaceViscosityThermostat_saveState(OpenMM_Force* force, OpenMM_Context* context, char* buffer,
+                                                             int64_t size);
+/** Go on with what Helfrich_SurfaceViscosityThermostat_saveState() has copied. */
+extern Helfrich_Status Helfrich_SurfaceViscosityThermostat_restoreState(OpenMM_Force* force, OpenMM_Context* context,
+                                                                        const char* saved, int64_t size);
 
 /*
  * Integrators of membranes whose vertices carry the mass of their plaquettes. The functions of OpenMM_Integrator are
- * for these, too. Getters return NaN or -1 for failure. A density of 0 stands for surfaces of constant mass.
+ * for these, too. Getters return NaN or -1 for failure. Step sizes are in ps, temperatures in K, couplings to the bath
+ * in 1/ps, densities in amu/nm^2, 0 standing for surfaces of constant mass. getMasses writes the present mass of every
+ * particle, amu; 0 for those that do not move.
  */
 extern OpenMM_Integrator* Helfrich_VariableMassVerletIntegrator_create(double stepSize, double density);
 extern double Helfrich_VariableMassVerletIntegrator_getDensity(OpenMM_Integrator* integrator);
 extern Helfrich_Status Helfrich_VariableMassVerletIntegrator_setDensity(OpenMM_Integrator* integrator, double density);
+extern Helfrich_Status Helfrich_VariableMassVerletIntegrator_getMasses(OpenMM_Integrator* integrator, double* masses);
 extern OpenMM_Integrator* Helfrich_VariableMassLangevinIntegrator_create(double temperature, double frictionCoeff,
                                                                          double stepSize, double density);
 extern double Helfrich_VariableMassLangevinIntegrator_getDensity(OpenMM_Integrator* integrator);
 extern Helfrich_Status Helfrich_VariableMassLangevinIntegrator_setDensity(OpenMM_Integrator* integrator,
                                                                           double density);
+extern Helfrich_Status Helfrich_VariableMassLangevinIntegrator_getMasses(OpenMM_Integrator* integrator, double* masses);
 extern double Helfrich_VariableMassLangevinIntegrator_getTemperature(OpenMM_Integrator* integrator);
 extern Helfrich_Status Helfrich_VariableMassLangevinIntegrator_setTemperature(OpenMM_Integrator* integrator,
                                                                               double temperature);

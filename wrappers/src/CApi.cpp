@@ -32,14 +32,21 @@ extern "C" {
 OpenMM_Force* helfrich_shim_createForce(const char* type, const int* triangles, int numTriangles, const double* values,
                                         int numValues, int form) {
     return made([&] {
-        std::unique_ptr<MembraneForce> force(makeForce(type));
-        HelfrichParameterInfo next;
-        bool lacksOne =
-            Helfrich_Potential_parameter(type, numValues, &next) == Helfrich_Success && std::isnan(next.defaultValue);
-        if (lacksOne || numValues > force->getNumParameters())
-            throw OpenMMException(string(type) + ": needs " + std::to_string(force->getNumParameters()) + " scalars");
-        for (int i = 0; i < numValues; i++)
-            force->setParameterValue(force->getParameterName(i), values[i]);
+        std::unique_ptr<MembraneForce> force(makeForce(nameOf("MembraneForce", type)));
+        int known = force->getNumParameters();
+        vector<double> all = arrayOf(type, "scalars", values, numValues);
+        while ((int) all.size() < known) {
+            HelfrichParameterInfo next;
+            check(Helfrich_Potential_parameter(type, (int) all.size(), &next));
+            all.push_back(next.defaultValue);
+        }
+        if (numValues > known ||
+            std::any_of(all.begin() + numValues, all.end(), [](double x) { return std::isnan(x); }))
+            throw OpenMMException(string(type) + ": needs " + std::to_string(known) + " scalars, got " +
+                                  std::to_string(numValues) + "; only the last ones may be left out, if they have a " +
+                                  "default");
+        for (int i = 0; i < known; i++)
+            force->setParameterValue(force->getParameterName(i), all[i]);
         if (form != 0)
             force->setForm(form);
         force->addTriangles(cornersOf(type, triangles, numTriangles));
@@ -65,27 +72,32 @@ Helfrich_Status helfrich_shim_MembraneForce_getTriangle(OpenMM_Force* force, int
 
 Helfrich_Status helfrich_shim_MembraneForce_getParameterValue(OpenMM_Force* force, const char* parameter,
                                                               double* value) {
-    return guarded([&] { *value = asForce(force).getParameterValue(parameter); });
+    return guarded([&] { *value = asForce(force).getParameterValue(nameOf("MembraneForce", parameter)); });
 }
 
 Helfrich_Status helfrich_shim_MembraneForce_setParameterValue(OpenMM_Force* force, const char* parameter,
                                                               double value) {
-    return guarded([&] { asForce(force).setParameterValue(parameter, value); });
+    return guarded([&] { asForce(force).setParameterValue(nameOf("MembraneForce", parameter), value); });
 }
 
 Helfrich_Status helfrich_shim_MembraneForce_setElementValues(OpenMM_Force* force, const char* parameter,
                                                              const double* values, int count) {
-    return guarded([&] { asForce(force).setElementValues(parameter, vector<double>(values, values + count)); });
+    return guarded([&] {
+        MembraneForce& owner = asForce(force);
+        string type = owner.getTypeName();
+        owner.setElementValues(nameOf(type, parameter), arrayOf(type, "values", values, count));
+    });
 }
 
 int helfrich_shim_MembraneForce_getNumElementValues(OpenMM_Force* force, const char* parameter) {
-    return valueOr<int>(-1, [&] { return (int) asForce(force).getElementValues(parameter).size(); });
+    return valueOr<int>(
+        -1, [&] { return (int) asForce(force).getElementValues(nameOf("MembraneForce", parameter)).size(); });
 }
 
 Helfrich_Status helfrich_shim_MembraneForce_getElementValues(OpenMM_Force* force, const char* parameter,
                                                              double* values) {
     return guarded([&] {
-        const vector<double>& found = asForce(force).getElementValues(parameter);
+        const vector<double>& found = asForce(force).getElementValues(nameOf("MembraneForce", parameter));
         std::copy(found.begin(), found.end(), values);
     });
 }
@@ -93,9 +105,7 @@ Helfrich_Status helfrich_shim_MembraneForce_getElementValues(OpenMM_Force* force
 Helfrich_Status helfrich_shim_ParticleSurfaceForce_setParticles(OpenMM_Force* force, const int* particles, int count) {
     return guarded([&] {
         auto& owner = as<ParticleSurfaceForce>("ParticleSurfaceForce", force);
-        if (count < 0)
-            throw OpenMMException(owner.getTypeName() + ": the number of particles is negative");
-        owner.setParticles(vector<int>(particles, particles + count));
+        owner.setParticles(arrayOf(owner.getTypeName(), "particles", particles, count));
     });
 }
 
@@ -103,19 +113,22 @@ Helfrich_Status helfrich_shim_MembraneForce_setReference(OpenMM_Force* force, co
                                                          const double* boxVectors) {
     return guarded([&] {
         MembraneForce& owner = asForce(force);
-        if (numVertices < 0)
-            throw OpenMMException(owner.getTypeName() + ": the number of vertices is negative");
+        vector<double> points = arrayOf(owner.getTypeName(), "vertices", positions, numVertices, 3);
+        vector<double> before = owner.getReferenceBox();
         owner.setReferenceBox(boxVectors == nullptr ? vector<double>() : vector<double>(boxVectors, boxVectors + 9));
-        owner.setVertexNumbers(vector<double>(positions, positions + 3 * (size_t) numVertices));
+        try {
+            owner.setVertexNumbers(points);
+        } catch (...) {
+            owner.setReferenceBox(before);
+            throw;
+        }
     });
 }
 
 Helfrich_Status helfrich_shim_LineTensionForce_setDomains(OpenMM_Force* force, const int* domains, int numVertices) {
     return guarded([&] {
         auto& owner = as<LineTensionForce>("LineTensionForce", force);
-        if (numVertices < 0)
-            throw OpenMMException(owner.getTypeName() + ": the number of vertices is negative");
-        owner.setDomains(vector<int>(domains, domains + numVertices));
+        owner.setDomains(arrayOf(owner.getTypeName(), "vertices", domains, numVertices));
     });
 }
 
@@ -128,15 +141,15 @@ int helfrich_shim_MembraneForce_getForm(OpenMM_Force* force) {
 }
 
 int helfrich_shim_MembraneForce_getSwitch(OpenMM_Force* force, const char* name) {
-    return valueOr<int>(-1, [&] { return asForce(force).getSwitch(name); });
+    return valueOr<int>(-1, [&] { return asForce(force).getSwitch(nameOf("MembraneForce", name)); });
 }
 
 Helfrich_Status helfrich_shim_MembraneForce_setSwitch(OpenMM_Force* force, const char* name, int on) {
-    return guarded([&] { asForce(force).setSwitch(name, on != 0); });
+    return guarded([&] { asForce(force).setSwitch(nameOf("MembraneForce", name), on != 0); });
 }
 
 Helfrich_Status helfrich_shim_MembraneForce_setBackend(OpenMM_Force* force, const char* backend) {
-    return guarded([&] { asForce(force).setBackend(backend); });
+    return guarded([&] { asForce(force).setBackend(nameOf("MembraneForce", backend)); });
 }
 
 Helfrich_Status helfrich_shim_MembraneForce_setUsesPeriodicBoundaryConditions(OpenMM_Force* force, int periodic) {
@@ -149,11 +162,12 @@ int helfrich_shim_MembraneForce_usesPeriodicBoundaryConditions(OpenMM_Force* for
 
 Helfrich_Status helfrich_shim_MembraneForce_setContextParameter(OpenMM_Force* force, const char* parameter,
                                                                 const char* name) {
-    return guarded([&] { asForce(force).setContextParameter(parameter, name); });
+    return guarded(
+        [&] { asForce(force).setContextParameter(nameOf("MembraneForce", parameter), nameOf("MembraneForce", name)); });
 }
 
 Helfrich_Status helfrich_shim_MembraneForce_addEnergyParameterDerivative(OpenMM_Force* force, const char* name) {
-    return guarded([&] { asForce(force).addEnergyParameterDerivative(name); });
+    return guarded([&] { asForce(force).addEnergyParameterDerivative(nameOf("MembraneForce", name)); });
 }
 
 Helfrich_Status helfrich_shim_MembraneForce_updateParametersInContext(OpenMM_Force* force, OpenMM_Context* context) {
@@ -195,29 +209,22 @@ Helfrich_Status helfrich_shim_MembraneForce_setPermutationInContext(OpenMM_Force
                                                                     const int* permutation, int numVertices) {
     return guarded([&] {
         TriangulatedForce& surface = asTriangulated(force);
-        if (numVertices < 0)
-            throw OpenMMException(surface.getTypeName() + ": the number of vertices is negative");
-        surface.setPermutationInContext(asContext(context), vector<int>(permutation, permutation + numVertices));
+        surface.setPermutationInContext(asContext(context),
+                                        arrayOf(surface.getTypeName(), "vertices", permutation, numVertices));
     });
 }
 
 int64_t helfrich_shim_MembraneForce_saveConnectivity(OpenMM_Force* force, OpenMM_Context* context, char* buffer,
                                                      int64_t size) {
-    return valueOr<int64_t>(-1, [&] {
-        string saved = asTriangulated(force).saveConnectivity(asContext(context));
-        if ((int64_t) saved.size() <= size)
-            std::copy(saved.begin(), saved.end(), buffer);
-        return (int64_t) saved.size();
-    });
+    return valueOr<int64_t>(
+        -1, [&] { return copied(asTriangulated(force).saveConnectivity(asContext(context)), buffer, size); });
 }
 
 Helfrich_Status helfrich_shim_MembraneForce_restoreConnectivity(OpenMM_Force* force, OpenMM_Context* context,
                                                                 const char* saved, int64_t size) {
     return guarded([&] {
         TriangulatedForce& surface = asTriangulated(force);
-        if (size < 0)
-            throw OpenMMException(surface.getTypeName() + ": the number of bytes is negative");
-        surface.restoreConnectivity(asContext(context), string(saved, (size_t) size));
+        surface.restoreConnectivity(asContext(context), bytesOf(surface.getTypeName(), saved, size));
     });
 }
 

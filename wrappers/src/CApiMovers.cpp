@@ -15,7 +15,8 @@ using std::vector;
 namespace {
 
 /** One of a mover's statistics. */
-double pick(const string& mover, const std::map<string, double>& statistics, const string& name) {
+double pick(const string& mover, const std::map<string, double>& statistics, const char* wanted) {
+    string name = nameOf(mover, wanted);
     auto found = statistics.find(name);
     if (found != statistics.end())
         return found->second;
@@ -130,9 +131,27 @@ Helfrich_Status helfrich_shim_SurfaceViscosityThermostat_updateParametersInConte
 }
 
 Helfrich_Status helfrich_shim_SurfaceViscosityThermostat_setFrictionParameter(OpenMM_Force* force, const char* name) {
-    return guarded(
-        [&] { as<SurfaceViscosityThermostat>("SurfaceViscosityThermostat", force).setFrictionParameter(name); });
+    return guarded([&] {
+        auto& owner = as<SurfaceViscosityThermostat>("SurfaceViscosityThermostat", force);
+        owner.setFrictionParameter(nameOf(owner.getTypeName(), name));
+    });
 }
+
+// Bytes that go into a buffer and come back.
+#define MOVER_STATE(Mover)                                                                                             \
+    int64_t helfrich_shim_##Mover##_saveState(OpenMM_Force* force, OpenMM_Context* context, char* buffer,              \
+                                              int64_t size) {                                                          \
+        return valueOr<int64_t>(                                                                                       \
+            -1, [&] { return copied(as<Mover>(#Mover, force).saveState(asContext(context)), buffer, size); });         \
+    }                                                                                                                  \
+    Helfrich_Status helfrich_shim_##Mover##_restoreState(OpenMM_Force* force, OpenMM_Context* context,                 \
+                                                         const char* saved, int64_t size) {                            \
+        return guarded(                                                                                                \
+            [&] { as<Mover>(#Mover, force).restoreState(asContext(context), bytesOf(#Mover, saved, size)); });         \
+    }
+MOVER_STATE(MonteCarloMembraneTension)
+MOVER_STATE(SurfaceViscosityThermostat)
+#undef MOVER_STATE
 
 // A getter, which gives a value that cannot be if the force is of another class, and a setter.
 #define MOVER_VALUE(Mover, Type, Name, Nothing, Cast)                                                                  \
@@ -192,4 +211,15 @@ INTEGRATOR_VALUE(VariableMassLangevinIntegrator, double, Temperature, std::nan("
 INTEGRATOR_VALUE(VariableMassLangevinIntegrator, double, Friction, std::nan(""))
 INTEGRATOR_VALUE(VariableMassLangevinIntegrator, int, RandomNumberSeed, -1)
 #undef INTEGRATOR_VALUE
+
+#define INTEGRATOR_MASSES(Owner)                                                                                       \
+    Helfrich_Status helfrich_shim_##Owner##_getMasses(OpenMM_Integrator* integrator, double* masses) {                 \
+        return guarded([&] {                                                                                           \
+            vector<double> found = asIntegrator<Owner>(#Owner, integrator).getMasses();                                \
+            std::copy(found.begin(), found.end(), masses);                                                             \
+        });                                                                                                            \
+    }
+INTEGRATOR_MASSES(VariableMassVerletIntegrator)
+INTEGRATOR_MASSES(VariableMassLangevinIntegrator)
+#undef INTEGRATOR_MASSES
 }

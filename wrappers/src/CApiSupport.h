@@ -16,6 +16,7 @@
 
 #include <OpenMM.h>
 
+#include <algorithm>
 #include <exception>
 #include <string>
 #include <vector>
@@ -24,6 +25,10 @@ namespace HelfrichPlugin {
 
 template <class Wanted>
 Wanted& as(const std::string& name, void* force) {
+    if (force == nullptr)
+        throw OpenMM::OpenMMException(name +
+                                      ": the force is null; the function that should have made it had the reason "
+                                      "in Helfrich_lastError()");
     // C hands over the address of an OpenMM::Force.
     OpenMM::Force* any = static_cast<OpenMM::Force*>(force);
     auto* found = dynamic_cast<Wanted*>(any);
@@ -33,6 +38,8 @@ Wanted& as(const std::string& name, void* force) {
 }
 
 inline OpenMM::Context& asContext(void* context) {
+    if (context == nullptr)
+        throw OpenMM::OpenMMException("openmm-helfrich: the context is null");
     return *static_cast<OpenMM::Context*>(context);
 }
 
@@ -63,11 +70,40 @@ OpenMM_Force* made(Body body) {
     return reinterpret_cast<OpenMM_Force*>(valueOr<OpenMM::Force*>(nullptr, body));
 }
 
+/** What C has for so many things, with `width` numbers for each. */
+template <class Number>
+std::vector<Number> arrayOf(const std::string& owner, const std::string& things, const Number* first, int64_t count,
+                            int width = 1) {
+    if (count < 0)
+        throw OpenMM::OpenMMException(owner + ": the number of " + things + " is negative, " + std::to_string(count));
+    if (first == nullptr && count > 0)
+        throw OpenMM::OpenMMException(owner + ": the array for " + std::to_string(count) + " " + things + " is null");
+    return count == 0 ? std::vector<Number>() : std::vector<Number>(first, first + width * count);
+}
+
 /** The corners of so many triangles. */
 inline std::vector<int> cornersOf(const std::string& owner, const int* triangles, int numTriangles) {
-    if (numTriangles < 0)
-        throw OpenMM::OpenMMException(owner + ": the number of triangles is negative");
-    return std::vector<int>(triangles, triangles + 3 * (size_t) numTriangles);
+    return arrayOf(owner, "triangles", triangles, numTriangles, 3);
+}
+
+/** Bytes as C takes them, if there is room for them; their number. */
+inline int64_t copied(const std::string& saved, char* buffer, int64_t size) {
+    if ((int64_t) saved.size() <= size)
+        std::copy(saved.begin(), saved.end(), buffer);
+    return (int64_t) saved.size();
+}
+
+/** Bytes as C has them. */
+inline std::string bytesOf(const std::string& owner, const char* saved, int64_t size) {
+    std::vector<char> bytes = arrayOf(owner, "bytes", saved, size);
+    return std::string(bytes.begin(), bytes.end());
+}
+
+/** A name as C has it. */
+inline std::string nameOf(const std::string& owner, const char* name) {
+    if (name == nullptr)
+        throw OpenMM::OpenMMException(owner + ": a name is null");
+    return name;
 }
 
 } // namespace HelfrichPlugin

@@ -194,6 +194,11 @@ void MembraneForceImpl::updateParametersInContext(ContextImpl& context) {
         throw OpenMMException(owner.getTypeName() +
                               ": whether it uses periodic boundary conditions has changed since " +
                               "the Context was made; call Context::reinitialize()");
+    for (size_t i = 0; i < contextParameters.size(); i++)
+        if (owner.getContextParameter(owner.getParameterName((int) i)) != contextParameters[i])
+            throw OpenMMException(owner.getTypeName() + ": the Context parameter of " +
+                                  owner.getParameterName((int) i) +
+                                  " has changed since the Context was made; call Context::reinitialize()");
     copyValues();
     context.systemChanged();
 }

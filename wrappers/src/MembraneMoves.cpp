@@ -39,12 +39,14 @@ int64_t SharedMembrane::flip(const string& subject, ContextImpl& context, int gr
                 if (back.other.lock().get() == this)
                     links.push_back(&back);
         }
-    check(Helfrich_Membrane_flip(subject.c_str(), core, terms.data(), (int64_t) terms.size(),
-                                 (int64_t) positions.size(), reinterpret_cast<const double*>(positions.data()),
-                                 findBox(context), &rules, attempts, &state, &made, change, followers.data(),
-                                 (int64_t) followers.size()));
+    auto status =
+        Helfrich_Membrane_flip(subject.c_str(), core, terms.data(), (int64_t) terms.size(), (int64_t) positions.size(),
+                               reinterpret_cast<const double*>(positions.data()), findBox(context), &rules, attempts,
+                               &state, &made, change, followers.data(), (int64_t) followers.size());
+    // Where forces fail after them, flips have been made.
     for (Link* link : links)
         link->followed = getFingerprint();
+    check(status);
     return made;
 }
 

@@ -50,6 +50,6 @@ map<string, double> MonteCarloBondFlipImpl::getCounts() const {
 
 string MonteCarloBondFlipImpl::describeForeign() const {
     return "positions belong to other triangles than the Context has: a State or checkpoint was loaded, which does not "
-           "hold the connectivity. Load what helfrich.save_state() has saved with helfrich.load_state(), or give the "
-           "Context the triangles with setTrianglesInContext()";
+           "hold the connectivity. Restore what saveConnectivity() has saved with restoreConnectivity() (in Python "
+           "helfrich.save_state() and load_state()), or give the Context the triangles with setTrianglesInContext()";
 }

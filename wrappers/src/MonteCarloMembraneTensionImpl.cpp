@@ -114,8 +114,7 @@ map<string, double> MonteCarloMembraneTensionImpl::getDefaultParameters() {
 double MonteCarloMembraneTensionImpl::getFinite(ContextImpl& context, const string& name) const {
     double value = context.getParameter(name);
     if (!std::isfinite(value))
-        throw OpenMMException(NAME + ": the Context parameter " + name + " must be finite, got " +
-                              std::to_string(value));
+        throw OpenMMException(NAME + ": the Context parameter " + name + " must be finite, got " + formatted(value));
     return value;
 }
 
@@ -289,7 +288,14 @@ void MonteCarloMembraneTensionImpl::restoreState(const string& saved) {
     if (saved.size() != sizeof(state))
         throw OpenMMException(NAME + ": the saved state has " + std::to_string(saved.size()) + " bytes, not " +
                               std::to_string(sizeof(state)) + "; it is damaged");
-    std::memcpy(&state, saved.data(), sizeof(state));
+    TensionState found;
+    std::memcpy(&found, saved.data(), sizeof(found));
+    bool isSane = found.updates >= 0 && found.accepted >= 0 && found.accepted <= found.attempts;
+    for (const TensionState::Kind& kind : found.kinds)
+        isSane = isSane && kind.width >= 0 && std::isfinite(kind.width) && kind.taken >= 0 && kind.taken <= kind.tried;
+    if (!isSane)
+        throw OpenMMException(NAME + ": the saved state has counts or widths that cannot be; it is damaged");
+    state = found;
 }
 
 vector<TensionState> MonteCarloMembraneTensionImpl::saveAll(const ContextImpl& context) {

@@ -259,23 +259,32 @@ void SharedMembrane::restoreAll(const string& subject, ContextImpl& context, con
         found.push_back(*match);
         left.erase(match);
     }
+    // What is not among the saved was as the System has it.
+    vector<std::shared_ptr<SharedMembrane>> all(found);
+    all.insert(all.end(), left.begin(), left.end());
     vector<Connectivity> before;
     try {
-        for (size_t i = 0; i < found.size(); i++) {
-            before.push_back(found[i]->getConnectivity());
-            found[i]->take(subject, wanted[i]);
+        for (size_t i = 0; i < all.size(); i++) {
+            before.push_back(all[i]->getConnectivity());
+            if (i < found.size())
+                all[i]->take(subject, wanted[i]);
+            else
+                all[i]->startAgain(subject);
         }
     } catch (...) {
         for (size_t i = 0; i < before.size(); i++)
-            found[i]->setConnectivity(subject, before[i]);
+            all[i]->setConnectivity(subject, before[i]);
         throw;
     }
-    for (size_t i = 0; i < found.size(); i++)
-        found[i]->announce(context, &wanted[i]);
-    // These have no mover, which could refuse the triangles of the System.
-    for (const auto& membrane : left) {
-        membrane->setPermutation({});
-        if (membrane->getFingerprint() != 0 && membrane->parts.empty())
-            membrane->setTriangles(subject, context, membrane->triangles);
-    }
+    for (size_t i = 0; i < all.size(); i++)
+        all[i]->announce(context, i < found.size() ? &wanted[i] : nullptr);
+}
+
+void SharedMembrane::startAgain(const string& subject) {
+    Connectivity before = getConnectivity();
+    setPermutation({});
+    if (getFingerprint() == 0 || !parts.empty())
+        return;
+    check(Helfrich_Membrane_setTriangles(subject.c_str(), core, triangles.data(), (int64_t) triangles.size() / 3));
+    checkMovers(subject, before);
 }

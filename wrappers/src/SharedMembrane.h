@@ -182,6 +182,10 @@ public:
         settle(context);
         return getConnectivity().corners;
     }
+    /** The same without settling anything, for what is made before a State may be loaded. */
+    std::vector<int> findTriangles() const {
+        return getConnectivity().corners;
+    }
     /** Go on with other triangles; if they are refused, everything stays as it was. */
     void setTriangles(const std::string& subject, OpenMM::ContextImpl& context, const std::vector<int>& corners);
     /** For each vertex the one whose values it has, as the user gave them. */
@@ -316,6 +320,8 @@ private:
     bool findKinds();
     /** Take what has been saved of these triangles, or stay as before. The Context does not know yet. */
     void take(const std::string& subject, const SavedConnectivity& saved);
+    /** The same of what forces give a new Context. */
+    void startAgain(const std::string& subject);
     /** Tell the Context of another state, and let the movers go on from what has been saved, if anything. */
     void announce(OpenMM::ContextImpl& context, const SavedConnectivity* saved);
     /** The same, where the Context is being evaluated. */

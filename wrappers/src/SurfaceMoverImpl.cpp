@@ -170,11 +170,20 @@ void SurfaceMoverImpl::updateContextState(ContextImpl& context, bool& forcesInva
         inPlace ? *static_cast<ReferencePlatform::PlatformData*>(context.getPlatformData())->positions : positions;
     const Integrator& integrator = findIntegrator(context);
     vector<Vec3>* wanted = isLeapfrog(integrator) ? &forceChange : nullptr;
-    if (attempt(context, integrator.getIntegrationForceGroups(), now, attempts, wanted) > 0) {
+    double before = replaced;
+    int64_t made = 0;
+    try {
+        made = attempt(context, integrator.getIntegrationForceGroups(), now, attempts, wanted);
+    } catch (...) {
+        // Forces may fail after moves have been made.
+        if (getFingerprint() != present)
+            announce(context);
+        throw;
+    }
+    if (made > 0) {
         forcesInvalid = true;
         if (wanted != nullptr)
             shareKick(context, integrator.getStepSize());
-        double before = replaced;
         announce(context);
         replaced = before;
     }

@@ -40,7 +40,7 @@ void compare(const SurfaceViscosityThermostat& one, const SurfaceViscosityThermo
     auto refuse = [&](const string& parameter, double here, double there, const string& remedy) {
         throw OpenMMException(NAME + ": \"" + one.getName() + "\" and \"" + other.getName() +
                               "\" have the Context parameter " + parameter + " in common, but the defaults " +
-                              std::to_string(here) + " and " + std::to_string(there) + "; " + remedy);
+                              formatted(here) + " and " + formatted(there) + "; " + remedy);
     };
     if (one.getFrictionParameter() == other.getFrictionParameter() &&
         one.getDefaultFriction() != other.getDefaultFriction())
@@ -156,7 +156,7 @@ double SurfaceViscosityThermostatImpl::getFriction(ContextImpl& context) const {
     double friction = context.getParameter(frictionParameter);
     if (!(friction >= 0 && std::isfinite(friction)))
         throw OpenMMException(NAME + ": the Context parameter " + frictionParameter +
-                              " must be a finite number of amu/ps, 0 or more, got " + std::to_string(friction));
+                              " must be a finite number of amu/ps, 0 or more, got " + formatted(friction));
     return friction;
 }
 

@@ -114,6 +114,7 @@ void VariableMassStepKernel::initialize(ContextImpl& context, const VariableMass
     }
     check(Helfrich_VariableMasses_create(subject.c_str(), (int64_t) constant.size(), constant.data(),
                                          integrator.getDensity(), &masses));
+    // What a Context of before has left is not settled yet: a checkpoint may come.
     findSurfaces(context);
     vector<bool> isVertex(constant.size());
     for (const auto& membrane : membranes)
@@ -132,19 +133,26 @@ void VariableMassStepKernel::initialize(ContextImpl& context, const VariableMass
     stream = ours != nullptr ? &ours->addStream(seed) : &ownStream;
 }
 
+void VariableMassStepKernel::findPresentSurfaces(ContextImpl& context) {
+    for (const auto& membrane : membranes)
+        membrane->settle(context);
+    findSurfaces(context);
+}
+
 void VariableMassStepKernel::findSurfaces(ContextImpl& context) {
     vector<double> present;
     for (const auto& membrane : membranes)
         present.push_back(membrane->getFingerprint());
     if (present == fingerprints)
         return;
+    // What is refused below will be so the next time.
     fingerprints.clear();
     const System& system = context.getSystem();
     vector<vector<int>> corners;
     vector<HelfrichSheet> sheets;
     isPeriodic = false;
     for (const auto& membrane : membranes) {
-        corners.push_back(membrane->getPresentTriangles(context));
+        corners.push_back(membrane->findTriangles());
         for (int particle : corners.back())
             if (system.isVirtualSite(particle))
                 throw OpenMMException(subject + ": particle " + std::to_string(particle) +
@@ -154,9 +162,7 @@ void VariableMassStepKernel::findSurfaces(ContextImpl& context) {
         isPeriodic |= membrane->isPeriodic();
     }
     check(Helfrich_VariableMasses_setSurfaces(subject.c_str(), masses, sheets.data(), (int64_t) sheets.size()));
-    // A membrane that follows others has done so by now.
-    for (const auto& membrane : membranes)
-        fingerprints.push_back(membrane->getFingerprint());
+    fingerprints = present;
 }
 
 HelfrichParticleArrays VariableMassStepKernel::getParticles() const {
@@ -172,7 +178,7 @@ void VariableMassStepKernel::execute(ContextImpl& context, const VariableMassInt
     double step = integrator.getStepSize();
     if (!std::isfinite(step))
         throw OpenMMException(subject + ": the step size must be a finite number of ps, got " + std::to_string(step));
-    findSurfaces(context);
+    findPresentSurfaces(context);
     int groups = integrator.getIntegrationForceGroups();
     // In a CompoundIntegrator, others may have made steps since.
     if (!forcesAreValid || groups != forceGroups || data.stepCount != stepCount) {
@@ -229,7 +235,7 @@ double VariableMassStepKernel::computeKineticEnergy(ContextImpl& context) {
 }
 
 vector<double> VariableMassStepKernel::computeMasses(ContextImpl& context) {
-    findSurfaces(context);
+    findPresentSurfaces(context);
     vector<double> present(data.numParticles);
     HelfrichParticleArrays particles = getParticles();
     check(Helfrich_VariableMasses_get(subject.c_str(), masses, &particles, findBox(), present.data()));

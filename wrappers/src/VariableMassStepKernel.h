@@ -41,8 +41,10 @@ public:
     void loadCheckpoint(std::istream& stream);
 
 private:
-    /** Take over the present triangles of all membranes, if they are others than before. */
+    /** Take over the triangles of all membranes, if they are others than before. */
     void findSurfaces(OpenMM::ContextImpl& context);
+    /** The same, once it is settled which they are. */
+    void findPresentSurfaces(OpenMM::ContextImpl& context);
     /** The arrays of the Context, where they are now. */
     HelfrichParticleArrays getParticles() const;
     /** The vectors of the box that surfaces live in, nm, or null. */

@@ -12,7 +12,7 @@ import numpy as np
 from .._types import Array
 from ..errors import MeshError
 
-__all__ = ["energy", "present", "topology"]
+__all__ = ["context_of", "energy", "present", "topology"]
 
 
 def topology(num_vertices: int, edges: Array, box: Array | None):
@@ -39,22 +39,32 @@ def energy(vertices: Array, force, box: Array | None) -> float:
 
     if not isinstance(force, openmm.Force):
         raise TypeError(f"Mesh.energy: force needs an openmm.Force, got {type(force).__name__}")
-    if box is not None:
-        _check_periodic(force)
-    system = openmm.System()
-    for _ in range(len(vertices)):
-        system.addParticle(1.0)
-    if box is not None:
-        system.setDefaultPeriodicBoxVectors(*box)
-    system.addForce(copy.deepcopy(force))
-    platform = openmm.Platform.getPlatformByName("Reference")
-    context = openmm.Context(system, openmm.VerletIntegrator(0.001), platform)
+    context = context_of(len(vertices), [force], box, "Mesh.energy")
     context.setPositions(vertices)
     state = context.getState(getEnergy=True)
     return state.getPotentialEnergy().value_in_unit(unit.kilojoule_per_mole)
 
 
-def _check_periodic(force) -> None:
+def context_of(num_vertices: int, forces, box: Array | None, caller: str):
+    """A Context of the Reference platform with copies of forces, in a group each."""
+    import openmm
+
+    system = openmm.System()
+    for _ in range(num_vertices):
+        system.addParticle(1.0)
+    if box is not None:
+        system.setDefaultPeriodicBoxVectors(*box)
+    for group, force in enumerate(forces):
+        if box is not None:
+            _check_periodic(force, caller)
+        force = copy.deepcopy(force)
+        force.setForceGroup(group)
+        system.addForce(force)
+    platform = openmm.Platform.getPlatformByName("Reference")
+    return openmm.Context(system, openmm.VerletIntegrator(0.001), platform)
+
+
+def _check_periodic(force, caller: str) -> None:
     """Refuse a membrane force that takes edges across faces of the box for long ones."""
     from ..forces import MembraneForce
 
@@ -62,7 +72,7 @@ def _check_periodic(force) -> None:
         if cls.isinstance(force) and not cls.cast(force).usesPeriodicBoundaryConditions():
             name = cls.__name__
             raise MeshError(
-                f"Mesh.energy: the mesh has a periodic box, but the {name} does not use it; make "
+                f"{caller}: the mesh has a periodic box, but the {name} does not use it; make "
                 f"it of the mesh, {name}(mesh, …), in place of mesh.triangles, or call its "
                 "setUsesPeriodicBoundaryConditions(True)"
             )

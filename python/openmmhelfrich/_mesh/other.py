@@ -125,14 +125,19 @@ def read_trimesh(path: Path) -> tuple[Array, Array]:
     return vertices, numbers.reshape(-1, 3)
 
 
+#: Of a node; the list that meshio makes up to it then takes 800 MB.
+_LARGEST_NUMBER = 100_000_000
+
+
 def _is_gmsh(source: Source) -> bool:
     return source.data.startswith((b"$MeshFormat", b"$Comments"))
 
 
 def _check_nodes(source: Source) -> None:
-    """Refuse a Gmsh file that counts more nodes than it has.
+    """Refuse a Gmsh file that counts more nodes than it has, or gives one an enormous number.
 
-    meshio makes room for as many as the file says, and leaves what does not come as the memory was.
+    meshio makes room for as many as the file says, and leaves what does not come as the memory was;
+    and it makes a list of all numbers up to the largest.
     """
     data = source.data
     begin = re.search(rb"\$Nodes *\r?\n", data)
@@ -142,9 +147,12 @@ def _check_nodes(source: Source) -> None:
     if form is not None and begin.end() + 32 <= len(data):
         # Blocks: three numbers of four bytes, how many nodes, and four numbers of eight bytes each.
         blocks, counted = struct.unpack_from("=QQ", data, begin.end())
-        at, there = begin.end() + 32, 0
+        at, there, largest = begin.end() + 32, 0, 0
         while blocks and at + 20 <= len(data):
             (count,) = struct.unpack_from("=Q", data, at + 12)
+            numbers = data[at + 20 : at + 20 + 8 * count]
+            numbers = np.frombuffer(numbers[: len(numbers) // 8 * 8], dtype="<u8")
+            largest = max(largest, int(numbers.max(initial=0)))
             there, at, blocks = there + count, at + 20 + 32 * count, blocks - 1
     else:
         words = data[begin.end() : begin.end() + 100].split(b"\n", 1)[0].split()
@@ -152,8 +160,26 @@ def _check_nodes(source: Source) -> None:
         counted = int(word) if word.isdigit() else 0
         # A number and three coordinates with what parts them.
         there = len(data) // 8
+        largest = _largest_number(data, begin.end(), counted)
     if counted > there:
         raise source.error(f"counts {counted} nodes, more than it has; write it anew")
+    if largest > _LARGEST_NUMBER:
+        raise source.error(f"gives a node the number {largest}; number the nodes from 1 on")
+
+
+def _largest_number(data: bytes, begin: int, count: int) -> int:
+    """The largest number of a node in a file that is text, or binary of version 2."""
+    if re.match(rb"\$MeshFormat\s+2\S*\s+1\s", data):
+        first = data.find(b"\n", begin) + 1
+        record = np.dtype([("number", "<i4"), ("position", "<f8", 3)])
+        count = min(count, (len(data) - first) // record.itemsize)
+        numbers = np.frombuffer(data, record, count, first)["number"]
+        return int(numbers.max(initial=0))
+    end = data.find(b"$EndNodes", begin)
+    section = data[begin : end if end >= 0 else len(data)]
+    # Alone or before three coordinates, which may be as large.
+    found = re.findall(rb"(?m)^[ \t]*(\d{9,})(?:(?:[ \t]+\S+){3})?[ \t]*\r?$", section)
+    return max((int(number[:20]) for number in found), default=0)
 
 
 def _load(source: Source):

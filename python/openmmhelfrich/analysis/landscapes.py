@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import copy
 from typing import Any, NamedTuple
 
 import numpy as np
 import openmm
 from openmm import unit
 
+from .._mesh.on_openmm import context_of
 from .._numbers import positive_number, whole_number
 from .._types import Array
 
@@ -116,6 +116,8 @@ def landscape(mesh: Any, forces: Any, vertex: int, points: Any) -> Any:
 
     Raises
     ------
+    MeshError
+        The mesh has a periodic box, and a membrane force does not use it.
     ValueError
         There is no such vertex, the last axis of the points is not 3, a point is not finite, or
         there are more than 32 forces.
@@ -133,15 +135,7 @@ def landscape(mesh: Any, forces: Any, vertex: int, points: Any) -> Any:
     if not 0 < len(named) <= 32:
         raise ValueError(f"forces: need 1 to 32, one for each force group, got {len(named)}")
 
-    system = openmm.System()
-    for _ in range(mesh.num_vertices):
-        system.addParticle(1.0)
-    for group, force in enumerate(named.values()):
-        force = copy.deepcopy(force)
-        force.setForceGroup(group)
-        system.addForce(force)
-    platform = openmm.Platform.getPlatformByName("Reference")
-    context = openmm.Context(system, openmm.VerletIntegrator(0.001), platform)
+    context = context_of(mesh.num_vertices, named.values(), mesh.box, "landscape")
     positions = np.array(mesh.vertices)
 
     def energy(group):

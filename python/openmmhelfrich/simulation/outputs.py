@@ -317,13 +317,14 @@ class Outputs:
     def _xtc(self, frame: Frame) -> bytes:
         """A frame of an XTC file.
 
-        OpenMM says nothing if a file cannot be written.
+        OpenMM says nothing if a file cannot be written. The format has 32 bits for the number of the
+        step, which begins anew after 2³¹ − 1; the time goes on.
         """
         values = (
             frame.positions.astype(np.float32),
             frame.box.astype(np.float32),
             np.float32(frame.time),
-            np.int32(frame.step),
+            np.int32(frame.step % 2**31),
         )
         return in_memory(lambda name: xtc_write_frame(name.encode(), *values))
 

@@ -223,6 +223,25 @@ fn the_order_is_of_all_edges() {
     }
 }
 
+/// Of an edge whose ends are both pinned nothing is left to move, at any temperature.
+#[test]
+fn neighbours_that_are_pinned_stay() {
+    let pinned = [0, 1, 2, 3, 4, 5];
+    for kt in [KT, 4.0, 50.0, 1e6] {
+        let mut moving = Moving::icosahedron(|i| if pinned.contains(&i) { 0.0 } else { 2.0 });
+        let ends: Vec<_> = moving.mesh.edges().map(|half| moving.mesh.origin(half)).collect();
+        assert!(ends.iter().any(|end| *end < 6));
+        let before = (moving.positions.clone(), moving.velocities.clone());
+        moving.sweep(3.0, kt, 0.05, None).unwrap();
+        assert!(moving.velocities.iter().all(|component| component.is_finite()), "kT = {kt}");
+        for vertex in pinned {
+            assert_eq!(moving.positions[3 * vertex..][..3], before.0[3 * vertex..][..3]);
+            assert_eq!(moving.velocities[3 * vertex..][..3], before.1[3 * vertex..][..3]);
+        }
+        assert!(moving.velocities[18..] != before.1[18..]);
+    }
+}
+
 #[test]
 fn what_is_refused_changes_nothing() {
     let small = Cell::new([[3.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 3.0]]).unwrap();

@@ -52,7 +52,7 @@ public:
      * @param triangles  the particle indices of the corners, three for each triangle
      * @param stiffness  the stiffness K, kJ/mol, zero or above
      * @param form       the function f
-     * @param restAngle  the angle phi0 at rest, from -pi to pi
+     * @param restAngle  the angle phi0 at rest, from -pi to pi, radians
      */
     DihedralForce(const std::vector<int>& triangles, double stiffness, Form form = Quartic, double restAngle = 0)
         : MembraneForce("DihedralForce", triangles, {stiffness, restAngle}, form) {

@@ -50,15 +50,16 @@ public:
      */
     void setParameterValue(const std::string& name, double value);
     /**
-     * Give a scalar its own value for each vertex or triangle, where the potential allows it.
+     * Give a scalar its own value for each vertex, triangle, edge or particle, whichever the potential allows.
      *
      * @param name    the name of the parameter
-     * @param values  one value for each vertex, in ascending order of particle index, or for each
-     *                triangle; in OpenMM's units. An empty list goes back to the scalar.
+     * @param values  one value for each vertex, in ascending order of particle index, for each triangle, for each
+     *                edge, in ascending order of the particles at its ends, or for each particle, in the order in
+     *                which they were given; in OpenMM's units. An empty list goes back to the scalar.
      */
     void setElementValues(const std::string& name, const std::vector<double>& values);
     /**
-     * Get the values of a parameter for each vertex or triangle, empty if it is a scalar.
+     * Get the values of a parameter for each vertex, triangle, edge or particle, empty if it is a scalar.
      *
      * @param name  the name of the parameter
      */

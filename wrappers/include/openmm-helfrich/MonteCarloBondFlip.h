@@ -134,7 +134,7 @@ public:
      */
     void setMaxEdgeLength(double maxEdgeLength) {
         if (!(maxEdgeLength >= 0 && std::isfinite(maxEdgeLength)))
-            fail("maxEdgeLength must be a finite number of nm, or 0 for any length, got " + text(maxEdgeLength));
+            fail("maxEdgeLength must be a finite number of nm, or 0 for any length, got " + formatted(maxEdgeLength));
         this->maxEdgeLength = maxEdgeLength;
     }
     /**

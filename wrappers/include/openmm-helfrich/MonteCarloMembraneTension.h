@@ -92,7 +92,8 @@ public:
         ZOnly = 3
     };
     /**
-     * The name of the Context parameter that holds the tension, kJ/mol/nm^2.
+     * The name of the Context parameter that holds the tension, kJ/mol/nm^2; with XYConstantArea and ZOnly, which do
+     * not use it, there is none.
      */
     static const std::string& Tension() {
         static const std::string key = "MembraneTension";
@@ -139,7 +140,7 @@ public:
      */
     void setDefaultTension(double tension) {
         if (!std::isfinite(tension))
-            fail("tension must be a finite number of kJ/mol/nm^2, got " + text(tension));
+            fail("tension must be a finite number of kJ/mol/nm^2, got " + formatted(tension));
         this->tension = tension;
     }
     /**
@@ -154,7 +155,7 @@ public:
      */
     void setDefaultPullingForce(double pullingForce) {
         if (!std::isfinite(pullingForce))
-            fail("pullingForce must be a finite number of kJ/mol/nm, got " + text(pullingForce));
+            fail("pullingForce must be a finite number of kJ/mol/nm, got " + formatted(pullingForce));
         this->pullingForce = pullingForce;
     }
     /**

@@ -1,8 +1,9 @@
 #ifndef HELFRICH_MONTE_CARLO_MOVER_H_
 #define HELFRICH_MONTE_CARLO_MOVER_H_
 
+#include "internal/Core.h"
+
 #include <cmath>
-#include <cstdio>
 #include <string>
 
 namespace HelfrichPlugin {
@@ -26,7 +27,7 @@ public:
      */
     void setDefaultTemperature(double temperature) {
         if (!(temperature > 0 && std::isfinite(temperature)))
-            this->fail("temperature must be a finite number of K above zero, got " + text(temperature));
+            this->fail("temperature must be a finite number of K above zero, got " + formatted(temperature));
         this->temperature = temperature;
     }
     /**
@@ -70,12 +71,6 @@ protected:
         setFrequency(frequency);
     }
 #endif
-    /** A number as messages have it. */
-    static std::string text(double value) {
-        char buffer[32];
-        std::snprintf(buffer, sizeof(buffer), "%g", value);
-        return buffer;
-    }
 
 private:
     double temperature;

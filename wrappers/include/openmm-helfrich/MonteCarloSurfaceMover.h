@@ -41,7 +41,7 @@ public:
      */
     void setAttemptsPerEdge(double attemptsPerEdge) {
         if (!(attemptsPerEdge >= 0 && attemptsPerEdge <= 1000))
-            fail("attemptsPerEdge must be from 0 to 1000, got " + text(attemptsPerEdge));
+            fail("attemptsPerEdge must be from 0 to 1000, got " + formatted(attemptsPerEdge));
         this->attemptsPerEdge = attemptsPerEdge;
     }
     /**

@@ -97,7 +97,7 @@ public:
      */
     void setDefaultFriction(double friction) {
         if (!(friction >= 0 && std::isfinite(friction)))
-            fail("friction must be a finite number of amu/ps, 0 or more, got " + text(friction));
+            fail("friction must be a finite number of amu/ps, 0 or more, got " + formatted(friction));
         this->friction = friction;
     }
     /**

@@ -1,6 +1,7 @@
 #ifndef HELFRICH_VARIABLE_MASS_INTEGRATOR_H_
 #define HELFRICH_VARIABLE_MASS_INTEGRATOR_H_
 
+#include "internal/Core.h"
 #include "internal/VariableMassKernel.h"
 
 #include <openmm/Integrator.h>
@@ -35,7 +36,7 @@ public:
     void setDensity(double density) {
         if (!(density >= 0 && std::isfinite(density)))
             fail("density must be a finite number of amu/nm^2, or 0 for surfaces of constant mass, got " +
-                 std::to_string(density));
+                 formatted(density));
         this->density = density;
     }
     /**
@@ -71,7 +72,7 @@ protected:
     VariableMassIntegrator(const std::string& type, double stepSize, double density)
         : type(type), density(0), isBound(false), forcesAreValid(false) {
         if (!(stepSize >= 0 && std::isfinite(stepSize)))
-            fail("stepSize must be a finite number of ps, zero or above, got " + std::to_string(stepSize));
+            fail("stepSize must be a finite number of ps, zero or above, got " + formatted(stepSize));
         setStepSize(stepSize);
         setConstraintTolerance(1e-5);
         setDensity(density);
@@ -86,7 +87,7 @@ protected:
         const OpenMM::Platform& platform = contextImpl.getPlatform();
         if (!platform.supportsKernels({IntegrateVariableMassStepKernel::Name()}))
             fail("the platform " + platform.getName() + " has no such time steps; make the Context with the platform " +
-                 "Helfrich, or Reference");
+                 "Helfrich or Reference, and call Helfrich_register() before (Python does by itself)");
         context = &contextImpl;
         owner = &contextImpl.getOwner();
         kernel = platform.createKernel(IntegrateVariableMassStepKernel::Name(), contextImpl);

@@ -40,7 +40,7 @@ public:
      */
     void setTemperature(double temperature) {
         if (!(temperature >= 0 && std::isfinite(temperature)))
-            fail("temperature must be a finite number of K, zero or above, got " + std::to_string(temperature));
+            fail("temperature must be a finite number of K, zero or above, got " + formatted(temperature));
         this->temperature = temperature;
     }
     /**
@@ -54,7 +54,7 @@ public:
      */
     void setFriction(double friction) {
         if (!(friction >= 0 && std::isfinite(friction)))
-            fail("friction must be a finite number of 1/ps, zero or above, got " + std::to_string(friction));
+            fail("friction must be a finite number of 1/ps, zero or above, got " + formatted(friction));
         this->friction = friction;
     }
     /**

@@ -7,6 +7,7 @@
 
 #include <openmm/OpenMMException.h>
 
+#include <cstdio>
 #include <string>
 
 namespace HelfrichPlugin {
@@ -23,6 +24,13 @@ inline std::string lastError() {
 inline void check(Helfrich_Status status) {
     if (status != Helfrich_Success)
         throw OpenMM::OpenMMException(lastError());
+}
+
+/** A number as messages have it. */
+inline std::string formatted(double value) {
+    char buffer[32];
+    std::snprintf(buffer, sizeof(buffer), "%g", value);
+    return buffer;
 }
 
 } // namespace HelfrichPlugin
