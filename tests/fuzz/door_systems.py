@@ -91,6 +91,10 @@ def _check(data: bytes) -> None:
 def _compare(one, other) -> None:
     """Whatever was given is there, with the same value; nothing has been clamped or lost."""
     for name, value in one.attrib.items():
+        # A force in no periodic box may have the version of those in one; without a name OpenMM
+        # gives it that of its type.
+        if name == "version" or (name == "name" and not value):
+            continue
         if not _same(value, other.get(name)):
             raise Wrong(f"<{one.tag} {name}={value!r}> was read as {other.get(name)!r}")
     if other.tag == "Parameters":

@@ -38,6 +38,8 @@ RUST, RUST_CASES = "ffi", 50_000
 DOORS = [name for names in MODULES.values() for name in names]
 #: An input that takes longer hangs, s; it may take so much memory more, bytes.
 TIME, MEMORY = 10, 3 << 30
+#: A process with more threads ends with this status, and another one goes on.
+MOST_THREADS, FULL = 100, 75
 
 
 def load(name: str):
@@ -104,7 +106,7 @@ class Session:
         pool = list(self.door.seeds())
         for data in pool:
             self.check(data)
-        while time.monotonic() < self.until:
+        while time.monotonic() < self.until and not self.is_full():
             data = dice.choice(pool)
             for _ in range(dice.choice((1, 1, 1, 2, 5))):
                 data = self.door.change(data, dice)
@@ -131,6 +133,13 @@ class Session:
         """A case under libFuzzer, which ends the process without a last word."""
         self.check(data)
         (self.out / "cases").write_text(str(self.cases))
+        if self.is_full():
+            os._exit(FULL)
+
+    @staticmethod
+    def is_full() -> bool:
+        """Whether another process should go on: OpenMM leaves threads of what it refuses."""
+        return len(os.listdir("/proc/self/task")) > MOST_THREADS
 
 
 def replay(name: str, path: Path) -> str:
@@ -157,6 +166,8 @@ def child(name: str, seconds: float, seed: int, out: Path, guided: bool) -> None
     else:
         session.plain(seed)
         (out / "cases").write_text(str(session.cases))
+        if session.is_full():
+            sys.exit(FULL)
 
 
 def run(name: str, seconds: float, seed: int, guided: bool) -> tuple[int, int]:
@@ -177,6 +188,9 @@ def run(name: str, seconds: float, seed: int, guided: bool) -> tuple[int, int]:
             cases += int((out / "cases").read_text())
         if done.returncode == 0:
             break
+        if done.returncode == FULL:
+            turn += 1
+            continue
         if not (out / "last-input").exists():
             raise RuntimeError(f"{name} does not start: {done.stderr[-2000:]}")
         # The process itself has died or hung.

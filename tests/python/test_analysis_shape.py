@@ -163,7 +163,7 @@ class TestLandscape:
             moved = Mesh(vertices, sheet.triangles, box=sheet.box)
             assert energy == pytest.approx(moved.energy(force), rel=1e-10, abs=1e-10)
         assert found[2] > 1
-        with pytest.raises(MeshError, match="^landscape: the mesh has a periodic box"):
+        with pytest.raises(MeshError, match=r"^landscape: the mesh has a periodic box"):
             analysis.landscape(sheet, BendingForce(sheet.triangles, 50), 9, points)
 
     def test_grids(self, rough):
@@ -202,9 +202,12 @@ class TestLandscape:
         ("call", "culprit"),
         [
             (lambda m, f: analysis.landscape(m, f, 162, [[0, 0, 0]]), "vertex needs .* 0 to 161"),
-            (lambda m, f: analysis.landscape(m, f, 0, [[0, 0]]), "points: need shape"),
+            (lambda m, f: analysis.landscape(m, f, 0, [[0, 0]]), "^landscape: points need shape"),
             (lambda m, f: analysis.landscape(m, f, 0, [[0, 0, np.nan]]), "not finite"),
-            (lambda m, f: analysis.landscape(m, {}, 0, [[0, 0, 0]]), "forces: need 1 to 32"),
+            (
+                lambda m, f: analysis.landscape(m, {}, 0, [[0, 0, 0]]),
+                "^landscape: forces need 1 to 32",
+            ),
             (lambda m, f: analysis.sphere_grid(m, 0, -1), "half_width"),
             (lambda m, f: analysis.sphere_grid(m, 0, np.inf), "half_width"),
             (lambda m, f: analysis.plane_grid(m, 0, size=1), "plane_grid: size"),

@@ -84,7 +84,7 @@ class TestAutocorrelation:
     @pytest.mark.parametrize(
         ("call", "culprit"),
         [
-            (lambda: analysis.autocorrelation([]), "series: need shape"),
+            (lambda: analysis.autocorrelation([]), "^autocorrelation: series needs shape"),
             (lambda: analysis.autocorrelation([1.0, np.nan]), r"series\[1\] is nan.* not finite"),
             (lambda: analysis.autocorrelation([1.0, 2.0], 3), "lags needs .* 1 to 2, got 3"),
             (lambda: analysis.autocorrelation([1.0, 2.0], np.nan), "lags needs .*nan"),
@@ -93,7 +93,10 @@ class TestAutocorrelation:
                 lambda: analysis.mode_autocorrelation([[np.inf], [0]]),
                 r"mode_autocorrelation: amplitudes\[0, 0\] is inf",
             ),
-            (lambda: analysis.autocorrelation_time([]), "series: need shape"),
+            (
+                lambda: analysis.autocorrelation_time([]),
+                "^autocorrelation_time: series needs shape",
+            ),
             (
                 lambda: analysis.autocorrelation_time([[1, 2], [np.nan, 3]]),
                 r"autocorrelation_time: series\[1, 0\] is nan",

@@ -78,6 +78,22 @@ def test_info_with_a_measurement(pair, monkeypatch):
     assert duration["seconds"] > 0
 
 
+def test_info_of_steps_that_fail(tmp_path):
+    """All but the time that they take is said."""
+    path = tmp_path / "fast.toml"
+    path.write_text(
+        'simulation.duration = 500\nintegrator.time_step = 50\nintegrator.kind = "Verlet"\n'
+        "output.interval = 50\n[[vesicle]]\nmesh = { icosphere = 3, radius = 100 }\n"
+    )
+    result = invoke("info", path, "--json")
+    assert result.exit_code == 0, result.output
+    found = json.loads(result.stdout)
+    assert found["duration"] is None
+    assert 0 < found["membranes"][0]["max_time_step_ps"] < 1
+    assert "Warning: the first steps fail: " in result.stderr
+    assert "none, for the first steps fail on" in invoke("info", path).stdout
+
+
 def test_info_of_what_encloses_nothing(tmp_path):
     path = tmp_path / "disk.ply"
     helfrich.Mesh.disk(4, 100.0).write(path)
@@ -155,6 +171,9 @@ def test_spectrum(tmp_path):
     assert [mode["l"] for mode in found["modes"]] == [2, 3]
     for name in written.dtype.names:
         assert [mode[name] for mode in found["modes"]] == written[name].tolist()
+    result = invoke("spectrum", path, "--young", 0.1)
+    assert result.exit_code == 2
+    assert "--young needs --radius where SOURCE is a file of modes" in result.output
     elastic = json_of("spectrum", path, "--young", 0.1, "--radius", 100)["theory"]
     assert elastic == {"kappa_kBT": 20.0, "young_kBT_per_nm2": 0.1, "radius_nm": 100.0}
 

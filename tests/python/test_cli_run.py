@@ -293,6 +293,20 @@ class TestResume:
         assert "resumed at step 40" in result.output
         assert contents(out) == before
 
+    def test_frames_leave_the_files_of_the_run_alone(self, folder):
+        """Those made afterwards have other names, and even --force overwrites none of the run's."""
+        path, out = config(folder, TextOutputs="XYZ"), folder.path / "out"
+        self.run(path, out, 20)
+        text = (out / "cell.xyz").read_bytes()
+        result = invoke("frames", out, "--format", "xyz")
+        assert result.exit_code == 0, result.output
+        assert (out / "cell.extxyz").is_file()
+        result = invoke("frames", out, out / "cell.xyz", "--force")
+        assert result.exit_code == 1
+        assert "is a file with which the run there goes on; give another name" in result.output
+        assert (out / "cell.xyz").read_bytes() == text
+        self.run(path, out, 40, resume=True)
+
     def test_nothing_to_resume_starts(self, folder):
         out = folder.path / "out"
         arguments = ("--platform", "Reference", "--out", out, "--steps", 20, "--resume")
@@ -339,6 +353,33 @@ class TestRefusals:
     def test_another_seed(self, folder, out):
         text = self.refused(folder, out, "--resume", "--seed", 6)
         assert "the run has the seed 5; leave out --seed" in text
+
+    def test_another_seed_in_the_file(self, folder, out):
+        config(folder, Seed="6")
+        text = self.refused(folder, out, "--resume")
+        assert "config.txt: seed is 6, and was 5 when the run began; change it back" in text
+
+    @pytest.mark.parametrize(
+        ("option", "before"),
+        [
+            (["--frames", "gsd"], "frames = none, not gsd; leave out --frames"),
+            (["--no-xtc"], "xtc = True, not False; leave out --xtc"),
+            (["--flips", 0.1], "flips = 0.0, not 0.1; leave out --flips"),
+            (["--vcm-compatible"], "vcm_compatible = False, not True; leave out --vcm-compatible"),
+        ],
+        ids=["frames", "xtc", "flips", "compatible"],
+    )
+    def test_other_options(self, folder, out, option, before):
+        text = self.refused(folder, out, "--resume", *option)
+        assert f"the run was begun with {before}: a run goes on as it began" in text
+
+    def test_the_same_options_again(self, folder, out):
+        options = ("--resume", "--frames", "none", "--xtc", "--flips", 0, "--seed", 5)
+        result = invoke(
+            "run", folder.path / "config.txt", "--out", out, "--steps", 20, *options,
+            "--platform", "Reference",
+        )  # fmt: skip
+        assert result.exit_code == 0, result.output
 
     def test_another_platform(self, folder, out):
         text = self.refused(folder, out, "--resume", "--platform", "CPU")

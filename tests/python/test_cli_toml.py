@@ -157,13 +157,36 @@ class TestWhatIsBuilt:
 
     def test_a_vesicle_may_keep_off_itself(self, write):
         cfg = config.read(
-            write(SMALL + "[repulsion]\nstrength = 1\ndistance = 60\nwithin = true\n")
+            write(SMALL + "[repulsion]\nstrength = 1\ndistance = 13\nwithin = true\n")
         )
-        energy, _ = state(cfg.system(), cfg.positions, {cfg.terms["repulsion"]})
+        flat = cfg.positions * [1, 1, 0.1]
+        energy, _ = state(cfg.system(), flat, {cfg.terms["repulsion"]})
         triangles = cfg.membranes[0].vesicle.mesh.triangles
-        expected = contact_twin.surface_repulsion(cfg.positions, triangles, 60, 1)
+        expected = contact_twin.surface_repulsion(flat, triangles, 13, 1)
         assert expected > 0
         assert energy == pytest.approx(expected, rel=1e-9)
+
+    @pytest.mark.parametrize(
+        ("more", "message"),
+        [
+            ("[repulsion]\nstrength = 1\ndistance = 14\nwithin = true\n",
+             r"7: key repulsion.distance: .* less than the triangles are high, 13.5"),
+            ('[integrator]\nkind = "Brownian"\nfriction = 0\n',
+             r"7: key integrator.friction: Brownian dynamics need more than 0"),
+            ("[watch]\nmax_fold = 200\n", "watch.max_fold: must be 180 or less, got 200"),
+            ("reduced_volume = 1.5\n", "reduced_volume must be 1 or less, that of a sphere"),
+            ("flips = 101\n", r"vesicle\[0\].flips: must be 100 or less, got 101"),
+            ("flips = { attempts_per_edge = 0.1, min_degree = 6, max_degree = 5 }\n",
+             r"vesicle\[0\].flips: max_degree must not be below min_degree, got 5 and 6"),
+            ('skeleton = { law = "Spring", ratio = 0.4 }\n', "Spring needs stiffness too"),
+        ],
+    )  # fmt: skip
+    def test_what_cannot_be_meant(self, write, more, message):
+        text = SMALL.replace("integrator.time_step = 0.02\n", "") + more
+        if "[integrator]" in more:
+            text += "time_step = 0.02\n"
+        with pytest.raises(ConfigError, match=message):
+            config.read(write(text))
 
     def test_terms_are_named_and_apart(self, write):
         cfg = config.read(write(TWO))
@@ -556,7 +579,11 @@ class TestAnySurface:
             ("[8, 9]", "[8, 1]", r"mesh.sheet: must be 2 or more, got 1"),
             ("[tension]", "[box]\nvectors = 3\n[tension]", r"box.vectors: expected \[x, y, z\]"),
             ("[tension]", "[box]\nvectors = [9, 0, 9]\n[tension]", "box.vectors: box must have"),
-            ("[tension]", "[box]\nvectors = [90, 90, 90]\n[tension]", "must be shorter than 45"),
+            (
+                "[tension]",
+                "[box]\nvectors = [90, 90, 90]\n[tension]",
+                r"spans a box whose a is \[400",
+            ),
             ("tension = 0.01", 'axes = "x"', "tension.axes: there is no 'x'"),
             ("softness", "volume = 3\nsoftness", r"encloses no volume; give no volume"),
         ],
@@ -564,6 +591,24 @@ class TestAnySurface:
     def test_mistakes(self, write, old, new, message):
         with pytest.raises(ConfigError, match=message):
             config.read(write(SHEET.replace(old, new, 1)))
+
+    @pytest.mark.parametrize(
+        ("tension", "message"),
+        [
+            ("pulling_force = 10", "tension.pulling_force: it acts with axes = .ZOnly. only"),
+            ('tension = 1\naxes = "XYConstantArea"', "tension.tension: these axes have none"),
+            ('axes = "ZOnly"\npulling_force = 3', "changes the box along z, which no mesh spans"),
+        ],
+    )
+    def test_what_would_pull_at_nothing(self, write, tension, message):
+        text = SHEET.replace("tension = 0.01", tension)
+        with pytest.raises(ConfigError, match=message):
+            config.read(write(text))
+
+    def test_a_box_around_a_vesicle_has_no_tension(self, write):
+        text = SMALL + "[box]\nvectors = [200, 200, 200]\n[tension]\ntension = 0.1\n"
+        with pytest.raises(ConfigError, match="along x and y, which no mesh spans"):
+            config.read(write(text))
 
     def test_boxes_of_meshes_must_agree(self, write):
         other = """[[vesicle]]
@@ -622,9 +667,9 @@ class TestTotals:
             ("= -0.001", '= "1 kT"', r"5: key vesicle\[0\].pressure: expected a number"),
             ("solutes = 4000", "solutes = 0", r"osmotic: solutes: must be above 0, got 0"),
             ("solutes = 4000", "solute = 4000", r"no 'solute' in osmotic; did you mean solutes"),
-            ("solutes = 4000, ", "", r"osmotic needs solutes and concentration"),
+            ("solutes = 4000, ", "", r"osmotic: osmotic needs solutes too"),
             ("alpha", "beta", r"area_difference: there is no 'beta' in area_difference"),
-            ("alpha = 1.4, ", "", r"area_difference needs alpha and delta_a0, or modulus and"),
+            ("alpha = 1.4, ", "", r"needs either alpha and delta_a0, or modulus and"),
             ("icosphere = 2", "disk = 3", r"mesh.*; volume_modulus=0 leaves the volume out"),
         ],
     )
@@ -679,10 +724,10 @@ class TestSkeleton:
         [
             ("Skalak", "Skalac", r"skeleton: law: there is no 'Skalac'; did you mean Skalak"),
             ("shear_modulus", "modulus", r"no 'modulus' in skeleton"),
-            ("shear_modulus = 0.4, ", "", r"SkalakForce: missing a required argument"),
+            ("shear_modulus = 0.4, ", "", r"skeleton: Skalak needs shear_modulus too"),
             ("= 0.4", "= -0.4", r"shear_modulus: must be 0 or more, got -0.4"),
             ("shear_modulus = 0.4", "ratio = 1.0", r"ratio: must be below 1, got 1"),
-            ("= 0.4", "= 0.4, stiffness = 1", r"SkalakForce: .*'stiffness'"),
+            ("= 0.4", "= 0.4, stiffness = 1", r"the law Skalak has no stiffness; its keys"),
             ('{ law = "Skalak", shear_modulus = 0.4, area_modulus = 1 }', "1", r"expected a table"),
         ],
     )

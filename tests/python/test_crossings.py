@@ -94,7 +94,7 @@ def test_speed():
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ((np.zeros((3, 3)),), "triangles: needed"),
+        ((np.zeros((3, 3)),), "^crossings: triangles are needed"),
         ((np.zeros((2, 6, 3)), APART), "takes one frame, got 2"),
         ((np.zeros((5, 3)), APART), "names vertex 5"),
     ],

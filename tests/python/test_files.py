@@ -425,7 +425,7 @@ class TestSequences:
         result = invoke("frames", run, tmp_path / "a" / names[0], "--format", kind, "--force")
         assert result.exit_code == 1
         assert "is no folder; give the name of a folder" in result.output
-        result = invoke("frames", run, tmp_path / "a", "--force")
+        result = invoke("frames", run, tmp_path / "a", "--format", "gsd", "--force")
         assert "a is no file; give the name of a file" in result.output
 
     def test_trimesh(self, folder, meshes):

@@ -189,6 +189,17 @@ def test_gmsh_files_that_count_more_nodes_than_they_have(tmp_path, merge, counte
         Mesh.read(tmp_path / "m.msh", merge=merge)
 
 
+def test_hexadecimal_numbers_in_xml():
+    mesh = Mesh.icosphere(1, 10.0)
+    system = mm.System()
+    system.addForce(helfrich.BendingForce(mesh, 12345.0))
+    text = mm.XmlSerializer.serialize(system)
+    assert mm.XmlSerializer.deserialize(text.replace("12345", "1.2e4")) is not None
+    for broken in ("0x10", "0X1p4", "1_0", "", "12 "):
+        with pytest.raises(mm.OpenMMException, match=r"BendingForce: .* is not a number"):
+            mm.XmlSerializer.deserialize(text.replace("12345", broken))
+
+
 @pytest.mark.parametrize("file_format", ["gmsh22", "gmsh"])
 @pytest.mark.parametrize("binary", [True, False])
 def test_gmsh_files_whose_nodes_have_enormous_numbers(tmp_path, file_format, binary):

@@ -283,12 +283,13 @@ class TestFrames:
         path.write_bytes(b"mine")
         for words, culprit in (
             ((fluid, path), "is there already; overwrite it with --force"),
-            ((solid / "frames", "b.vtkhdf"), "has no XTC files, not one"),
+            ((solid / "frames", "b.vtkhdf"), "has no XTC or GSD files, not one"),
             (
                 (alone(solid, tmp_path), tmp_path / "b.vtkhdf"),
                 "there is neither alone.ply nor alone.triangles beside it",
             ),
-            ((fluid, tmp_path / "b.h5"), "the suffix must be .vtkhdf"),
+            ((fluid, tmp_path / "b.h5"), "does not end with .vtkhdf, .gsd"),
+            ((fluid, tmp_path / "b.ply"), "there is a file for each frame; give --format ply"),
         ):
             result = invoke("frames", *words)
             assert result.exit_code != 0

@@ -332,7 +332,7 @@ def test_a_frame_that_is_not_whole(tmp_path, particles):
     "name, said",
     [
         ("nothing", "there is no file or folder"),
-        ("empty", "has no XTC or VTKHDF file"),
+        ("empty", "has no XTC, VTKHDF or GSD file"),
         ("two", r"has 2 files \*.xtc, not one"),
         ("alone.xtc", "has no triangles beside it, neither alone.ply nor alone.triangles"),
         ("wrong.xtc", "224 particles, and .*wrong.ply 42 vertices"),

@@ -203,6 +203,13 @@ class TestRefusals:
         with pytest.raises(mm.OpenMMException, match=rf"^{NAME}: .*particles 3 and 4"):
             REFERENCE.context(system)
 
+    @pytest.mark.parametrize("particle", [-1, 92, 10**9])
+    def test_a_particle_that_is_not_there(self, particle):
+        triangles = start().triangles.copy()
+        triangles[triangles == 3] = particle
+        with pytest.raises(mm.OpenMMException, match=rf"^{NAME}: .*particle {particle}"):
+            REFERENCE.context(system_of(thermostat_of(triangles)))
+
     def test_a_virtual_site(self):
         system = system_of(thermostat_of(start()))
         system.setParticleMass(3, 0)

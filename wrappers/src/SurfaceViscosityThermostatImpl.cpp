@@ -124,7 +124,7 @@ void SurfaceViscosityThermostatImpl::initialize(ContextImpl& context) {
     state.random.key[0] = toKey(owner.getRandomNumberSeed());
     state.random.key[1] = KEY + findNumber(system, owner);
     const vector<int>& corners = owner.getTriangles();
-    checkVertices(system, std::set<int>(corners.begin(), corners.end()));
+    // First of all, since it sees to it that there are such particles.
     membrane = SharedMembrane::acquire(NAME, context, corners);
     vector<double> masses;
     for (int i = 0; i < system.getNumParticles(); i++) {
@@ -132,6 +132,7 @@ void SurfaceViscosityThermostatImpl::initialize(ContextImpl& context) {
         hasVirtualSites = hasVirtualSites || system.isVirtualSite(i);
     }
     try {
+        checkVertices(system, std::set<int>(corners.begin(), corners.end()));
         viscosity = membrane->makeViscosity(NAME, masses);
     } catch (...) {
         // OpenMM will not delete this object any more; the membrane shall not stay for ever.

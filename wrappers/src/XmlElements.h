@@ -66,7 +66,8 @@ inline double number(const std::string& force, const OpenMM::SerializationNode& 
     std::string value = text(force, node, property);
     char* end = nullptr;
     double result = plainNumber(value.c_str(), &end);
-    if (value.empty() || *end != '\0')
+    // The C library would read hexadecimal numbers, which nobody writes.
+    if (value.empty() || *end != '\0' || value.find_first_of("xX") != std::string::npos)
         refuse(force, node, property, "a number");
     return result;
 }

@@ -89,7 +89,10 @@ def mode_autocorrelation(amplitudes: ArrayLike, lags: int | None = None) -> Any:
     amplitudes = np.asarray(amplitudes, dtype=float)
     count = round(amplitudes.shape[-1] ** 0.5) if amplitudes.ndim == 2 else 0
     if not count or count**2 != amplitudes.shape[1]:
-        raise ValueError(f"amplitudes: need shape (num_frames, (lmax+1)²), got {amplitudes.shape}")
+        raise ValueError(
+            "mode_autocorrelation: amplitudes need shape (num_frames, (lmax+1)²), got "
+            f"{amplitudes.shape}"
+        )
     finite_array(amplitudes, "mode_autocorrelation", "amplitudes")
     functions = autocorrelation(amplitudes, lags, normalise=False)
     mean, spread = (np.full((len(functions), count), np.nan) for _ in range(2))
@@ -147,5 +150,5 @@ def _series(where, series):
     """An array of finite numbers with an axis for the time."""
     series = np.asarray(series, dtype=float)
     if series.ndim == 0 or series.size == 0:
-        raise ValueError(f"series: need shape (n,) or (n, …), got {series.shape}")
+        raise ValueError(f"{where}: series needs shape (n,) or (n, …), got {series.shape}")
     return finite_array(series, where, "series")

@@ -71,13 +71,13 @@ def crossings(vertices: Any, triangles: Any = None, *, box: Values | None = None
     if triangles is None:
         triangles = getattr(source, "triangles", None)
         if triangles is None:
-            raise ValueError("triangles: needed, unless vertices is a Mesh")
+            raise ValueError("crossings: triangles are needed, unless vertices is a Mesh")
     box = box_of(box, source, triangles)
     frames, _ = frames_of(source)
     if len(frames) != 1:
-        raise ValueError(f"vertices: crossings takes one frame, got {len(frames)}")
+        raise ValueError(f"crossings: vertices of one frame are taken, got {len(frames)}")
     if box is not None and box.ndim == 3:
-        raise ValueError(f"box: crossings takes one frame, got boxes of {len(box)}")
+        raise ValueError(f"crossings: the box of one frame is taken, got boxes of {len(box)}")
     faces = triangles_of(triangles, frames.shape[1])
     corners = corner_positions(frames[0], faces, box)
     sides, owners = _sides(faces)

@@ -52,8 +52,8 @@ def density_modes(vertices: Any, lmax: int) -> Array:
         if not distance.all():
             frame, vertex = np.argwhere(distance == 0)[0]
             raise ValueError(
-                f"vertices: vertex {vertex} of frame {first + frame} is at the centre of mass, "
-                "where it has no direction"
+                f"density_modes: vertex {vertex} of frame {first + frame} is at the centre of "
+                "mass, where it has no direction"
             )
         directions = positions / distance[:, :, np.newaxis]
         norm = np.sqrt(4 * np.pi / frames.shape[1])

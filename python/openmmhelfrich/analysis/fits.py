@@ -195,7 +195,9 @@ def fit_damping(
     """
     series = np.asarray(series, dtype=float)
     if series.ndim not in (1, 2) or len(series) < 4:
-        raise ValueError(f"series: need shape (n,) or (n, k) with n ≥ 4, got {series.shape}")
+        raise ValueError(
+            f"fit_damping: series needs shape (n,) or (n, k) with n ≥ 4, got {series.shape}"
+        )
     finite_array(series, "fit_damping", "series")
     interval = positive_number(interval, "fit_damping", "interval")
     if frequency is not None:
@@ -209,13 +211,13 @@ def fit_damping(
         length = len(series) // 8
         if length < lags:
             raise ValueError(
-                f"series: one series of {len(series)} frames has no eight parts of {lags} lags for "
-                "an error; take fewer lags, or several equivalent series"
+                f"fit_damping: one series of {len(series)} frames has no eight parts of {lags} "
+                "lags for an error; take fewer lags, or several equivalent series"
             )
         series = series.reshape(-1)[: 8 * length].reshape(8, length).T
     functions = autocorrelation(series, lags, normalise=False)
     if not (functions[0] > 0).all():
-        raise ValueError(f"series: series {np.argmin(functions[0])} is zero throughout")
+        raise ValueError(f"fit_damping: series {np.argmin(functions[0])} is zero throughout")
     times = interval * np.arange(lags)
     total = functions.sum(axis=1)
     best = _damped(times, total / total[0], frequency)

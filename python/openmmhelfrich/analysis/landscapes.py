@@ -127,13 +127,16 @@ def landscape(mesh: Any, forces: Any, vertex: int, points: Any) -> Any:
     vertex = whole_number(vertex, "landscape", "vertex", 0, mesh.num_vertices - 1)
     points = np.asarray(points.points if isinstance(points, Grid) else points, dtype=float)
     if points.ndim == 0 or points.shape[-1] != 3:
-        raise ValueError(f"points: need shape (…, 3), got {points.shape}")
+        raise ValueError(f"landscape: points need shape (…, 3), got {points.shape}")
     if not np.isfinite(points).all():
-        raise ValueError(f"points: entry {np.argwhere(~np.isfinite(points))[0]} is not finite")
+        entry = np.argwhere(~np.isfinite(points))[0]
+        raise ValueError(f"landscape: points: entry {entry} is not finite")
     single = isinstance(forces, openmm.Force)
     named = {"": forces} if single else dict(forces)
     if not 0 < len(named) <= 32:
-        raise ValueError(f"forces: need 1 to 32, one for each force group, got {len(named)}")
+        raise ValueError(
+            f"landscape: forces need 1 to 32, one for each force group, got {len(named)}"
+        )
 
     context = context_of(mesh.num_vertices, named.values(), mesh.box, "landscape")
     positions = np.array(mesh.vertices)

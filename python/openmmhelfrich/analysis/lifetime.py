@@ -91,7 +91,7 @@ def time_to_failure(
 
     kinetic, wrong = _look(context, np.inf, check)
     if wrong:
-        raise ValueError(f"simulation: it is out of order before its first step: {wrong}")
+        raise ValueError(f"time_to_failure: it is out of order before its first step: {wrong}")
     if kinetic == 0:
         particles = context.getSystem().getNumParticles()
         kinetic = 1.5 * particles * (unit.MOLAR_GAS_CONSTANT_R * 300 * unit.kelvin) / _ENERGY

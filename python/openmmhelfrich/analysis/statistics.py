@@ -324,5 +324,7 @@ def _series(where, series):
     """Shape (n, k) with two rows or more of finite numbers."""
     series = np.asarray(series, dtype=float)
     if series.ndim not in (1, 2) or len(series) < 2 or series.size == 0:
-        raise ValueError(f"series: need shape (n,) or (n, k) with n ≥ 2, got {series.shape}")
+        raise ValueError(
+            f"{where}: series needs shape (n,) or (n, k) with n ≥ 2, got {series.shape}"
+        )
     return finite_array(series, where, "series").reshape(len(series), -1)

@@ -12,7 +12,7 @@ from .trajectory import open_trajectory
 __all__ = ["frames"]
 
 # By format; the first is that of a name that is not given.
-_SUFFIXES = {"vtkhdf": (".vtkhdf",), "gsd": (".gsd",), "xyz": (".xyz", ".extxyz")}
+_SUFFIXES = {"vtkhdf": (".vtkhdf",), "gsd": (".gsd",), "xyz": (".extxyz", ".xyz")}
 # A file for each frame, in a folder.
 _SEQUENCES = ("ply", "obj", "stl", "vtk")
 
@@ -49,7 +49,7 @@ def frames(source, output, kind, mesh_path, membrane, skip, stride, force):
     its own.
 
     OUTPUT is beside it if it is not given: NAME.vtkhdf for ParaView (needs h5py), NAME.gsd for
-    HOOMD and OVITO (needs gsd), with edges as bonds, or NAME.xyz, extended XYZ for OVITO, whose
+    HOOMD and OVITO (needs gsd), with edges as bonds, or NAME.extxyz, extended XYZ for OVITO, whose
     surfaces are not in it. PLY, OBJ, STL and VTK are files NAME_surface_000000.obj, … in the folder
     OUTPUT, or NAME_obj. Vertices get mean curvatures, areas and numbers of neighbours, but in
     OBJ and STL. A run that is still to come writes all of these itself, with 'run --frames':
@@ -57,6 +57,7 @@ def frames(source, output, kind, mesh_path, membrane, skip, stride, force):
     """
     from .. import analysis
     from ..errors import MeshError
+    from ..simulation.run_folder import files_of
 
     writers = {
         "vtkhdf": analysis.write_vtkhdf,
@@ -71,6 +72,10 @@ def frames(source, output, kind, mesh_path, membrane, skip, stride, force):
     if output.exists() and output.is_dir() != (kind in _SEQUENCES):
         wanted = "folder" if kind in _SEQUENCES else "file"
         raise click.ClickException(f"{output} is no {wanted}; give the name of a {wanted}")
+    if output.name in files_of(output.parent):
+        raise click.ClickException(
+            f"{output} is a file with which the run there goes on; give another name"
+        )
     if output.exists() and not force:
         raise click.ClickException(f"{output} is there already; overwrite it with --force")
     try:
@@ -100,18 +105,37 @@ def _write_sequence(folder: Path, kind: str, name: str, trajectory, triangles, b
 
 
 def _kind_of(output: Path | None) -> str:
-    """The format that a name ends with; VTKHDF of any other."""
-    suffix = "" if output is None else output.suffix.lower()
-    return next((kind for kind, ends in _SUFFIXES.items() if suffix in ends), "vtkhdf")
+    """The format that a name ends with; VTKHDF without a name."""
+    if output is None:
+        return "vtkhdf"
+    suffix = output.suffix.lower()
+    for kind, ends in _SUFFIXES.items():
+        if suffix in ends:
+            return kind
+    if suffix[1:] in _SEQUENCES:
+        raise click.ClickException(
+            f"{output}: of {suffix[1:].upper()} there is a file for each frame; give "
+            f"--format {suffix[1:]} and the name of a folder"
+        )
+    known = ", ".join(end for ends in _SUFFIXES.values() for end in ends)
+    raise click.ClickException(
+        f"{output} does not end with {known}; give --format, and for {', '.join(_SEQUENCES)} the "
+        "name of a folder"
+    )
 
 
 def _trajectory_in(source: Path) -> Path:
     """The trajectory of a run's folder; a file is one itself."""
     if not source.is_dir():
         return source
-    found = sorted(source.glob("*.xtc"))
-    if len(found) != 1:
+    found = sorted(source.glob("*.xtc")) or sorted(source.glob("*.gsd"))
+    if len(found) == 1:
+        return found[0]
+    if not found and (made := sorted(source.glob("*.vtkhdf"))):
         raise click.ClickException(
-            f"{source} has {len(found) or 'no'} XTC files, not one; name the trajectory itself"
+            f"{source} has no XTC file, but its frames are in {made[0].name}, which ParaView and "
+            "'openmm-helfrich view' open"
         )
-    return found[0]
+    raise click.ClickException(
+        f"{source} has {len(found) or 'no'} XTC or GSD files, not one; name the trajectory itself"
+    )

@@ -28,7 +28,12 @@ __all__ = ["run"]
     help="Step, counted from the start, to end with. Default: what the configuration says.",
 )
 @click.option("--seed", type=click.IntRange(1, 2**31 - 1), help="Seed in place of the file's.")
-@click.option("--resume", is_flag=True, help="Go on with the run that the folder holds.")
+@click.option(
+    "--resume",
+    is_flag=True,
+    help="Go on with the run that the folder holds, as it began: options need not be given again, "
+    "and others are refused.",
+)
 @click.option(
     "--resume-previous",
     is_flag=True,
@@ -50,7 +55,6 @@ __all__ = ["run"]
 @click.option(
     "--flips",
     type=click.FloatRange(0, 100),
-    default=0.0,
     metavar="RATE",
     help="Make the membranes of a VCM configuration fluid: attempts to flip a bond for each edge "
     "and time step, such as 0.01. TOML has a key of its own.",

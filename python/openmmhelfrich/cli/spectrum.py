@@ -48,9 +48,7 @@ _COLUMNS = ("l", "mean", "error", "correlation_time_frames", "theory", "ratio")
 @click.option(
     "--radius",
     type=click.FloatRange(min=0, min_open=True),
-    default=1000.0,
-    show_default=True,
-    help="Radius of the theory, nm; only for --young.",
+    help="Radius of the theory, nm; only for --young.  [default: that of the mean volume]",
 )
 @click.option("--skip", type=click.IntRange(0), default=0, help="Frames to leave out at the start.")
 @click.option("--stride", type=click.IntRange(1), default=1, help="Take every so many frames.")
@@ -84,14 +82,18 @@ def spectrum(
     from ..errors import MeshError
 
     try:
-        amplitudes = _amplitudes(source, mesh_path, membrane, lmax, **options)
+        amplitudes, mean_radius = _amplitudes(source, mesh_path, membrane, lmax, **options)
+        if young and radius is None:
+            if mean_radius is None:
+                raise click.UsageError("--young needs --radius where SOURCE is a file of modes")
+            radius = mean_radius
         found = analysis.spectrum(amplitudes)
         l = found.l[2:]
-        theory = analysis.theory.elastic_spectrum(l, kappa, young, radius)
+        theory = analysis.theory.elastic_spectrum(l, kappa, young, radius or 1.0)
         measured = found.mean[2:], found.error[2:], found.correlation_time[2:]
         rows = [_row(*values) for values in zip(l, *measured, theory, strict=True)]
         if not as_json:
-            for line in _lines(len(amplitudes), kappa, young, rows):
+            for line in _lines(len(amplitudes), kappa, young, radius, rows):
                 click.echo(line)
         if table_path is not None:
             _write(table_path, rows)
@@ -109,8 +111,14 @@ def spectrum(
 
 
 def _amplitudes(source, mesh_path, membrane, lmax, skip, stride, quadrature, centre):
-    """u_lm of all frames that are asked for, from either kind of file."""
+    """u_lm of all frames that are asked for, and the mean radius, nm, or None for a file of modes.
+
+    The radius is that of a sphere with the volume of a frame.
+    """
+    import numpy as np
+
     from .. import analysis
+    from .._mesh.geometry import volume_enclosed
 
     if source.suffix.lower() in _MODES:
         if mesh_path is not None:
@@ -123,9 +131,14 @@ def _amplitudes(source, mesh_path, membrane, lmax, skip, stride, quadrature, cen
             raise ValueError(f"{source} has modes up to l = {largest} only; a spectrum starts at 2")
         if lmax is not None and lmax > largest:
             raise ValueError(f"--lmax {lmax}: {source} has modes up to l = {largest} only")
-        return amplitudes if lmax is None else amplitudes[:, : (lmax + 1) ** 2]
+        return amplitudes if lmax is None else amplitudes[:, : (lmax + 1) ** 2], None
     trajectory, triangles, _ = open_trajectory(source, mesh_path, membrane, skip, stride)
-    return analysis.mode_amplitudes(trajectory, triangles, lmax or 10, quadrature, centre)
+    found = analysis.mode_amplitudes(trajectory, triangles, lmax or 10, quadrature, centre)
+    # Of the first frame; volumes of later ones hardly differ where there is a spectrum.
+    start = next(iter(trajectory))
+    corners = getattr(triangles, "triangles", triangles)
+    volume = volume_enclosed(start, corners[0] if corners.ndim == 3 else corners)
+    return found, float(abs(0.75 / np.pi * volume) ** (1 / 3))
 
 
 def _row(l, mean, error, time, theory) -> dict[str, Any]:
@@ -134,8 +147,10 @@ def _row(l, mean, error, time, theory) -> dict[str, Any]:
     return dict(zip(_COLUMNS, [int(l), *numbers], strict=True))
 
 
-def _lines(num_frames, kappa, young, rows):
-    formula = "(A17)" if young == 0 else f"(A18) with Y = {young:g} kBT/nm²"
+def _lines(num_frames, kappa, young, radius, rows):
+    formula = "(A17)"
+    if young:
+        formula = f"(A18) with Y = {young:g} kBT/nm², R = {radius:.6g} nm"
     yield f"{num_frames} frames; theory {formula}, κ = {kappa:g} kBT"
     yield "   l     ⟨|u_lm|²⟩       error    theory  ratio         correlation time"
     for l, mean, error, time, theory, ratio in map(dict.values, rows):

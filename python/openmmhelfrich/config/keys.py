@@ -209,7 +209,7 @@ KEYS: tuple[Key, ...] = (
     Key("vesicle.mesh", "translate", vector, None, "Displacement, nm."),
     Key("tension", "tension", number(), 0.0,
         "Of the frame, kJ/mol/nm²; see `MonteCarloMembraneTension`, which changes the box."),
-    Key("tension", "pulling_force", number(), 0.0, "Along z, kJ/mol/nm; with `ZOnly`."),
+    Key("tension", "pulling_force", number(), 0.0, "Along z, kJ/mol/nm; only with `ZOnly`."),
     Key("tension", "axes", choice(_AXES), None,
         "What changes: " + ", ".join(f"`{name}`" for name in _AXES) + ". Default: `XYIsotropic`."),
     Key("tension", "frequency", integer(1), 25, "Steps between moves."),
@@ -217,7 +217,7 @@ KEYS: tuple[Key, ...] = (
         "K: a run whose particles are hotter counts as broken down, and says why. Default: none."),
     Key("watch", "min_height", number(above=0), None,
         "nm: so does one in which a triangle is less high. Default: none."),
-    Key("watch", "max_fold", number(above=0), None,
+    Key("watch", "max_fold", number(above=0, most=180), None,
         "Degrees: so does one in which an edge is bent by more, 0 where it is flat, 180 where its "
         "triangles lie upon each other. Default: none."),
     Key("repulsion", "strength", energy, REQUIRED,

@@ -24,6 +24,7 @@ from ..vcm.grammar import GENERAL, MEMBRANE, ConfigError, nearest
 from ..vcm.parsers import Interval
 from ..vcm.settings import Settings
 from ..vesicle import Vesicle
+from .checks import check_box, check_reach, check_tension
 from .document import Document
 from .keys import keys_of
 from .meshes import start_mesh
@@ -63,7 +64,8 @@ class Configuration(Model):
                 f"{output['interval']:g} ps is less than the time step of {self._step_size:g} ps",
             )
         self.general = _general(simulation, integrator, output, self.path.stem)
-        self.seed = seed or simulation["seed"] or secrets.randbelow(_MAX_SEED) + 1
+        self.file_seed = simulation["seed"] or 0
+        self.seed = seed or self.file_seed or secrets.randbelow(_MAX_SEED) + 1
         self.platform = _platform(simulation)
         if output.given("ply") and output.given("frames"):
             raise output.error("ply", "give either frames or ply, not both")
@@ -75,6 +77,8 @@ class Configuration(Model):
         if self.box is not None:
             # Outputs have a box then.
             self.general["SimulationBoxLength"] = float(self.box[0, 0])
+        if integrator["kind"] == "Brownian" and integrator["friction"] == 0:
+            raise integrator.error("friction", "Brownian dynamics need more than 0")
         viscous = any(membrane.vesicle.viscosity is not None for membrane in self.membranes)
         if viscous and integrator["kind"] == "Brownian":
             raise integrator.error(
@@ -83,10 +87,7 @@ class Configuration(Model):
         self._tension = None
         if "tension" in document.data:
             self._tension = Table(document, ("tension",), "tension")
-            if self.box is None:
-                raise self._tension.error(
-                    None, "it acts on a periodic box; add [box], or a mesh that spans one"
-                )
+            check_tension(self._tension, self.box, self.membranes)
         self._repulsion = None
         if "repulsion" in document.data:
             self._repulsion = Table(document, ("repulsion",), "repulsion", self.kT)
@@ -96,6 +97,8 @@ class Configuration(Model):
                     "it acts between vesicles, and there is one only; within = true lets it act "
                     "within a vesicle, too",
                 )
+            if self._repulsion["within"]:
+                check_reach(self._repulsion, self.membranes)
         # The potentials of each vesicle, by Vesicle's names.
         self._kinds = [list(membrane.vesicle._forces(0)) for membrane in self.membranes]
         self._terms: dict[str, int] = {}
@@ -318,7 +321,9 @@ def _vesicles(document: Document, kT: float) -> tuple[Array | None, tuple[Vesicl
 def _box_of(document: Document, tables: list[Any], meshes: list[Mesh]) -> Array | None:
     """The box of the file, or else that of the meshes, which must agree."""
     if "box" in document.data:
-        return Table(document, ("box",), "box")["vectors"]
+        table = Table(document, ("box",), "box")
+        check_box(table, meshes)
+        return table["vectors"]
     box = None
     for (_, table), mesh in zip(tables, meshes, strict=True):
         if mesh.box is not None:

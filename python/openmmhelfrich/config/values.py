@@ -55,19 +55,25 @@ def _finite(value: Any, what: str = "a number") -> float:
     return result
 
 
-def _check_range(value: float, least: float | None, above: float | None) -> None:
+def _check_range(
+    value: float, least: float | None, above: float | None, most: float | None = None
+) -> None:
     if least is not None and value < least:
         raise ValueError(f"must be {least:g} or more, got {value:g}")
     if above is not None and value <= above:
         raise ValueError(f"must be above {above:g}, got {value:g}")
+    if most is not None and value > most:
+        raise ValueError(f"must be {most:g} or less, got {value:g}")
 
 
-def number(least: float | None = None, above: float | None = None) -> Reader:
+def number(
+    least: float | None = None, above: float | None = None, most: float | None = None
+) -> Reader:
     """A finite number in a range."""
 
     def read(value, kT):
         result = _finite(value)
-        _check_range(result, least, above)
+        _check_range(result, least, above, most)
         return result
 
     return read
@@ -203,7 +209,7 @@ def mode(value: Any, kT: Any) -> Any:
 _FLIPS = {
     "temperature": ("temperature", number(above=0)),
     "frequency": ("frequency", integer(0)),
-    "attempts_per_edge": ("attemptsPerEdge", number(least=0)),
+    "attempts_per_edge": ("attemptsPerEdge", number(least=0, most=1000)),
     "min_degree": ("minDegree", integer(3)),
     "max_degree": ("maxDegree", integer(3)),
     "max_edge_length": ("maxEdgeLength", number(least=0)),
@@ -213,8 +219,12 @@ _FLIPS = {
 def flips(value: Any, kT: Any) -> Any:
     """Attempts per edge and step, or a table of what `MonteCarloBondFlip` takes."""
     if not isinstance(value, dict):
-        return number(least=0)(value, kT)
-    return _arguments("flips", _FLIPS, value, kT)
+        return number(least=0, most=100)(value, kT)
+    given = _arguments("flips", _FLIPS, value, kT)
+    least, most = given.get("minDegree", 3), given.get("maxDegree", 10)
+    if least > most:
+        raise ValueError(f"max_degree must not be below min_degree, got {most} and {least}")
+    return given
 
 
 #: The same for ``osmotic`` and `OsmoticPressureForce`.
@@ -235,12 +245,17 @@ _AREA_DIFFERENCE = {
 def osmotic(value: Any, kT: Any) -> Any:
     """A table of what `OsmoticPressureForce` takes; kT is that of the integrator."""
     given = _arguments("osmotic", _OSMOTIC, table(value, kT), kT)
+    _need("osmotic", given, _OSMOTIC, "solutes", "concentration")
     return {"thermalEnergy": kT, **given}
 
 
 def area_difference(value: Any, kT: Any) -> Any:
     """A table of what `area_difference_parameters` or `AreaDifferenceForce` takes."""
-    return _arguments("area_difference", _AREA_DIFFERENCE, table(value, kT), kT)
+    given = _arguments("area_difference", _AREA_DIFFERENCE, table(value, kT), kT)
+    if set(given) not in ({"alpha", "delta_a0"}, {"modulus", "target"}):
+        have = ", ".join(value) or "nothing"
+        raise ValueError(f"needs either alpha and delta_a0, or modulus and target, got {have}")
+    return given
 
 
 #: The keys of ``viscosity``, with the arguments of `SurfaceViscosityThermostat` that they are.
@@ -279,9 +294,33 @@ _SKELETON = {
 }
 
 
+#: What each law needs, and what it may have.
+_OF_LAW = {
+    "Skalak": (("shear_modulus", "area_modulus"), ()),
+    "NeoHookean": (("shear_modulus", "area_modulus"), ()),
+    "LinearElastic": (("shear_modulus", "area_modulus"), ()),
+    "Spring": (("stiffness",), ("ratio", "form")),
+}
+
+
 def skeleton(value: Any, kT: Any) -> Any:
     """A table of a law and of what its force takes."""
-    return _arguments("skeleton", _SKELETON, table(value, kT), kT)
+    given = _arguments("skeleton", _SKELETON, table(value, kT), kT)
+    law = given.get("law", "Skalak")
+    needed, allowed = _OF_LAW[law]
+    _need(law, given, _SKELETON, *needed)
+    for name in value:
+        if name not in ("law", *needed, *allowed):
+            known = ", ".join((*needed, *allowed))
+            raise ValueError(f"the law {law} has no {name}; its keys are {known}")
+    return given
+
+
+def _need(what: str, given: Mapping[str, Any], known: Mapping[str, Any], *names: str) -> None:
+    """Refuse a table without some keys."""
+    for name in names:
+        if known[name][0] not in given:
+            raise ValueError(f"{what} needs {name} too")
 
 
 def _arguments(where, known, value, kT):

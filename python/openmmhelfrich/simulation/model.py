@@ -80,6 +80,8 @@ class Model(ABC):
         OpenMM platform for a run that is told no other.
     writes : mapping
         What a run that is not told writes: "xtc", a bool, and "frames", one of `frames.FRAMES`.
+    file_seed : int
+        The seed that the file gives, or 0.
     limits : Limits
         Beyond which a run counts as broken down.
     """
@@ -88,6 +90,7 @@ class Model(ABC):
     general: Mapping[str, Any]
     membranes: tuple[Membrane, ...]
     seed: int
+    file_seed: int
     platform: str | None = None
     writes: Mapping[str, bool | str] = MappingProxyType({"xtc": True, "frames": "none"})
     limits = Limits()

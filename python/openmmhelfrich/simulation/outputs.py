@@ -317,8 +317,8 @@ class Outputs:
     def _xtc(self, frame: Frame) -> bytes:
         """A frame of an XTC file.
 
-        OpenMM says nothing if a file cannot be written. The format has 32 bits for the number of the
-        step, which begins anew after 2³¹ − 1; the time goes on.
+        OpenMM says nothing if a file cannot be written. The format has 32 bits for the number of
+        the step, which begins anew after 2³¹ − 1; the time goes on.
         """
         values = (
             frame.positions.astype(np.float32),

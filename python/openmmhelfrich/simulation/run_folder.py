@@ -19,7 +19,7 @@ from .._blocks import Block, BlockError, DamagedError, pack, unpack
 from .._snapshots import Snapshot
 from .._writing import describe, naming, replace
 
-__all__ = ["CHECKPOINT", "PREVIOUS", "RunError", "RunFolder", "Saved"]
+__all__ = ["CHECKPOINT", "PREVIOUS", "RunError", "RunFolder", "Saved", "files_of"]
 
 CHECKPOINT = "checkpoint.bin"
 PREVIOUS = "checkpoint-previous.bin"
@@ -51,6 +51,16 @@ class Saved:
     options: dict[str, Any]
     fingerprint: str
     outputs: dict[str, Any] | None
+
+
+def files_of(folder: Path) -> set[str]:
+    """The names of the files with which the run of a folder goes on; none where there is no run."""
+    try:
+        found = RunFolder(folder).read()
+    except RunError:
+        return set()
+    saved = None if found is None else found[0]
+    return set() if saved is None or saved.outputs is None else set(saved.outputs["sizes"])
 
 
 class RunFolder:

@@ -53,13 +53,13 @@ class Run:
     resume_previous : bool
         Go on from the checkpoint before the last one, which is given up: for one that is damaged.
     vcm_compatible, ignore_unknown : bool
-        As for `read`; a resumed run keeps its own.
+        As for `read`; a resumed run keeps its own, and is refused others.
     xtc, frames : bool and str, optional
-        As for `Outputs`; a resumed run keeps its own. Default: what the file says, or XTC only.
+        As for `Outputs`; the same. Default: what the file says, or XTC only.
     ply : bool, optional
         Short for ``frames="ply"`` or, if False, ``frames="none"``.
-    flips : float
-        As for `read`; a resumed run keeps its own.
+    flips : float, optional
+        As for `read`; the same. Default: none.
     checkpoint_seconds : float
         Wall time between checkpoints, s: what a kill can cost.
 
@@ -86,19 +86,23 @@ class Run:
         xtc: bool | None = None,
         ply: bool | None = None,
         frames: str | None = None,
-        flips: float = 0.0,
+        flips: float | None = None,
         checkpoint_seconds: float = 10.0,
     ) -> None:
         options = {
             "vcm_compatible": vcm_compatible,
             "ignore_unknown": ignore_unknown,
-            "flips": flips,
+            "flips": flips or 0.0,
         }
         self._checkpoint_seconds = checkpoint_seconds
         self.cfg = cfg = read_any(config, seed=seed, **options)
         asked = {"xtc": xtc, "frames": frames or {True: "ply", False: "none"}.get(ply)}
         wanted = {name: given for name, given in asked.items() if given is not None}
-        self._options = {**options, **cfg.writes, **wanted}
+        # What is asked for here, and what the file says: a resumed run must agree with both.
+        given = {name: True for name in ("vcm_compatible", "ignore_unknown") if options[name]}
+        self._wanted = {**given, **wanted, **({} if flips is None else {"flips": flips})}
+        said = {"seed": cfg.file_seed, "platform": cfg.platform, **cfg.writes}
+        self._options = {**options, **cfg.writes, **wanted, "file": said}
         self.folder = Path(folder if folder is not None else cfg.name)
         self._watch: Watch | None = None
         self._folder = RunFolder(self.folder)
@@ -114,9 +118,9 @@ class Run:
         found = self._folder.read(resume_previous) if resume or resume_previous else None
         saved, state = (None, None) if found is None else found
         if saved is not None:
-            # A run goes on as it began, whatever options were given again or left out.
-            self._options = saved.options
+            # A run goes on as it began, whatever options were left out.
             platform, seed = self._agree(saved, platform, seed)
+            self._options = saved.options
             known = ("vcm_compatible", "ignore_unknown", "flips")
             options = {name: saved.options[name] for name in known if name in saved.options}
             self.cfg = read_any(config, seed=seed, **options)
@@ -275,9 +279,12 @@ class Run:
         try:
             yield
         except BlowUpError as reason:
+            again = "To try again, give another folder with --out"
+            left = self.folder / "blow-up" / "last-good.ply"
+            if left.is_file():
+                again += f"; a mesh of this one, such as {left}, may be where it begins"
             raise RunError(
-                f"the simulation broke down: {reason}\nTo try again, give another folder with "
-                "--out; a mesh of this one, such as blow-up/last-good.ply, may be where it begins\n"
+                f"the simulation broke down: {reason}\n{again}\n"
                 f"{reason.page} lists what messages mostly mean, and what to do"
             ) from None
 
@@ -301,9 +308,8 @@ class Run:
         elapsed = time.perf_counter() - begin
         _LOG.debug("%s: checkpoint at step %d in %.3g s", self.folder, self.step, elapsed)
 
-    @staticmethod
-    def _agree(saved: Saved, platform: str | None, seed: int) -> tuple[str, int]:
-        """Platform and seed of the run to resume; RunError if others are asked for."""
+    def _agree(self, saved: Saved, platform: str | None, seed: int) -> tuple[str, int]:
+        """Platform and seed of the run to resume; RunError if anything else is asked for."""
         if platform is not None and platform != saved.platform:
             raise RunError(
                 f"the run is on the platform {saved.platform}, whose checkpoints {platform} "
@@ -311,6 +317,25 @@ class Run:
             )
         if seed not in (0, saved.seed):
             raise RunError(f"the run has the seed {saved.seed}; leave out --seed")
+        way_out = (
+            f"a run goes on as it began; for another one give another folder than {self.folder}"
+        )
+        for name, value in self._wanted.items():
+            before = saved.options.get(name)
+            if value != before:
+                option = name.replace("_", "-")
+                raise RunError(
+                    f"the run was begun with {name} = {before}, not {value}; leave out --{option}: "
+                    f"{way_out}"
+                )
+        # Checkpoints of before did not know.
+        for name, value in saved.options.get("file", {}).items():
+            now = self._options["file"][name]
+            if now != value and name not in self._wanted:
+                raise RunError(
+                    f"{self.cfg.path}: {name} is {_shown(now)}, and was {_shown(value)} when the "
+                    f"run began; change it back: {way_out}"
+                )
         return saved.platform, saved.seed
 
     def _load(self, saved: Saved, state: Snapshot, previous: bool) -> None:
@@ -341,6 +366,11 @@ class Run:
     def close(self) -> None:
         """Let other processes into the folder."""
         self._folder.leave()
+
+
+def _shown(value: Any) -> str:
+    """A value of a configuration as messages have it."""
+    return "not given" if value in (None, 0) and value is not False else str(value)
 
 
 def _fingerprint(cfg: Model) -> str:

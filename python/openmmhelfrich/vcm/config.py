@@ -61,7 +61,11 @@ class Config(Model):
         self.general = Settings(found[0] if found else None, GENERAL, ignore)
         if wrong := too_many_steps(self.general["SimulationTimeInPs"], self.step_size):
             raise self.general.error("SimulationTimeInPs", wrong)
-        self.seed = seed or self.general["Seed"] or secrets.randbelow(_MAX_SEED) + 1
+        if self.general["Integrator"] == "Brownian" and self.general["FrictionIninvertPs"] == 0:
+            reason = "Brownian dynamics need more than 0"
+            raise self.general.error("FrictionIninvertPs", reason)
+        self.file_seed = self.general["Seed"]
+        self.seed = seed or self.file_seed or secrets.randbelow(_MAX_SEED) + 1
         random = np.random.default_rng(self.seed)
         membranes: list[Membrane] = []
         for section in sections:

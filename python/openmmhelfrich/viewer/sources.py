@@ -192,7 +192,7 @@ def _of_path(path: Path, title, every, mesh, progress: Progress) -> Scene:
 
 def _trajectory_in(folder: Path) -> Path:
     """The file of a run's folder that has its frames."""
-    for pattern in ("*.xtc", "*.vtkhdf"):
+    for pattern in ("*.xtc", "*.vtkhdf", "*.gsd"):
         found = sorted(folder.glob(pattern))
         if len(found) == 1:
             return found[0]
@@ -201,8 +201,8 @@ def _trajectory_in(folder: Path) -> Path:
                 f"view: {folder} has {len(found)} files {pattern}, not one; name the one to show"
             )
     raise ValueError(
-        f"view: {folder} has no XTC or VTKHDF file, so it is no folder of a run with a trajectory; "
-        "name a mesh or a trajectory"
+        f"view: {folder} has no XTC, VTKHDF or GSD file, so it is no folder of a run with a "
+        "trajectory; name a mesh or a trajectory"
     )
 
 
