@@ -236,10 +236,6 @@ class Vesicle(InSystems, Parameters, TimeScales):
             volume = mesh.volume if volume is None else volume
         elif volume is None:
             ratio = checked_number("reduced_volume", reduced_volume, unit.dimensionless, zero=False)
-            if ratio > 1:
-                raise ValueError(
-                    f"Vesicle: reduced_volume must be 1 or less, that of a sphere, got {ratio:g}"
-                )
             volume = ratio * 4 / 3 * math.pi * self.radius**3
         else:
             raise ValueError("Vesicle: give either volume or reduced_volume, not both")

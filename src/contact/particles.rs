@@ -31,14 +31,14 @@ pub struct ParticleContacts {
     largest: f64,
     /// One for each thread.
     found: Vec<Found>,
-    /// For flips, which make triangles where none has been.
+    /// Vertices, for flips, which make triangles where none has been.
     flip_map: Map,
     /// Particles near the surface when flips began, with their radii.
     near: Vec<(Vec3, f64)>,
     near_grid: Grid,
     /// How far from its middle a particle may act.
     farthest: f64,
-    /// How much farther from the triangles particles have been looked for.
+    /// How much farther from the vertices particles have been looked for.
     slack: f64,
 }
 
@@ -288,8 +288,9 @@ impl ParticleContacts {
     ) -> Result<()> {
         let reach = self.prepare(mesh, cell, term, positions)?;
         self.farthest = reach.of_class(reach.classes.len() - 1);
-        self.slack = 2.0 * self.largest;
-        self.flip_map.refresh(mesh, cell, self.farthest + self.slack, &self.positions);
+        // In steps of a fifth, so that the map stays as the mesh moves.
+        self.slack = 2f64.powf((4.0 * (2.0 * self.largest).log2()).ceil() / 4.0);
+        self.flip_map.refresh_vertices(cell, self.farthest + self.slack, &self.positions);
         let grid = &self.flip_map.grid;
         let mut near = std::mem::take(&mut self.near);
         near.clear();

@@ -1,4 +1,4 @@
-//! How far particles reach, and which triangles are near the boxes that they may be in.
+//! How far particles reach, and which triangles or vertices are near the boxes that they may be in.
 
 use super::grid::{Grid, bounds};
 use crate::mesh::closest::in_one_piece;
@@ -10,10 +10,10 @@ use crate::potentials::particle_surface::{self, RADIUS};
 /// The skin as a share of the reach.
 pub const SKIN: f64 = 0.3;
 
-/// Triangles by boxes.
+/// Triangles by boxes, or vertices.
 #[derive(Default)]
 pub struct Map {
-    /// The reach, and the mesh that it is of.
+    /// The reach, and the mesh that it is of; 0 for vertices, whatever connects them.
     made_for: Option<(f64, Option<Cell>, u64)>,
     reference: Vec<Vec3>,
     pub grid: Grid,
@@ -29,6 +29,31 @@ impl Map {
         positions: &[Vec3],
     ) {
         let wanted = (reach, cell.copied(), mesh.fingerprint());
+        self.renew(wanted, positions, 16 * mesh.triangles().len(), |grid, range| {
+            for (triangle, corners) in mesh.triangles().iter().enumerate() {
+                let frame = in_one_piece(cell, corners.map(|corner| &positions[corner as usize]));
+                grid.add_around(triangle as u32, &frame, range);
+            }
+        });
+    }
+
+    /// The same of vertices.
+    pub fn refresh_vertices(&mut self, cell: Option<&Cell>, reach: f64, positions: &[Vec3]) {
+        self.renew((reach, cell.copied(), 0), positions, 16 * positions.len(), |grid, range| {
+            for (vertex, at) in positions.iter().enumerate() {
+                grid.add_around(vertex as u32, std::slice::from_ref(at), range);
+            }
+        });
+    }
+
+    fn renew(
+        &mut self,
+        wanted: (f64, Option<Cell>, u64),
+        positions: &[Vec3],
+        most: usize,
+        fill: impl FnOnce(&mut Grid, f64),
+    ) {
+        let (reach, cell, _) = wanted;
         let skin = SKIN * reach;
         if self.made_for == Some(wanted) {
             let pairs = positions.iter().zip(&self.reference);
@@ -41,11 +66,8 @@ impl Map {
         let [low, high] = bounds(positions);
         let range = reach + skin;
         let around = [low.add_scalar(-range), high.add_scalar(range)];
-        self.grid.set_up(cell, around, range, 16 * mesh.triangles().len());
-        for (triangle, corners) in mesh.triangles().iter().enumerate() {
-            let frame = in_one_piece(cell, corners.map(|corner| &positions[corner as usize]));
-            self.grid.add_around(triangle as u32, &frame, range);
-        }
+        self.grid.set_up(cell.as_ref(), around, range, most);
+        fill(&mut self.grid, range);
         self.grid.seal();
         self.reference.clear();
         self.reference.extend_from_slice(positions);

@@ -6,6 +6,13 @@
 
 static const int corners[24] = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
 
+/* The message of the last failure, in a line. */
+static void complain(int failed) {
+    char message[400];
+    Helfrich_lastError(message, sizeof(message));
+    printf("%d %s\n", failed, message);
+}
+
 static OpenMM_Context* context_of(OpenMM_Force** bending, OpenMM_Force** mover, OpenMM_Integrator* integrator) {
     OpenMM_System* system = OpenMM_System_create();
     OpenMM_Vec3Array* places = OpenMM_Vec3Array_create(6);
@@ -34,6 +41,8 @@ int main(void) {
     OpenMM_Integrator* varying = Helfrich_VariableMassVerletIntegrator_create(0.01, 2.0);
     OpenMM_Context* one = context_of(&bending, &mover, varying);
     OpenMM_Integrator_step(varying, 5);
+    Helfrich_VariableMassVerletIntegrator_getMasses(varying, found);
+    printf("%.0f ", found[3]);
     printf("%g ", Helfrich_VariableMassVerletIntegrator_getDensity(varying));
     printf("%d ", Helfrich_MembraneForce_getForm(bending));
     printf("%d ", Helfrich_MembraneForce_getNumElementValues(bending, "rigidity"));
@@ -66,5 +75,15 @@ int main(void) {
     printf("%d %d %d ", status, same, moved);
     saved[size / 2] ^= 1;
     printf("%d\n", Helfrich_MembraneForce_restoreConnectivity(bending, three, saved, size));
+    OpenMM_Force* thick = Helfrich_SurfaceViscosityThermostat_create(corners, 8, 1, 300, 1);
+    complain(Helfrich_SurfaceViscosityThermostat_saveState(thick, two, NULL, 8) == -1);
+    OpenMM_Force* none = Helfrich_SurfaceAreaForce_create(corners, 8, 1.0, 0.0);
+    complain(none == NULL);
+    complain(Helfrich_MembraneForce_setUsesPeriodicBoundaryConditions(none, 1));
+    complain(Helfrich_MembraneForce_updateParametersInContext(bending, NULL));
+    complain(Helfrich_MembraneForce_setElementValues(bending, "rigidity", NULL, 6));
+    complain(Helfrich_MembraneForce_setElementValues(bending, "rigidity", values, -3));
+    complain(Helfrich_MembraneForce_setElementValues(bending, NULL, values, 6));
+    complain(Helfrich_VariableMassVerletIntegrator_setDensity(NULL, 1));
     return 0;
 }

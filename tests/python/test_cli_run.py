@@ -363,7 +363,7 @@ class TestRefusals:
         ("option", "before"),
         [
             (["--frames", "gsd"], "frames = none, not gsd; leave out --frames"),
-            (["--no-xtc"], "xtc = True, not False; leave out --xtc"),
+            (["--no-xtc"], "xtc = True, not False; leave out --no-xtc"),
             (["--flips", 0.1], "flips = 0.0, not 0.1; leave out --flips"),
             (["--vcm-compatible"], "vcm_compatible = False, not True; leave out --vcm-compatible"),
         ],
@@ -372,6 +372,33 @@ class TestRefusals:
     def test_other_options(self, folder, out, option, before):
         text = self.refused(folder, out, "--resume", *option)
         assert f"the run was begun with {before}: a run goes on as it began" in text
+
+    def test_a_file_that_says_now_what_the_run_has(self, folder):
+        """A seed that was drawn, a platform and frames that were options, written down afterwards."""
+        path, out = folder.path / "own.toml", folder.path / "out"
+        text = "simulation.duration = 1\nintegrator.time_step = 0.02\noutput.interval = 0.2\n"
+        vesicle = "[[vesicle]]\nmesh = { icosphere = 2, radius = 30 }\n"
+        path.write_text(text + vesicle)
+        begun = Run(path, out, platform="Reference", frames="obj")
+        begun.advance(20)
+        begun.close()
+        text += f'simulation.seed = {begun.cfg.seed}\nsimulation.platform = "Reference"\n'
+        path.write_text(text + 'output.frames = "obj"\n' + vesicle)
+        again = Run(path, out, resume=True)
+        assert again.advance(40)
+        again.close()
+        path.write_text(text + 'output.frames = "stl"\n' + vesicle)
+        with pytest.raises(RunError, match="frames is stl, and was none when the run began"):
+            Run(path, out, resume=True)
+
+    def test_options_without_which_the_file_cannot_be_read(self, folder):
+        path, out = config(folder), folder.path / "out"
+        path.write_text(path.read_text().replace("Seed 5", "Seed 5\nNoSuchKey 3"))
+        arguments = ("--platform", "Reference", "--out", out, "--steps")
+        result = invoke("run", path, *arguments, 20, "--ignore-unknown")
+        assert result.exit_code == 0, result.output
+        result = invoke("run", path, "--out", out, "--resume", "--steps", 40)
+        assert result.exit_code == 0, result.output
 
     def test_the_same_options_again(self, folder, out):
         options = ("--resume", "--frames", "none", "--xtc", "--flips", 0, "--seed", 5)

@@ -136,6 +136,33 @@ def test_flips_see_particles_that_only_new_triangles_reach():
         assert (mover.getStatistics(context)["accepted"] > 10) == passes
 
 
+@pytest.mark.parametrize("seed", range(12))
+def test_a_demon_pays_for_beads_of_a_crumpled_vesicle(seed):
+    """Many flips in a row make edges longer than any that there was."""
+    generator = np.random.default_rng(seed)
+    mesh = helfrich.Mesh.random_sphere(42 if seed % 2 else 92, 10.0, seed=seed)
+    vertices = mesh.vertices + generator.normal(0, 2.0, mesh.vertices.shape)
+    beads = generator.uniform(-14, 14, (400, 3))
+    system = mm.System()
+    for _ in range(len(vertices) + len(beads)):
+        system.addParticle(0.0)
+    particles = np.arange(len(beads)) + len(vertices)
+    system.addForce(helfrich.ParticleSurfaceForce(mesh, particles, 0.3, 0.01))
+    system.addForce(helfrich.BendingForce(mesh, 1e-9))
+    mover = helfrich.MonteCarloBondFlip(mesh, 300, frequency=1, attemptsPerEdge=8, maxDegree=30)
+    mover.setEnsemble(mover.Microcanonical)
+    mover.setRandomNumberSeed(seed + 1)
+    system.addForce(mover)
+    context = REFERENCE.context(system, mm.VerletIntegrator(0.001))
+    context.setPositions(np.vstack([vertices, beads]))
+    expected = energy(context)
+    for _ in range(3):
+        context.getIntegrator().step(1)
+        total = energy(context) + mover.getStatistics(context)["demonEnergy"]
+        assert total == pytest.approx(expected, rel=1e-9)
+    assert mover.getStatistics(context)["accepted"] > 10
+
+
 def test_what_does_not_follow_is_refused():
     vesicles, positions, triangles = pressed()
     system = mm.System()

@@ -232,3 +232,27 @@ def test_update_in_context_leaves_context_parameters():
     assert context.getParameter("kappa") == 30.0
     fresh = helfrich.BendingForce(m.triangles, rigidity=30.0, spontaneousCurvature=-0.005)
     assert_close(measure(context), measure(context_of([fresh], m)), 1e-14)
+
+
+def test_a_parameter_that_comes_or_goes_needs_a_new_context():
+    """Its value would be taken from a parameter that the Context does not have, or has still."""
+    mesh = membrane("octahedron")
+    force = helfrich.SurfaceAreaForce(mesh.triangles, 3.0, 100.0)
+    force.setContextParameter("target", "A0")
+    system = mm.System()
+    for _ in range(mesh.num_particles):
+        system.addParticle(1.0)
+    system.addForce(force)
+    context = mm.Context(system, mm.VerletIntegrator(0.001))
+    context.setPositions(mesh.positions)
+    force.setTarget(50.0)
+    force.updateParametersInContext(context)
+    for parameter, name in (("target", ""), ("modulus", "kA"), ("target", "other")):
+        before = force.getContextParameter(parameter)
+        force.setContextParameter(parameter, name)
+        with pytest.raises(
+            mm.OpenMMException, match=rf"parameter of {parameter} has changed .*reinitialize"
+        ):
+            force.updateParametersInContext(context)
+        force.setContextParameter(parameter, before)
+    force.updateParametersInContext(context)

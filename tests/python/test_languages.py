@@ -149,7 +149,20 @@ def test_c_reads_what_it_has_set_and_goes_on_elsewhere(tmp_path):
     """Forms, switches, values of elements, integrators, and connectivity of another Context."""
     compiler, source = os.environ.get("CC", "cc").split(), PROJECT / "tests/cpp/octahedron.c"
     lines = compile_and_run(compiler, source, [], tmp_path, tmp_path).splitlines()
-    assert lines == ["2 1 0 6 6 1", "300 7 1", "0 1 1 1"]
+    # Masses are those of the triangles' areas, 2 amu/nm², a third of four of them.
+    assert lines[:3] == ["231 2 1 0 6 6 1", "300 7 1", "0 1 1 1"]
+    assert lines[3:] == [
+        "1 getImplInContext: This Force is not present in the Context",
+        "1 SurfaceAreaForce: target must be a finite number above zero, got 0",
+        "1 MembraneForce: the force is null; the function that should have made it had the reason "
+        "in Helfrich_lastError()",
+        "1 openmm-helfrich: the context is null",
+        "1 BendingForce: the array for 6 values is null",
+        "1 BendingForce: the number of values is negative, -3",
+        "1 BendingForce: a name is null",
+        "1 VariableMassVerletIntegrator: the integrator is null; the function that should have "
+        "made it had the reason in Helfrich_lastError()",
+    ]
 
 
 def test_every_force_class_has_its_c_functions():

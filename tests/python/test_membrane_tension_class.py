@@ -185,6 +185,17 @@ class TestBarostatsOfOpenMM:
 
 
 class TestState:
+    def test_what_cannot_be_is_refused(self):
+        context = tense(of_box(), mover_of())
+        context.getIntegrator().step(50)
+        mover = Tension.cast(context.getSystem().getForce(1))
+        saved, before = mover._saveState(context), mover.getStatistics(context)
+        for broken in (saved[:-1], b"\xff" * len(saved), saved[:24] + b"\xff" * 8 + saved[32:]):
+            with pytest.raises(mm.OpenMMException, match=r"^MonteCarloMembraneTension: .*damaged"):
+                mover._restoreState(context, broken)
+        assert mover.getStatistics(context) == before
+        mover._restoreState(context, saved)
+
     def start(self, target=HELFRICH, seed: int = 7):
         triangles, positions, box = sheet()
         integrator = mm.LangevinMiddleIntegrator(TEMPERATURE, 1.0, 0.002)

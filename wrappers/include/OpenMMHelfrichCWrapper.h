@@ -8,8 +8,8 @@
  * System owns is deleted with Helfrich_MembraneForce_destroy(). The C++ headers in openmm-helfrich/ have the formulas.
  *
  * The create functions return null for failure, most others a Helfrich_Status; Helfrich_lastError() then has the
- * message. (OpenMM's own C functions end the program instead.) What results are written to must not be null and have
- * room for them.
+ * message. (OpenMM's own C functions end the program instead.) What results are written to must not be null, and
+ * must have room for them.
  *
  * Units are OpenMM's: nm, ps, amu, kJ/mol, K, radians. The environment variable HELFRICH_BACKEND chooses what computes
  * membranes in the whole process, as setBackend does for one force.

@@ -28,6 +28,10 @@ double pick(const string& mover, const std::map<string, double>& statistics, con
 
 template <class Wanted>
 Wanted& asIntegrator(const string& name, void* integrator) {
+    if (integrator == nullptr)
+        throw OpenMMException(name +
+                              ": the integrator is null; the function that should have made it had the reason in " +
+                              "Helfrich_lastError()");
     auto* found = dynamic_cast<Wanted*>(static_cast<OpenMM::Integrator*>(integrator));
     if (found == nullptr)
         throw OpenMMException(name + ": the integrator is of another class");

@@ -88,6 +88,9 @@ inline std::vector<int> cornersOf(const std::string& owner, const int* triangles
 
 /** Bytes as C takes them, if there is room for them; their number. */
 inline int64_t copied(const std::string& saved, char* buffer, int64_t size) {
+    if (buffer == nullptr && size > 0)
+        throw OpenMM::OpenMMException("openmm-helfrich: the buffer is null, but is said to have " +
+                                      std::to_string(size) + " bytes");
     if ((int64_t) saved.size() <= size)
         std::copy(saved.begin(), saved.end(), buffer);
     return (int64_t) saved.size();

@@ -119,8 +119,8 @@ def _kind_of(output: Path | None) -> str:
         )
     known = ", ".join(end for ends in _SUFFIXES.values() for end in ends)
     raise click.ClickException(
-        f"{output} does not end with {known}; give --format, and for {', '.join(_SEQUENCES)} the "
-        "name of a folder"
+        f"{output} does not end with {known}; give such a name, or --format with one of "
+        f"{', '.join(_SEQUENCES)} and the name of a folder"
     )
 
 

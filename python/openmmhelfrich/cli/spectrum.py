@@ -48,7 +48,7 @@ _COLUMNS = ("l", "mean", "error", "correlation_time_frames", "theory", "ratio")
 @click.option(
     "--radius",
     type=click.FloatRange(min=0, min_open=True),
-    help="Radius of the theory, nm; only for --young.  [default: that of the mean volume]",
+    help="Radius of the theory, nm; only for --young.  [default: that of a sphere with the volume of the first frame]",
 )
 @click.option("--skip", type=click.IntRange(0), default=0, help="Frames to leave out at the start.")
 @click.option("--stride", type=click.IntRange(1), default=1, help="Take every so many frames.")
@@ -82,11 +82,11 @@ def spectrum(
     from ..errors import MeshError
 
     try:
-        amplitudes, mean_radius = _amplitudes(source, mesh_path, membrane, lmax, **options)
+        amplitudes, own_radius = _amplitudes(source, mesh_path, membrane, lmax, **options)
         if young and radius is None:
-            if mean_radius is None:
+            if own_radius is None:
                 raise click.UsageError("--young needs --radius where SOURCE is a file of modes")
-            radius = mean_radius
+            radius = own_radius
         found = analysis.spectrum(amplitudes)
         l = found.l[2:]
         theory = analysis.theory.elastic_spectrum(l, kappa, young, radius or 1.0)
@@ -111,9 +111,9 @@ def spectrum(
 
 
 def _amplitudes(source, mesh_path, membrane, lmax, skip, stride, quadrature, centre):
-    """u_lm of all frames that are asked for, and the mean radius, nm, or None for a file of modes.
+    """u_lm of all frames that are asked for, and a radius, nm, or None for a file of modes.
 
-    The radius is that of a sphere with the volume of a frame.
+    The radius is that of a sphere with the volume of the first frame.
     """
     import numpy as np
 
@@ -134,7 +134,7 @@ def _amplitudes(source, mesh_path, membrane, lmax, skip, stride, quadrature, cen
         return amplitudes if lmax is None else amplitudes[:, : (lmax + 1) ** 2], None
     trajectory, triangles, _ = open_trajectory(source, mesh_path, membrane, skip, stride)
     found = analysis.mode_amplitudes(trajectory, triangles, lmax or 10, quadrature, centre)
-    # Of the first frame; volumes of later ones hardly differ where there is a spectrum.
+    # Volumes of later ones hardly differ where there is a spectrum.
     start = next(iter(trajectory))
     corners = getattr(triangles, "triangles", triangles)
     volume = volume_enclosed(start, corners[0] if corners.ndim == 3 else corners)

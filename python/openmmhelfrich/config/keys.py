@@ -124,7 +124,7 @@ KEYS: tuple[Key, ...] = (
         "borders, or that span the box. Default: 0.04."),
     Key("vesicle", "area", number(above=0), None, "A0, nm². Default: that of the mesh."),
     Key("vesicle", "volume", number(above=0), None, "V0, nm³. Default: that of the mesh."),
-    Key("vesicle", "reduced_volume", number(above=0), None,
+    Key("vesicle", "reduced_volume", number(above=0, most=1), None,
         "V0 as a multiple of the volume of the sphere of area A0, in place of `volume`."),
     Key("vesicle", "softness", number(least=0), None,
         "Ξ, which fixes the least triangle height. Default: 0.037."),

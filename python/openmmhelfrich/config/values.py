@@ -320,7 +320,7 @@ def _need(what: str, given: Mapping[str, Any], known: Mapping[str, Any], *names:
     """Refuse a table without some keys."""
     for name in names:
         if known[name][0] not in given:
-            raise ValueError(f"{what} needs {name} too")
+            raise ValueError(f"{what} needs {name}")
 
 
 def _arguments(where, known, value, kT):

@@ -19,7 +19,7 @@ from .._blocks import Block, BlockError, DamagedError, pack, unpack
 from .._snapshots import Snapshot
 from .._writing import describe, naming, replace
 
-__all__ = ["CHECKPOINT", "PREVIOUS", "RunError", "RunFolder", "Saved", "files_of"]
+__all__ = ["CHECKPOINT", "PREVIOUS", "RunError", "RunFolder", "Saved", "files_of", "saved_in"]
 
 CHECKPOINT = "checkpoint.bin"
 PREVIOUS = "checkpoint-previous.bin"
@@ -53,13 +53,19 @@ class Saved:
     outputs: dict[str, Any] | None
 
 
+def saved_in(folder: Path) -> Saved | None:
+    """What the last checkpoint of a folder knows, or the one before; None if there is none."""
+    for previous in (False, True):
+        with contextlib.suppress(RunError):
+            found = RunFolder(folder).read(previous)
+            if found is not None:
+                return found[0]
+    return None
+
+
 def files_of(folder: Path) -> set[str]:
     """The names of the files with which the run of a folder goes on; none where there is no run."""
-    try:
-        found = RunFolder(folder).read()
-    except RunError:
-        return set()
-    saved = None if found is None else found[0]
+    saved = saved_in(folder)
     return set() if saved is None or saved.outputs is None else set(saved.outputs["sizes"])
 
 

@@ -24,7 +24,7 @@ from ..errors import FAQ
 from ..logs import logger
 from .model import Model
 from .outputs import Frame, Outputs, report_steps, take_frame
-from .run_folder import CHECKPOINT, RunError, RunFolder, Saved
+from .run_folder import CHECKPOINT, RunError, RunFolder, Saved, saved_in
 
 __all__ = ["CHECKPOINT", "Run", "RunError"]
 
@@ -95,11 +95,17 @@ class Run:
             "flips": flips or 0.0,
         }
         self._checkpoint_seconds = checkpoint_seconds
+        given = {name: True for name in ("vcm_compatible", "ignore_unknown") if options[name]}
+        going_on = (resume or resume_previous) and folder is not None
+        before = saved_in(Path(folder)) if going_on else None
+        if before is not None:
+            # Without them the file may not be readable.
+            for name in ("vcm_compatible", "ignore_unknown"):
+                options[name] = options[name] or before.options.get(name, False)
         self.cfg = cfg = read_any(config, seed=seed, **options)
         asked = {"xtc": xtc, "frames": frames or {True: "ply", False: "none"}.get(ply)}
         wanted = {name: given for name, given in asked.items() if given is not None}
         # What is asked for here, and what the file says: a resumed run must agree with both.
-        given = {name: True for name in ("vcm_compatible", "ignore_unknown") if options[name]}
         self._wanted = {**given, **wanted, **({} if flips is None else {"flips": flips})}
         said = {"seed": cfg.file_seed, "platform": cfg.platform, **cfg.writes}
         self._options = {**options, **cfg.writes, **wanted, "file": said}
@@ -321,17 +327,18 @@ class Run:
             f"a run goes on as it began; for another one give another folder than {self.folder}"
         )
         for name, value in self._wanted.items():
-            before = saved.options.get(name)
+            before = saved.options.get(name, 0.0 if name == "flips" else None)
             if value != before:
-                option = name.replace("_", "-")
+                option = ("no-" if value is False else "") + name.replace("_", "-")
                 raise RunError(
                     f"the run was begun with {name} = {before}, not {value}; leave out --{option}: "
                     f"{way_out}"
                 )
-        # Checkpoints of before did not know.
+        # Checkpoints of before did not know. The file may also say what the run has.
+        counts = {"seed": saved.seed, "platform": saved.platform, **saved.options}
         for name, value in saved.options.get("file", {}).items():
             now = self._options["file"][name]
-            if now != value and name not in self._wanted:
+            if now not in (value, counts[name]) and name not in self._wanted:
                 raise RunError(
                     f"{self.cfg.path}: {name} is {_shown(now)}, and was {_shown(value)} when the "
                     f"run began; change it back: {way_out}"
