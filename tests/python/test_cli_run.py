@@ -374,7 +374,7 @@ class TestRefusals:
         assert f"the run was begun with {before}: a run goes on as it began" in text
 
     def test_a_file_that_says_now_what_the_run_has(self, folder):
-        """A seed that was drawn, a platform and frames that were options, written down afterwards."""
+        """A drawn seed, and a platform and frames that were options, written down afterwards."""
         path, out = folder.path / "own.toml", folder.path / "out"
         text = "simulation.duration = 1\nintegrator.time_step = 0.02\noutput.interval = 0.2\n"
         vesicle = "[[vesicle]]\nmesh = { icosphere = 2, radius = 30 }\n"

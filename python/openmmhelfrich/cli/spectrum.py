@@ -48,7 +48,8 @@ _COLUMNS = ("l", "mean", "error", "correlation_time_frames", "theory", "ratio")
 @click.option(
     "--radius",
     type=click.FloatRange(min=0, min_open=True),
-    help="Radius of the theory, nm; only for --young.  [default: that of a sphere with the volume of the first frame]",
+    help="Radius of the theory, nm; only for --young.  [default: that of a sphere with the volume "
+    "of the first frame]",
 )
 @click.option("--skip", type=click.IntRange(0), default=0, help="Frames to leave out at the start.")
 @click.option("--stride", type=click.IntRange(1), default=1, help="Take every so many frames.")
