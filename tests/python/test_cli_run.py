@@ -303,7 +303,9 @@ class TestResume:
         assert (out / "cell.extxyz").is_file()
         result = invoke("frames", out, out / "cell.xyz", "--force")
         assert result.exit_code == 1
-        assert "is a file with which the run there goes on; give another name" in result.output
+        assert "is what the run there goes on with; give another name" in result.output
+        result = invoke("frames", out, out / "frames", "--format", "ply", "--force")
+        assert "is what the run there goes on with; give another name" in result.output
         assert (out / "cell.xyz").read_bytes() == text
         self.run(path, out, 40, resume=True)
 

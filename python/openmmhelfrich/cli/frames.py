@@ -74,7 +74,7 @@ def frames(source, output, kind, mesh_path, membrane, skip, stride, force):
         raise click.ClickException(f"{output} is no {wanted}; give the name of a {wanted}")
     if output.name in files_of(output.parent):
         raise click.ClickException(
-            f"{output} is a file with which the run there goes on; give another name"
+            f"{output} is what the run there goes on with; give another name"
         )
     if output.exists() and not force:
         raise click.ClickException(f"{output} is there already; overwrite it with --force")

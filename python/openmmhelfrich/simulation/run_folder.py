@@ -64,9 +64,11 @@ def saved_in(folder: Path) -> Saved | None:
 
 
 def files_of(folder: Path) -> set[str]:
-    """The names of the files with which the run of a folder goes on; none where there is no run."""
+    """The names of what the run of a folder goes on with; none where there is no run."""
     saved = saved_in(folder)
-    return set() if saved is None or saved.outputs is None else set(saved.outputs["sizes"])
+    if saved is None or saved.outputs is None:
+        return set()
+    return {*saved.outputs["sizes"], "frames", CHECKPOINT, PREVIOUS}
 
 
 class RunFolder:
