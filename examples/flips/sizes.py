@@ -79,7 +79,7 @@ def rows_of(runs, softness, num_vertices):
 
 
 def of_spectrum(path):
-    """N, l, ratio and error of the runs with flips in the table of `spectrum.py`, if there is one."""
+    """N, l, ratio and error of the runs with flips in the table of `spectrum.py`, if any."""
     if not path.is_file():
         return []
     with path.open(encoding="utf-8") as file:
