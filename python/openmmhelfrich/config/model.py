@@ -256,6 +256,12 @@ def _general(simulation: Table, integrator: Table, output: Table, stem: str) -> 
     name = simulation["name"] or stem
     if not re.fullmatch(r"[^/\\\0]+", name) or name in (".", ".."):
         raise simulation.error("name", f"expected a name for files, got {name!r}")
+    if 0 < simulation["duration"] < integrator["time_step"]:
+        raise simulation.error(
+            "duration",
+            f"{simulation['duration']:g} ps is less than the time step of "
+            f"{integrator['time_step']:g} ps",
+        )
     if wrong := too_many_steps(simulation["duration"], integrator["time_step"]):
         raise simulation.error("duration", wrong)
     return {
