@@ -156,7 +156,9 @@ class MembraneForce(TriangulatedForce):
     def getParameterValue(self, name: str) -> float:
         """Get the value of a scalar parameter in OpenMM's units (nm, kJ/mol)."""
     def getElementValues(self, name: str) -> tuple[float, ...]:
-        """Get the values of a parameter for each vertex or triangle, empty if it is a scalar."""
+        """Get the values of a parameter for each vertex, triangle, edge or particle, empty if it is
+        a scalar.
+        """
     def setContextParameter(self, parameter: str, name: str) -> None:
         """Let a parameter of the Context take the place of a scalar, so that
         Context::setParameter() changes it during a simulation. Its initial value is that of the
@@ -1000,7 +1002,9 @@ class MonteCarloMembraneTension(_Mover):
     ) -> None: ...
     @staticmethod
     def Tension() -> str:
-        """The name of the Context parameter that holds the tension, kJ/mol/nm^2."""
+        """The name of the Context parameter that holds the tension, kJ/mol/nm^2; with
+        XYConstantArea and ZOnly, which do not use it, there is none.
+        """
     @staticmethod
     def PullingForce() -> str:
         """The name of the Context parameter that holds the pulling force along z, kJ/mol/nm."""

@@ -95,7 +95,7 @@ def test_speed():
     ("arguments", "message"),
     [
         ((np.zeros((3, 3)),), "^crossings: triangles are needed"),
-        ((np.zeros((2, 6, 3)), APART), "takes one frame, got 2"),
+        ((np.zeros((2, 6, 3)), APART), "^crossings: vertices of one frame are taken, got 2"),
         ((np.zeros((5, 3)), APART), "names vertex 5"),
     ],
 )

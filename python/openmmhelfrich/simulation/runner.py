@@ -107,8 +107,8 @@ class Run:
         wanted = {name: given for name, given in asked.items() if given is not None}
         # What is asked for here, and what the file says: a resumed run must agree with both.
         self._wanted = {**given, **wanted, **({} if flips is None else {"flips": flips})}
-        said = {"seed": cfg.file_seed, "platform": cfg.platform, **cfg.writes}
-        self._options = {**options, **cfg.writes, **wanted, "file": said}
+        self._said = {"seed": cfg.file_seed, "platform": cfg.platform, **cfg.writes}
+        self._options = {**options, **cfg.writes, **wanted, "file": self._said}
         self.folder = Path(folder if folder is not None else cfg.name)
         self._watch: Watch | None = None
         self._folder = RunFolder(self.folder)
@@ -154,6 +154,9 @@ class Run:
         self.resumed = saved is not None
         self.step = 0 if saved is None else saved.step
         if saved is not None:
+            # A checkpoint of another run has outputs that tell.
+            if saved.outputs is None or self.outputs.misfit(saved.outputs) is None:
+                self._agree_with_file(saved)
             self._load(saved, state, resume_previous)
         self.frame = self._take_frame()
         if saved is None:
@@ -323,27 +326,30 @@ class Run:
             )
         if seed not in (0, saved.seed):
             raise RunError(f"the run has the seed {saved.seed}; leave out --seed")
-        way_out = (
-            f"a run goes on as it began; for another one give another folder than {self.folder}"
-        )
         for name, value in self._wanted.items():
             before = saved.options.get(name, 0.0 if name == "flips" else None)
             if value != before:
                 option = ("no-" if value is False else "") + name.replace("_", "-")
                 raise RunError(
                     f"the run was begun with {name} = {before}, not {value}; leave out --{option}: "
-                    f"{way_out}"
+                    f"{self._other_folder()}"
                 )
+        return saved.platform, saved.seed
+
+    def _agree_with_file(self, saved: Saved) -> None:
+        """RunError if the file asks for something else than when the run began."""
         # Checkpoints of before did not know. The file may also say what the run has.
         counts = {"seed": saved.seed, "platform": saved.platform, **saved.options}
         for name, value in saved.options.get("file", {}).items():
-            now = self._options["file"][name]
+            now = self._said[name]
             if now not in (value, counts[name]) and name not in self._wanted:
                 raise RunError(
                     f"{self.cfg.path}: {name} is {_shown(now)}, and was {_shown(value)} when the "
-                    f"run began; change it back: {way_out}"
+                    f"run began; change it back: {self._other_folder()}"
                 )
-        return saved.platform, saved.seed
+
+    def _other_folder(self) -> str:
+        return f"a run goes on as it began; for another one give another folder than {self.folder}"
 
     def _load(self, saved: Saved, state: Snapshot, previous: bool) -> None:
         """Bring the Context, and outputs that were begun, back to a checkpoint."""
