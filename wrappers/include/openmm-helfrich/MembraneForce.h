@@ -53,9 +53,8 @@ public:
      * Give a scalar its own value for each vertex, triangle, edge or particle, whichever the potential allows.
      *
      * @param name    the name of the parameter
-     * @param values  one value for each vertex, in ascending order of particle index, for each triangle, for each
-     *                edge, in ascending order of the particles at its ends, or for each particle, in the order in
-     *                which they were given; in OpenMM's units. An empty list goes back to the scalar.
+     * @param values  in OpenMM's units: for each vertex in ascending order of particle index, triangle, edge by the
+     *                particles at its ends, or particle in the order given. An empty list goes back to the scalar.
      */
     void setElementValues(const std::string& name, const std::vector<double>& values);
     /**
