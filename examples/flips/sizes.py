@@ -21,10 +21,10 @@ import csv
 
 import numpy as np
 from fluid_run import RIGIDITY, VERSION, flow
-from openmmhelfrich.analysis import spectrum, theory
 from reports import Report
 from scipy.optimize import curve_fit
 from settings import SETTINGS, with_flips
+from spectrum import bending_ratio, ratios_of
 
 FRAMES_PER_PERIOD = 4
 # Of 1002 vertices `spectrum.csv` has more.
@@ -65,17 +65,13 @@ def highest(num_vertices):
 
 def rows_of(runs, softness, num_vertices):
     """For each l: the ratio, its error, that from differences between runs, their length and T."""
-    together = spectrum([run["modes"] for run in runs])
-    each = [spectrum(run["modes"]).mean for run in runs]
-    scatter = np.std(each, axis=0, ddof=1) / len(runs) ** 0.5 if len(runs) > 1 else np.nan * each[0]
     length = sum(len(run["modes"]) * run["interval"] / run["period"] for run in runs)
     kelvin = float(np.mean([run["kinetic"].mean() for run in runs]))
-    rows = []
-    for l in range(2, highest(num_vertices) + 1):
-        numbers = np.array([together.mean[l], together.error[l], scatter[l]])
-        numbers = numbers / theory.fluid_spectrum(l, RIGIDITY)
-        rows.append((num_vertices, softness, l, *map(float, numbers), float(length), kelvin))
-    return rows
+    l = np.arange(2, highest(num_vertices) + 1)
+    return [
+        (num_vertices, softness, int(each), *map(float, numbers), float(length), kelvin)
+        for each, numbers in zip(l, ratios_of(runs, l).T, strict=True)
+    ]
 
 
 def of_spectrum(path):
@@ -91,30 +87,30 @@ def of_spectrum(path):
 
 
 def compare(rows):
-    """Fit both formulas, and print how well they do."""
+    """Fit both formulas, to all sizes and to each alone, and print how well they do."""
     num_vertices, l, ratio, error = np.array(rows, dtype=float).T
-    x = l * (l + 1) / num_vertices
-    shorter = -np.log(1 - 3 / (4 * np.pi * RIGIDITY) * np.log(np.sqrt(num_vertices) / l))
-    every = np.log(1 + 1.5 * np.array([mean_square_slope(int(n)) for n in num_vertices]))
+    shorter = 1 / bending_ratio(num_vertices, RIGIDITY, l, c=0)
+    every = 1 + 1.5 * np.array([mean_square_slope(int(n)) for n in num_vertices])
     for name, thermal in (("by shorter waves", shorter), ("by all waves", every)):
-
-        def model(x, c, thermal=thermal):
-            return thermal + np.log(1 + c * x)
-
-        (c,), ((variance,),) = curve_fit(
-            model, x, np.log(ratio), [2.0], sigma=error / ratio, absolute_sigma=True
-        )
-        deviations = (np.log(ratio) - model(x, c)) / (error / ratio)
-        quality = deviations @ deviations / (len(x) - 1)
-        print(f"{name}: c = {c:.2f} ± {variance**0.5:.2f}, χ² per degree of freedom {quality:.2f}")
+        points = np.stack([l * (l + 1) / num_vertices, ratio / thermal, error / ratio])
+        c, c_error, quality = fit_c(*points)
+        print(f"{name}: c = {c:.2f} ± {c_error:.2f}, χ² per degree of freedom {quality:.2f}")
         for n in np.unique(num_vertices):
-            of_n = deviations[num_vertices == n]
-            (own,), ((its,),) = curve_fit(
-                lambda x, c, t=thermal[num_vertices == n]: t + np.log(1 + c * x),
-                x[num_vertices == n], np.log(ratio[num_vertices == n]), [2.0],
-                sigma=(error / ratio)[num_vertices == n], absolute_sigma=True,
-            )  # fmt: skip
-            print(f"    N = {n:4.0f}: {np.mean(of_n**2):.2f}; alone c = {own:.2f} ± {its**0.5:.2f}")
+            c, c_error, quality = fit_c(*points[:, num_vertices == n])
+            print(f"    N = {n:4.0f} alone: {c:.2f} ± {c_error:.2f}, {quality:.2f}")
+
+
+def fit_c(x, ratio, relative_error):
+    """C of 1 + c x, its error, and χ² per degree of freedom."""
+
+    def model(x, c):
+        return np.log(1 + c * x)
+
+    (c,), ((variance,),) = curve_fit(
+        model, x, np.log(ratio), [2.0], sigma=relative_error, absolute_sigma=True
+    )
+    deviations = (np.log(ratio) - model(x, c)) / relative_error
+    return c, variance**0.5, deviations @ deviations / (len(x) - 1)
 
 
 def mean_square_slope(num_vertices):

@@ -76,15 +76,13 @@ def points_of(softness, flips, num_vertices, quick):
     return make(softness, range(1, 1 + (SEEDS[softness] if flips else FIXED_SEEDS)), num_vertices)
 
 
-def ratios_of(runs):
-    """⟨|u_lm|²⟩ over (A17), its error, and that from differences between runs, for each of L."""
-    fluid = theory.fluid_spectrum(L, RIGIDITY)
+def ratios_of(runs, l=L):
+    """⟨|u_lm|²⟩ over (A17), its error, and that from differences between runs, for each l."""
+    fluid = theory.fluid_spectrum(l, RIGIDITY)
     together = spectrum([run["modes"] for run in runs])
     each = [spectrum(run["modes"]).mean for run in runs]
-    scatter = np.std(each, axis=0, ddof=1) / len(runs) ** 0.5 if len(runs) > 1 else np.nan * L
-    return np.array(
-        [values[-len(L) :] / fluid for values in (together.mean, together.error, scatter)]
-    )
+    scatter = np.std(each, axis=0, ddof=1) / len(runs) ** 0.5 if len(runs) > 1 else np.nan * each[0]
+    return np.array([values[l] / fluid for values in (together.mean, together.error, scatter)])
 
 
 def fit(fluid, num_vertices):

@@ -27,8 +27,6 @@ pub struct ParticleContacts {
     spheres: Vec<(Vec3, f64)>,
     /// For particles of similar reach, from that of the smallest on by factors of two.
     maps: Vec<Map>,
-    /// How far a corner is from the middle of its triangle at most.
-    largest: f64,
     /// One for each thread.
     found: Vec<Found>,
     /// Vertices, for flips, which make triangles where none has been.
@@ -182,7 +180,7 @@ impl ParticleContacts {
         self.positions.clear();
         self.positions.extend(mesh.particles().iter().map(|particle| at(*particle)));
         check_places(cell, mesh.particles(), &self.positions)?;
-        let mut largest: f64 = 0.0;
+        let mut largest = 0.0;
         self.spheres.clear();
         self.spheres.extend(mesh.triangles().iter().map(|corners| {
             let [a, b, c] = corners.map(|corner| &self.positions[corner as usize]);
@@ -193,7 +191,6 @@ impl ParticleContacts {
             largest = far.max(largest);
             (a + middle, far)
         }));
-        self.largest = largest;
         let reach = Reach::new(term);
         let farthest = reach.of_class(reach.classes.len() - 1);
         if let Some(cell) = cell
@@ -288,8 +285,9 @@ impl ParticleContacts {
     ) -> Result<()> {
         let reach = self.prepare(mesh, cell, term, positions)?;
         self.farthest = reach.of_class(reach.classes.len() - 1);
-        // In steps of a fifth, so that the map stays as the mesh moves.
-        self.slack = 2f64.powf((4.0 * (2.0 * self.largest).log2()).ceil() / 4.0);
+        let largest = self.spheres.iter().map(|(_, far)| *far).fold(0.0, f64::max);
+        // Rounded up, each step a fifth more, so that the map stays as the mesh moves.
+        self.slack = 2f64.powf((4.0 * (2.0 * largest).log2()).ceil() / 4.0);
         self.flip_map.refresh_vertices(cell, self.farthest + self.slack, &self.positions);
         let grid = &self.flip_map.grid;
         let mut near = std::mem::take(&mut self.near);

@@ -34,7 +34,6 @@ map<string, double> MonteCarloDomainSwapImpl::getCounts() const {
 string MonteCarloDomainSwapImpl::describeForeign() const {
     return "it belongs to another permutation of the vertices' values than the Context has: a State or checkpoint was "
            "loaded, which does not hold it. Restore what saveConnectivity() has saved with restoreConnectivity() (in "
-           "Python "
-           "helfrich.save_state() and load_state()), or give the Context the permutation with "
+           "Python helfrich.save_state() and load_state()), or give the Context the permutation with "
            "setPermutationInContext()";
 }

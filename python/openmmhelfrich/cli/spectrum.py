@@ -90,6 +90,7 @@ def spectrum(
             radius = own_radius
         found = analysis.spectrum(amplitudes)
         l = found.l[2:]
+        # A fluid's spectrum knows of no radius.
         theory = analysis.theory.elastic_spectrum(l, kappa, young, radius or 1.0)
         measured = found.mean[2:], found.error[2:], found.correlation_time[2:]
         rows = [_row(*values) for values in zip(l, *measured, theory, strict=True)]

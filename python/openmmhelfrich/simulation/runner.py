@@ -95,7 +95,7 @@ class Run:
             "flips": flips or 0.0,
         }
         self._checkpoint_seconds = checkpoint_seconds
-        given = {name: True for name in ("vcm_compatible", "ignore_unknown") if options[name]}
+        flags = {name: True for name in ("vcm_compatible", "ignore_unknown") if options[name]}
         going_on = (resume or resume_previous) and folder is not None
         before = saved_in(Path(folder)) if going_on else None
         if before is not None:
@@ -106,7 +106,7 @@ class Run:
         asked = {"xtc": xtc, "frames": frames or {True: "ply", False: "none"}.get(ply)}
         wanted = {name: given for name, given in asked.items() if given is not None}
         # What is asked for here, and what the file says: a resumed run must agree with both.
-        self._wanted = {**given, **wanted, **({} if flips is None else {"flips": flips})}
+        self._wanted = {**flags, **wanted, **({} if flips is None else {"flips": flips})}
         self._said = {"seed": cfg.file_seed, "platform": cfg.platform, **cfg.writes}
         self._options = {**options, **cfg.writes, **wanted, "file": self._said}
         self.folder = Path(folder if folder is not None else cfg.name)
