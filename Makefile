@@ -42,10 +42,9 @@ lint: $(VENV)/.requirements ## check formatting, lint Rust, C++ and Python, and 
 	@$(VENV)/bin/ruff format -q --check $(PY)
 	@$(MDFORMAT) --check $(MD)
 
-derived: $(VENV)/.requirements ## write anew what follows from the potentials: their lists, the C functions, the stubs
+derived: $(VENV)/.requirements ## write anew what follows from the potentials: their lists, the functions of C, the classes of Python
 	@$(VENV)/bin/python .ci/potentials.py
-	@$(MAKE) -s build
-	@$(VENV)/bin/python .ci/stubs.py
+	@$(VENV)/bin/python .ci/forces.py
 
 format: $(VENV)/.requirements ## format Rust, C++, Python and Markdown in place
 	@cargo fmt

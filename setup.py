@@ -96,7 +96,7 @@ class BuildPlugin(build_ext):
         module_of_package("_openmm_interface").write_record(package, openmm / "include")
 
     def build_wrapper(self, package: Path, openmm: Path):
-        """The SWIG wrapper around the force classes, and its compiler flags."""
+        """The functions that the force classes call, which SWIG makes, and their compiler flags."""
         generated = Path(self.build_temp)
         generated.mkdir(parents=True, exist_ok=True)
         wrapper = generated / "forces_wrap.cpp"
@@ -105,9 +105,10 @@ class BuildPlugin(build_ext):
             extension.unlink()
         includes = [str(ROOT / "wrappers" / "include"), str(openmm / "include")]
         # The disabled warnings are about OpenMM's own declarations.
-        options = ["-python", "-c++", "-doxygen", "-w314,325,453"]
+        options = ["-python", "-c++", "-w314,325,453"]
         command = [find_swig(), *options, *(f"-I{path}" for path in includes)]
-        command += ["-outdir", str(package), "-o", str(wrapper), str(ROOT / "python" / "forces.i")]
+        # The classes that SWIG writes stay there; forces.py has ours.
+        command += ["-o", str(wrapper), str(ROOT / "python" / "forces.i")]
         subprocess.check_call(command)
         extension = self.extensions[0]
         extension.sources.insert(0, str(wrapper))

@@ -57,7 +57,7 @@ using namespace HelfrichPlugin;
     $2 = static_cast<size_t>(length);
 }
 
-/* Arrays come as one buffer, through _arguments.py; numbers go by the setters, which know units. */
+/* Arrays come as one buffer, through _surfaces.py. .ci/forces.py leaves out what is ignored here. */
 %ignore HelfrichPlugin::TriangulatedForce::addTriangles;
 %ignore HelfrichPlugin::TriangulatedForce::getTriangles;
 %ignore HelfrichPlugin::TriangulatedForce::getTrianglesInContext;
@@ -286,27 +286,4 @@ VARIABLE_MASS_INTEGRATOR(VariableMassLangevinIntegrator)
 std::string _why_not_helfrich(const OpenMM::System& system, const OpenMM::Integrator& integrator) {
     return Helfrich_Platform_check(&system, &integrator) == 0 ? "" : HelfrichPlugin::lastError();
 }
-%}
-
-%pythoncode %{
-from openmmhelfrich import _arguments, _bond_flips, _domain_swaps, _integrators, _tension, _viscosity
-for _class in MembraneForce.__subclasses__():
-    _arguments.accept_units(_class)
-_arguments.accept_arrays(TriangulatedForce)
-_bond_flips.accept_arguments(MonteCarloBondFlip)
-_domain_swaps.accept_arguments(MonteCarloDomainSwap)
-_tension.accept_arguments(MonteCarloMembraneTension)
-_viscosity.accept_arguments(SurfaceViscosityThermostat)
-for _class in VariableMassIntegrator.__subclasses__():
-    _integrators.accept_arguments(_class)
-__all__ = [
-    "MembraneForce",
-    "MonteCarloBondFlip",
-    "MonteCarloDomainSwap",
-    "MonteCarloMembraneTension",
-    "SurfaceViscosityThermostat",
-    "TriangulatedForce",
-    *(_class.__name__ for _class in MembraneForce.__subclasses__()),
-    *(_class.__name__ for _class in VariableMassIntegrator.__subclasses__()),
-]
 %}

@@ -68,16 +68,20 @@ def classes() -> dict[str, Class]:
     """All public classes, by name."""
     found = {}
     for header in sorted(HEADERS.glob("*.h")):
-        text = header.read_text(encoding="utf-8")
-        pattern = _COMMENT.pattern + r"(?:template[^\n]*\n)?class (\w+) : public ([\w:]+)[^{]*\{"
-        match = next((m for m in re.finditer(pattern, text, re.DOTALL) if "*/" not in m[1]), None)
-        if match is None:
-            raise ValueError(f"{header}: there is no class with a comment")
-        body = text[match.end() :].partition("\n};")[0]
-        public = re.split(r"^(?:protected|private):", body.partition("public:")[2], flags=re.M)[0]
-        known = Class(match[2], header, match[3], plain(match[1]), _members(public))
+        known = read_class(header, header.read_text(encoding="utf-8"))
         found[known.name] = known
     return found
+
+
+def read_class(header: Path, text: str) -> Class:
+    """The class that a header is about."""
+    pattern = _COMMENT.pattern + r"(?:template[^\n]*\n)?class (\w+) : public ([\w:<>]+)[^{]*\{"
+    match = next((m for m in re.finditer(pattern, text, re.DOTALL) if "*/" not in m[1]), None)
+    if match is None:
+        raise ValueError(f"{header}: there is no class with a comment")
+    body = text[match.end() :].partition("\n};")[0]
+    public = re.split(r"^(?:protected|private):", body.partition("public:")[2], flags=re.M)[0]
+    return Class(match[2], header, match[3], plain(match[1]), _members(public))
 
 
 def _members(body: str) -> list[Member]:

@@ -7,6 +7,7 @@ no word here.
 from __future__ import annotations
 
 import ctypes
+import functools
 import inspect
 import math
 import operator
@@ -19,6 +20,8 @@ from . import _core
 from ._types import Array
 
 __all__ = [
+    "DENSITY",
+    "FRICTION",
     "Scalar",
     "capitalised",
     "constant",
@@ -27,6 +30,7 @@ __all__ = [
     "form_number",
     "plain_value",
     "scalar",
+    "scalar_of",
     "scalars_of",
     "triangles",
     "whole_number",
@@ -90,6 +94,44 @@ def scalars_of(force: str) -> list[Scalar]:
     return found
 
 
+#: The unit of the surface's frictions and viscosities.
+FRICTION = unit.dalton / unit.picosecond
+DENSITY = Scalar("density", unit.amu / unit.nanometer**2, 0.0, None)
+
+#: The units of what movers, thermostats and integrators take.
+_UNITS = {
+    "attemptsPerEdge": unit.dimensionless,
+    "density": DENSITY.unit,
+    "friction": unit.picosecond**-1,
+    "frictionCoeff": unit.picosecond**-1,
+    "maxEdgeLength": unit.nanometer,
+    "pullingForce": unit.kilojoule_per_mole / unit.nanometer,
+    "stepSize": unit.picosecond,
+    "temperature": unit.kelvin,
+    "tension": unit.kilojoule_per_mole / unit.nanometer**2,
+}
+
+
+@functools.cache
+def scalar_of(name: str, argument: str) -> Scalar | None:
+    """The scalar that an argument of a class is, None if it is something else.
+
+    Parameters
+    ----------
+    name : str
+        The name of the class.
+    argument : str
+        That of the argument.
+    """
+    if known := scalars_of(name):
+        return next((s for s in known if s.name == argument), None)
+    if name == "SurfaceViscosityThermostat" and argument == "friction":
+        return Scalar(argument, FRICTION, inspect.Parameter.empty, None)
+    if argument not in _UNITS:
+        return None
+    return Scalar(argument, _UNITS[argument], inspect.Parameter.empty, None)
+
+
 def capitalised(name: str) -> str:
     return name[0].upper() + name[1:]
 
@@ -149,7 +191,7 @@ def element_values(force: str, parameter: Scalar, values) -> list[float]:
 
 
 def form_number(force: str, what: str, value) -> int:
-    """The number of a form: a constant of the class, or its name.
+    """The number of a form of a potential, of a constant such as ``GompperKroll`` or its name.
 
     Parameters
     ----------
@@ -165,18 +207,39 @@ def form_number(force: str, what: str, value) -> int:
     TypeError, ValueError
         If the value is neither, or an unknown name.
     """
+    names = {name: number for number, name in enumerate(_form_names(force))}
+    return constant(force, what, names, value)
+
+
+def constant(name: str, what: str, known: dict[str, int], value) -> int:
+    """The number of a constant of a class, given by its number or name.
+
+    Parameters
+    ----------
+    name : str
+        The name of the class.
+    what : str
+        What its constants are, for messages.
+    known : dict of str to int
+        The constants.
+    value : int or str
+        One of them, or its name. Whether there is one of that number is for C++ to say.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If the value is neither, or an unknown name.
+    """
     if isinstance(value, str):
-        names = _form_names(force)
-        if value not in names:
-            known = ", ".join(names)
-            raise ValueError(f"{force}: there is no {what} {value!r}; known are: {known}")
-        return names.index(value)
+        if value not in known:
+            raise ValueError(f"{name}: there is no {what} {value!r}; known are: {', '.join(known)}")
+        return known[value]
     if isinstance(value, (bool, np.bool_)):
-        raise TypeError(f"{force}: {what} must be a constant of the class, got {value!r}")
+        raise TypeError(f"{name}: {what} must be a constant of the class, got {value!r}")
     try:
         return operator.index(value)
     except TypeError:
-        raise TypeError(f"{force}: {what} must be a constant of the class, got {value!r}") from None
+        raise TypeError(f"{name}: {what} must be a constant of the class, got {value!r}") from None
 
 
 def _form_names(force: str) -> list[str]:
@@ -318,14 +381,3 @@ def whole_number(mover: str, name: str, value) -> int:
     if not limits.min <= number <= limits.max:
         raise ValueError(f"{mover}: {name} = {number} is beyond what OpenMM can count")
     return number
-
-
-def constant(mover: type, name: str, known: tuple[str, ...], value) -> int:
-    """The number of a constant of a class, given by its number or name."""
-    if not isinstance(value, str):
-        return whole_number(mover.__name__, name, value)
-    if value not in known:
-        raise ValueError(
-            f"{mover.__name__}: there is no {name} {value!r}; known are: {', '.join(known)}"
-        )
-    return getattr(mover, value)

@@ -4,8 +4,8 @@ import math
 from collections.abc import Mapping
 
 from ._numbers import checked_number
+from ._values import FRICTION
 from ._vesicle_flips import TEMPERATURE
-from ._viscosity import FRICTION
 from .forces import SurfaceViscosityThermostat
 
 _ARGUMENTS = ("friction", "temperature", "frequency", "randomNumberSeed")

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from openmm import unit
 
-from ._vertex_numbers import domain_array
+from ._surfaces import domain_array
 
 __all__ = ["values_of_domains"]
 

@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 from openmm import unit
 
-from ._integrators import DENSITY
 from ._types import Array
-from ._values import Scalar, plain_value, scalar
+from ._values import DENSITY, Scalar, plain_value, scalar
 from .analysis import triangle_areas
 from .mesh import Mesh
 

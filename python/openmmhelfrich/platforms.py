@@ -18,7 +18,7 @@ import numpy as np
 import openmm
 
 from . import _core, backend
-from .forces import MembraneForce, _why_not_helfrich
+from .forces import MembraneForce, why_not_helfrich
 
 __all__ = [
     "LEAST_FOR_GPU",
@@ -106,7 +106,7 @@ def choose(system: openmm.System, integrator: openmm.Integrator, *, double: bool
         device = _gpu_platform() or ("OpenCL" if "OpenCL" in names() else None)
         if device is not None:
             return Choice(device, 'the backend "native" is for platforms of GPUs')
-    costly = _why_not_helfrich(system, integrator)
+    costly = why_not_helfrich(system, integrator)
     if not costly:
         return Choice("Helfrich", "nothing costs more than the membranes")
     if double:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from functools import cache
 
 import numpy as np
@@ -105,3 +106,10 @@ def simulation_of(mesh: helfrich.Mesh, offset: int = 0, flips: float = 0.1):
     made.context.setPositions(np.concatenate([others, mesh.vertices]))
     made.context.setVelocitiesToTemperature(TEMPERATURE, 3)
     return placement, made
+
+
+def arguments_of(cls):
+    """The arguments of a class with their defaults, without types."""
+    signature = inspect.signature(cls)
+    plain = [p.replace(annotation=p.empty) for p in signature.parameters.values()]
+    return str(signature.replace(parameters=plain, return_annotation=signature.empty))

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import copy
 import ctypes
-import inspect
 
 import numpy as np
 import openmm as mm
 import openmmhelfrich as helfrich
 import pytest
+from flowing import arguments_of
 from openmm import unit
 from openmmhelfrich import _core
 from platforms import HELFRICH, REFERENCE
@@ -26,8 +26,9 @@ class TestArguments:
         assert Tension.Temperature() == "MembraneTensionTemperature"
 
     def test_signature(self):
-        text = str(inspect.signature(Tension))
-        assert text == "(temperature, tension=0.0, frequency=25, axes=0, pullingForce=0.0)"
+        assert arguments_of(Tension) == (
+            "(temperature, tension=0.0, frequency=25, axes=0, pullingForce=0.0)"
+        )
         assert "kJ/mol/nm^2" in Tension.setDefaultTension.__doc__
 
     def test_with_units(self):

@@ -93,10 +93,14 @@ def test_arguments_by_place_by_name_and_as_quantities():
     assert langevin_values(langevin) == pytest.approx((310, 1, 0.2, 2, 0, -1))
 
 
+def test_the_step_size_has_no_default():
+    with pytest.raises(TypeError, match=r"^VariableMassVerletIntegrator.*'stepSize'"):
+        VariableMassVerletIntegrator()
+
+
 @pytest.mark.parametrize(
     ("make", "error", "words"),
     [
-        (lambda: VariableMassVerletIntegrator(), TypeError, "stepSize"),
         (lambda: VariableMassVerletIntegrator("fast"), TypeError, "stepSize.*fast"),
         (lambda: VariableMassVerletIntegrator(1 * unit.nanometer), TypeError, "stepSize.*units"),
         (lambda: VariableMassVerletIntegrator(float("nan")), mm.OpenMMException, "stepSize.*nan"),
