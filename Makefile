@@ -24,7 +24,7 @@ PY := $(wildcard .ci setup.py python tests examples benches docs/conf.py docs/_s
 
 .DEFAULT_GOAL := build
 .PHONY: build test lint derived format wheel demo paper bench docs docs-links fuzz sanitize clean help check-tools test-rust \
-        test-package test-python FORCE
+        test-package test-python test-long FORCE
 
 build: $(VENV)/.installed ## build everything and install it in .venv (the default)
 	@echo "openmm-helfrich is installed in .venv; try: make demo"
@@ -74,6 +74,9 @@ wheel: $(VENV)/.requirements ## build a wheel in dist/ that installs without Rus
 test-python: build # what a user sees
 	@echo "== Python"
 	@$(VENV)/bin/python -m pytest -q -n 2 --dist loadfile
+
+test-long: build ## run the tests that `make test` leaves out, for they take long
+	@$(VENV)/bin/python -m pytest -q -n 2 --dist loadfile -m long
 
 # Warnings are errors, and so are links within the site that lead nowhere. Rustdoc's pages are part of it.
 docs: build ## make the site of the documentation in out/docs/html

@@ -59,7 +59,11 @@ def test_without_the_energy_of_the_difference_it_is_that_of_bending():
 
 
 @pytest.mark.parametrize(
-    ("start", "kind", "difference"), [("prolate", "prolate", 1.1), ("spheres", "pear", 1.2)]
+    ("start", "kind", "difference"),
+    [
+        pytest.param("prolate", "prolate", 1.1, marks=pytest.mark.long),
+        ("spheres", "pear", 1.2),
+    ],
 )
 def test_a_vesicle_finds_it(start: str, kind: str, difference: float):
     from ade_shapes import kind_of, least_axisymmetric, shape_of
@@ -72,6 +76,7 @@ def test_a_vesicle_finds_it(start: str, kind: str, difference: float):
     assert energy == pytest.approx(expected, rel=0.02)
 
 
+@pytest.mark.long
 def test_a_bud_stays_where_theory_has_it():
     from ade_shapes import row_of, shape_of
 
@@ -96,6 +101,7 @@ def test_the_limit_of_fine_meshes():
     assert np.sqrt(np.mean(found[:, 1] ** 2)) == pytest.approx(found[:, 0].std(), rel=0.1)
 
 
+@pytest.mark.long
 def test_buds_are_set_beside_two_spheres(monkeypatch, tmp_path):
     import ade_buds
 

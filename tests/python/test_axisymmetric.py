@@ -60,6 +60,7 @@ class TestMinimum:
 
 
 class TestReference:
+    @pytest.mark.long
     def test_branches_cross_where_published(self):
         from axisymmetric import crossing
 
@@ -119,6 +120,7 @@ class TestReference:
             contour("pear", 0.8)
 
 
+@pytest.mark.long
 def test_a_fluid_oblate_becomes_a_prolate_and_a_fixed_one_does_not():
     from shapes import RIGIDITY, branch_of, reference, shape_of
 

@@ -64,6 +64,7 @@ def test_tiny_run(tmp_path):
     assert "| 5 steps " in text
 
 
+@pytest.mark.long
 def test_native_steps(tmp_path):
     """Each side's figure is in the table and the file, and the ratios are those of the figures."""
     NATIVE[1].context(particle())

@@ -61,6 +61,29 @@ INTEGRATORS = {
 }
 
 
+#: With every platform; each Context on OpenCL takes a second, so there only two kinds make do.
+driven = pytest.mark.parametrize(
+    ("name", "target"),
+    [
+        pytest.param(
+            name,
+            target,
+            id=f"{target}-{name}",
+            marks=[pytest.mark.long]
+            if is_slow and name not in ("Verlet", "LangevinMiddle")
+            else [],
+        )
+        for target, is_slow in (
+            (REFERENCE, False),
+            (HELFRICH, False),
+            (ON_OPENCL[2], True),
+            (NATIVE[2], True),
+        )
+        for name in INTEGRATORS
+    ],
+)
+
+
 def degrees(triangles: np.ndarray) -> np.ndarray:
     return np.bincount(triangles.ravel(), minlength=start().num_vertices)
 
@@ -80,8 +103,7 @@ def assert_as_fresh(context, force, target: Target, tolerance: float) -> None:
 
 
 class TestDriven:
-    @pytest.mark.parametrize("name", INTEGRATORS)
-    @pytest.mark.parametrize("target", [REFERENCE, HELFRICH, ON_OPENCL[2], NATIVE[2]], ids=str)
+    @driven
     def test_by_every_integrator(self, name, target):
         context, mover = flowing(target, INTEGRATORS[name]())
         context.getIntegrator().step(20)

@@ -86,7 +86,12 @@ def test_every_row(where: str, target: Target):
 @pytest.mark.parametrize(
     ("where", "target"),
     [("mixed", target) for target in ON_OPENCL]
-    + [(where, target) for target in ON_DEVICE for where in PLACES],
+    + [
+        # The mixed precision of native kernels is that of their single, but for positions.
+        pytest.param(where, target, marks=[pytest.mark.long] if target is NATIVE[1] else [])
+        for target in ON_DEVICE
+        for where in PLACES
+    ],
     ids=str,
 )
 def test_other_devices(where: str, target: Target):

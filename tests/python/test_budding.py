@@ -86,6 +86,7 @@ class TestLinedShapes:
         assert tensions[1] == pytest.approx(2 * tensions[0], rel=0.02)
 
 
+@pytest.mark.long
 def test_domains_of_a_vesicle_bud_from_the_spinodal_on(tmp_path):
     found = tables_of("vesicle_budding.py", tmp_path)
     (theory,) = found["vesicle_budding_theory"]

@@ -14,7 +14,7 @@ from mixing import TABLE, bits, domains_of, force_in, forces_of, mixing, swap_of
 from openmmhelfrich import _core
 from platforms import CPU, HELFRICH, NATIVE, ON_GPU, ON_OPENCL, ON_PROCESSOR, REFERENCE, Target
 from surface_movers import SameBits
-from test_bond_flip import INTEGRATORS
+from test_bond_flip import INTEGRATORS, driven
 
 EVERYWHERE = [*ON_PROCESSOR, *ON_OPENCL, *ON_GPU, *NATIVE]
 COUNT = start().num_vertices
@@ -39,8 +39,7 @@ def assert_as_fresh(context: mm.Context, target: Target, tolerance: float) -> No
 
 
 class TestDriven:
-    @pytest.mark.parametrize("name", INTEGRATORS)
-    @pytest.mark.parametrize("target", [REFERENCE, HELFRICH, ON_OPENCL[2], NATIVE[2]], ids=str)
+    @driven
     def test_by_every_integrator(self, name, target):
         context, mover = mixing(target, INTEGRATORS[name]())
         context.getIntegrator().step(20)

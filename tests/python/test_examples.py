@@ -165,6 +165,7 @@ def test_integrators():
         assert word in text
 
 
+@pytest.mark.long
 def test_friction_of_undulations(tmp_path):
     run(EXAMPLES / "flips/undulation_friction.py", "--quick", "--results", tmp_path)
     with (tmp_path / "undulation_friction.csv").open(encoding="utf-8") as file:

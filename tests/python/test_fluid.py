@@ -48,6 +48,7 @@ def test_long_waves_are_those_of_a_fluid(attempts, fluid):
 
 
 class TestDiffusion:
+    @pytest.mark.long
     def test_is_as_fast_as_bonds_flip(self):
         from fluid_run import flow
 
@@ -117,6 +118,7 @@ class TestRotations:
         expected = 40, (1 / 60) / (1 / 60**2 + 1 / 15**2)
         np.testing.assert_allclose(integrals(columns, 2.0, 390), expected, rtol=0.01)
 
+    @pytest.mark.long
     def test_flow_is_slower_the_fewer_bonds_flip(self):
         from viscous_run import rotate
 

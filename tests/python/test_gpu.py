@@ -331,6 +331,7 @@ def test_what_single_precision_cannot_do_is_left_to_the_processor():
 # --- dynamics and memory -------------------------------------------------------------------------
 
 
+@pytest.mark.long
 def test_verlet_keeps_its_energy_in_single_precision():
     """The paper's vesicle, small, for 200 ps; the drift is a share of the kinetic energy."""
     require_gpu()
@@ -359,6 +360,7 @@ def _resident() -> float:
         return int(file.read().split()[1]) * resource.getpagesize() / 1e6
 
 
+@pytest.mark.long
 def test_a_thousand_contexts_leave_no_memory_behind():
     require_gpu()
     mesh = helfrich.Mesh.icosphere(3, 100.0)

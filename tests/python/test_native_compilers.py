@@ -149,7 +149,7 @@ def check_for_hip(text: str, architecture: str) -> list[str]:
 
 
 @every_precision
-@pytest.mark.parametrize("architecture", ["sm_75", "sm_90"])
+@pytest.mark.parametrize("architecture", [pytest.param("sm_75", marks=pytest.mark.long), "sm_90"])
 def test_for_cuda_without_a_word(precision: str, architecture: str):
     log, code = compile_for_cuda(program(precision), architecture)
     assert not log.strip("\0\n ")

@@ -160,6 +160,7 @@ class TestVirialReporter:
         vectors = [table[name][0] for name in ("ax", "bx", "by", "cx", "cy", "cz")]
         assert vectors == [100.0, 20.0, 110.0, -30.0, 15.0, 120.0]
 
+    @pytest.mark.long
     def test_the_mean_tension_is_the_one_that_is_imposed(self, tmp_path):
         mesh = helfrich.Mesh.sheet(6, 6, 10.0, periodic=True)
         system = mm.System()

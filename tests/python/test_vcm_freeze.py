@@ -272,6 +272,7 @@ def test_frozen_and_replaced(name):
     assert_equal(given_context(name), faster, report, scale_of(name))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", CASES)
 def test_all_subsets_of_what_can_be_frozen(name):
     """Whatever is frozen, what is replaced is the same energy; the needed ones are enough."""
