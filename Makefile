@@ -29,7 +29,8 @@ PY := $(wildcard .ci setup.py python tests examples benches docs/conf.py docs/_s
 build: $(VENV)/.installed ## build everything and install it in .venv (the default)
 	@echo "openmm-helfrich is installed in .venv; try: make demo"
 
-test: lint test-rust test-python docs test-package ## run all checks: lint, Rust, Python, documentation, a clean installation
+test: lint test-rust test-python ## run all checks: lint, Rust, Python, documentation, a clean installation
+	@$(MAKE) -s -j 2 --output-sync=target docs test-package
 
 lint: $(VENV)/.requirements ## check formatting, lint Rust, C++ and Python, and check links of Rust's documentation
 	@echo "== Formatting and lint"
@@ -71,12 +72,15 @@ wheel: $(VENV)/.requirements ## build a wheel in dist/ that installs without Rus
 	@$(SHELL) .ci/check-wheel.sh $(VENV)/bin/python
 	@ls dist
 
+# One more than there are processors, for tests that wait.
+WORKERS := $(shell expr $$(nproc 2> /dev/null || echo 2) + 1)
+
 test-python: build # what a user sees
 	@echo "== Python"
-	@$(VENV)/bin/python -m pytest -q -n 2 --dist loadfile
+	@$(VENV)/bin/python -m pytest -q -n $(WORKERS) --dist loadfile
 
 test-long: build ## run the tests that `make test` leaves out, for they take long
-	@$(VENV)/bin/python -m pytest -q -n 2 --dist loadfile -m long
+	@$(VENV)/bin/python -m pytest -q -n $(WORKERS) --dist loadfile -m long
 
 # Warnings are errors, and so are links within the site that lead nowhere. Rustdoc's pages are part of it.
 docs: build ## make the site of the documentation in out/docs/html

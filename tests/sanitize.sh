@@ -118,7 +118,7 @@ part_thread() {
         CARGO_PROFILE_RELEASE_STRIP=none CARGO_PROFILE_RELEASE_DEBUG=line-tables-only \
         CARGO_PROFILE_RELEASE_CODEGEN_UNITS=16 CARGO_PROFILE_RELEASE_OPT_LEVEL=1 \
         cargo +nightly test -q --locked --release --no-default-features -Zbuild-std --target "$host" \
-        --target-dir "$folder/thread" --lib --test evaluator --test periodic -- threads team crowd
+        --target-dir "$folder/thread" --lib --test rust -- threads team crowd
 }
 
 parts=${*:-loom miri address leaks thread}

@@ -77,6 +77,28 @@ UNASKED = Target("unasked", NATIVE_PLATFORM, 1e-9, {"Precision": "double"})
 ON_DEVICE = ON_GPU + NATIVE
 
 
+def sparing(targets: list[Target], keep: str = "double") -> list:
+    """Parameters of which those that take a second to start are for `make test-long`, but one.
+
+    Parameters
+    ----------
+    targets : list of Target
+        Where a test runs.
+    keep : str
+        The precision in which OpenMM's GPU platforms run always.
+    """
+    return [
+        pytest.param(
+            target,
+            id=str(target),
+            marks=[pytest.mark.long]
+            if "Precision" in target.properties and target.properties["Precision"] != keep
+            else [],
+        )
+        for target in targets
+    ]
+
+
 @contextmanager
 def counting() -> Iterator[dict[str, int]]:
     """At the end the dict has how many evaluations each backend has made meanwhile, if any."""

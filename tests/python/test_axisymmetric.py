@@ -84,6 +84,7 @@ class TestReference:
         assert means[0] == pytest.approx(means[1], rel=0.1)
         assert halves[0] == pytest.approx(halves[1], rel=0.1)
 
+    @pytest.mark.long
     def test_stomatocytes_become_two_spheres(self):
         from axisymmetric import contour
 

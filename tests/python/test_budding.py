@@ -101,6 +101,7 @@ def test_domains_of_a_vesicle_bud_from_the_spinodal_on(tmp_path):
     assert (above["over_spinodal"], above["buds"]) == ("1.6", "2")
 
 
+@pytest.mark.long
 def test_domains_coarsen_and_keep_the_composition(tmp_path):
     rows = tables_of("coarsening.py", tmp_path)["coarsening"]
     assert {row["second_kind"] for row in rows} == {"76"}

@@ -11,7 +11,7 @@ import openmmhelfrich as helfrich
 import pytest
 from openmm import unit
 from openmmhelfrich import _core
-from platforms import NATIVE, ON_DEVICE, ON_PROCESSOR, REFERENCE, Target
+from platforms import NATIVE, ON_DEVICE, ON_PROCESSOR, REFERENCE, Target, sparing
 from running import Running
 
 STRAINS = ("SkalakForce", "NeoHookeanForce", "LinearElasticForce")
@@ -154,7 +154,7 @@ def test_where_three_domains_meet():
 
 
 @with_reference
-@pytest.mark.parametrize("target", [*ON_PROCESSOR, *ON_DEVICE], ids=str)
+@pytest.mark.parametrize("target", sparing([*ON_PROCESSOR, *ON_DEVICE], "single"))
 def test_small_strains_keep_their_digits(name: str, target: Target):
     """Positions are on every device's lattice, so that nothing but the strain itself is small."""
     sphere = helfrich.Mesh.random_sphere(252, radius=60.0, seed=1)
@@ -380,7 +380,7 @@ def test_a_spanning_surface_needs_a_box_of_the_reference(target: Target):
 
 
 @with_reference
-@pytest.mark.parametrize("target", [*ON_PROCESSOR, *ON_DEVICE], ids=str)
+@pytest.mark.parametrize("target", sparing([*ON_PROCESSOR, *ON_DEVICE]))
 def test_another_reference_in_a_context(name: str, target: Target):
     mesh = helfrich.Mesh.random_sphere(92, radius=20.0, seed=2)
     force = make(name, mesh, 1.02 * mesh.vertices)

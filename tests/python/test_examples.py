@@ -41,6 +41,7 @@ def demo(tmp_path_factory):
     return folder, result.stdout
 
 
+@pytest.mark.long
 def test_variable_masses(tmp_path):
     run(EXAMPLES / "variable_mass.py", "energy", "areas", "cost", "--quick", "--out", tmp_path)
     energy, areas = (

@@ -32,7 +32,9 @@ def scripts_importable(monkeypatch):
         sys.modules.pop(name, None)
 
 
-@pytest.mark.parametrize(("attempts", "fluid"), [(0.4, True), (0.0, False)])
+@pytest.mark.parametrize(
+    ("attempts", "fluid"), [(0.4, True), pytest.param(0.0, False, marks=pytest.mark.long)]
+)
 def test_long_waves_are_those_of_a_fluid(attempts, fluid):
     from fluid_run import RIGIDITY, flow
     from mesh_corrections import bending_ratio

@@ -486,7 +486,7 @@ class TestHdf5:
     def _h5py(self):
         pytest.importorskip("h5py")
 
-    @pytest.mark.parametrize("rows", [1, 256])
+    @pytest.mark.parametrize("rows", [1, pytest.param(256, marks=pytest.mark.long)])
     def test_kills_while_a_row_is_added(self, tmp_path, monkeypatch, rows):
         """Also where a chunk of 256 rows is begun, of which a kill could cost all."""
         path = tmp_path / "a.h5"

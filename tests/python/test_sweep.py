@@ -260,9 +260,13 @@ class TestHere:
         ("one", "two"),
         [
             (["one.py"], ["two.py"]),
-            (["-m", "one"], ["-m", "two"]),
+            pytest.param(["-m", "one"], ["-m", "two"], marks=pytest.mark.long),
             (["-m", "imports"], ["two.py"]),
-            (["-m", "cProfile", "one.py"], ["-m", "cProfile", "two.py"]),
+            pytest.param(
+                ["-m", "cProfile", "one.py"],
+                ["-m", "cProfile", "two.py"],
+                marks=pytest.mark.long,
+            ),
         ],
     )
     def test_functions_of_equal_names_in_different_modules(self, tmp_path, one, two):

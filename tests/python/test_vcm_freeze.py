@@ -341,7 +341,13 @@ SLIPS = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("slip", SLIPS, ids=lambda slip: f"{slip[0]} {slip[1]}")
+@pytest.mark.parametrize(
+    "slip",
+    [
+        pytest.param(slip, id=" ".join(slip), marks=[pytest.mark.long] if number % 3 else [])
+        for number, slip in enumerate(SLIPS)
+    ],
+)
 def test_slips_are_no_wrong_conversion(slip):
     """An expression with a slip is left alone, or the forces that replace it have its energy."""
     old, new = slip

@@ -181,6 +181,7 @@ def test_names_cannot_break_the_page(lumpy):
     assert html.unescape(re.search("<title>(.*)</title>", text)[1]) == name
 
 
+@pytest.mark.long
 def test_a_long_run_is_below_ten_megabytes(monkeypatch):
     """1002 vertices and 200 frames, rough and with triangles that have nothing in common."""
     monkeypatch.setattr(scenes, "_spectrum", lambda *arguments: None)

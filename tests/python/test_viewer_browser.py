@@ -509,6 +509,7 @@ def test_a_lost_picture_comes_back(open_page, run):
     assert (view.picture() == before).all()
 
 
+@pytest.mark.long
 def test_ten_thousand_vertices(open_page, tmp_path, monkeypatch, record_property):
     """A frame is prepared within 1/60 s; what a picture then takes is the graphics card's."""
     monkeypatch.setattr(scenes, "_spectrum", lambda *arguments: None)

@@ -1,15 +1,14 @@
 //! The evaluator on whole meshes: gradients, symmetries, threads and bad input, for every potential.
 
-#[path = "support.rs"]
-mod support;
-
+use crate::support::{
+    Mesh, beside, border_terms, open_meshes, open_terms, random, spheroid, terms_on,
+};
 use openmm_helfrich::error::Error;
 use openmm_helfrich::evaluator::{CpuEvaluator, InstructionSet, ReferenceEvaluator};
 use openmm_helfrich::mesh::Topology;
 use openmm_helfrich::potentials::{Contribution, Evaluator, REGISTRY, Request, Term};
 use proptest::prelude::*;
 use std::sync::Arc;
-use support::{Mesh, beside, border_terms, open_meshes, open_terms, random, spheroid, terms_on};
 
 fn evaluator(mesh: &Mesh) -> CpuEvaluator {
     CpuEvaluator::new(Arc::new(Topology::new(&mesh.1, mesh.0.len() / 3).unwrap()))

@@ -1,10 +1,10 @@
 //! Bond flips: energies of single flips against whole evaluations, and visited frequencies against the Boltzmann
 //! weights of all triangulations of a few vertices, which are enumerated here without any code of the crate.
 
-#[path = "support.rs"]
-#[allow(dead_code, reason = "other tests use the rest")]
-mod support;
-
+use crate::support::{
+    Mesh, border_terms, equipped, open_meshes, open_terms, random, spheroid, terms_of_vertices,
+    terms_on,
+};
 use openmm_helfrich::evaluator::{
     BorderEvaluator, CpuEvaluator, InstructionSet, ReferenceEvaluator,
 };
@@ -17,10 +17,6 @@ use openmm_helfrich::moves::{FlipRules, FlipState, Round};
 use openmm_helfrich::potentials::{Contribution, Evaluator, Request, Term};
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
-use support::{
-    Mesh, border_terms, equipped, open_meshes, open_terms, random, spheroid, terms_of_vertices,
-    terms_on,
-};
 
 const ANY: FlipRules =
     FlipRules { temperature: 1.0, min_degree: 3, max_degree: 64, max_edge_length: 0.0, demon: 0 };

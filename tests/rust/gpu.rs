@@ -3,16 +3,12 @@
 //! Without an adapter these tests say so and pass, unless HELFRICH_REQUIRE_GPU=1 demands one. Debian's
 //! mesa-vulkan-drivers have one that computes on the processor.
 
-#[path = "support.rs"]
-#[allow(dead_code, reason = "other tests use the rest")]
-mod support;
-
+use crate::support::{Mesh, open_meshes, open_terms, random, spheroid, terms_on};
 use openmm_helfrich::evaluator::CpuEvaluator;
 use openmm_helfrich::evaluator::gpu::{GpuEvaluator, Precision, adapters};
 use openmm_helfrich::mesh::Topology;
 use openmm_helfrich::potentials::{Contribution, Evaluator, Request, Term};
 use std::sync::Arc;
-use support::{Mesh, open_meshes, open_terms, random, spheroid, terms_on};
 
 /// The adapters and the precisions that each of them has.
 fn targets() -> Vec<(usize, Precision)> {

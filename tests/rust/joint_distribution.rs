@@ -5,10 +5,7 @@
 //! The bending is Gompper and Kroll's, whose energy is smooth. Jülicher's jumps where an edge is folded until its angle
 //! passes through π: displacements go there as the weights say, and dynamics do not, whatever their time step.
 
-#[path = "support.rs"]
-#[allow(dead_code, reason = "other tests use the rest")]
-mod support;
-
+use crate::support::{Mesh, random, spheroid};
 use openmm_helfrich::dynamics::integrate::{Dynamics, Particles};
 use openmm_helfrich::dynamics::random::{Stream, normals};
 use openmm_helfrich::evaluator::ReferenceEvaluator;
@@ -17,7 +14,6 @@ use openmm_helfrich::mesh::{Configuration, Topology};
 use openmm_helfrich::moves::{FlipRules, FlipState, Round};
 use openmm_helfrich::potentials::{Contribution, Evaluator, Request, Term};
 use std::sync::Arc;
-use support::{Mesh, random, spheroid};
 
 const MOST: usize = 8;
 

@@ -1,8 +1,8 @@
 //! Surfaces in a periodic box: unfolded, wrapped at random, spanning it.
 
-#[allow(dead_code, reason = "other tests use the rest")]
-mod support;
-
+use crate::support::{
+    Mesh, border_terms, equipped, open, random, spheroid, terms_in, terms_on, without,
+};
 use openmm_helfrich::error::Error;
 use openmm_helfrich::evaluator::{BorderEvaluator, ReferenceEvaluator};
 use openmm_helfrich::membrane::Membrane;
@@ -12,7 +12,6 @@ use openmm_helfrich::potentials::{Contribution, Evaluator, Request, Term, Vertex
 use proptest::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
-use support::{Mesh, border_terms, equipped, open, random, spheroid, terms_in, terms_on, without};
 
 /// A triclinic box, and one that is none, nm; on a grid of dyadic fractions, as positions are here, so that wrapping is
 /// exact.

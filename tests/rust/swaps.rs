@@ -1,10 +1,9 @@
 //! Exchanges between neighbours: energies against whole evaluations, and visited frequencies against the Boltzmann
 //! weights of all arrangements of a few vertices, which are enumerated here without any code of the crate.
 
-#[path = "support.rs"]
-#[allow(dead_code, reason = "other tests use the rest")]
-mod support;
-
+use crate::support::{
+    Mesh, border_terms, equipped, open_meshes, open_terms, random, spheroid, terms_on,
+};
 use openmm_helfrich::evaluator::{BorderEvaluator, ReferenceEvaluator};
 use openmm_helfrich::membrane::Membrane;
 use openmm_helfrich::mesh::{Configuration, Topology, Triangulation};
@@ -12,7 +11,6 @@ use openmm_helfrich::moves::{SwapRound, SwapRules, SwapState};
 use openmm_helfrich::potentials::{Contribution, Evaluator, Request, Term, VertexNumbers};
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
-use support::{Mesh, border_terms, equipped, open_meshes, open_terms, random, spheroid, terms_on};
 
 /// What vertices of each kind are.
 const RIGIDITIES: [f64; 3] = [1.0, 2.5, 4.0];
