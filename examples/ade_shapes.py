@@ -28,7 +28,14 @@ from pathlib import Path
 import numpy as np
 import openmm
 import openmm.app
-from openmmhelfrich import Mesh, MonteCarloBondFlip, PlaquetteAreaForce, Vesicle, analysis
+from openmmhelfrich import (
+    Mesh,
+    MonteCarloBondFlip,
+    PlaquetteAreaForce,
+    SurfaceRepulsionForce,
+    Vesicle,
+    analysis,
+)
 from openmmhelfrich.vesicle import KBT
 from scipy.optimize import brentq
 
@@ -43,6 +50,7 @@ RIGIDITY = 20 * KBT
 ALPHA = 10.0
 DIHEDRALS = RIGIDITY
 EVEN = 3 * KBT  # of plaquettes
+REPULSION = 0.2  # mean edges
 HOT, COLD = 300.0, 1.0  # K
 SOFT, HARD = 0.33, 0.5  # Ξ, hot and cold
 TIME_STEP = 0.4  # ps at N = 1002
@@ -107,7 +115,7 @@ def _revolved(sphere, r, z):
     return Mesh(vertices.T, sphere.triangles)
 
 
-def shape_of(num_vertices, start, reduced_volume, delta_a0, seed=1):
+def shape_of(num_vertices, start, reduced_volume, delta_a0, seed=1, repulsion=False):
     """The shape that a vesicle has when it is cold.
 
     Parameters
@@ -117,6 +125,8 @@ def shape_of(num_vertices, start, reduced_volume, delta_a0, seed=1):
         One of STARTS, or "theory": the axisymmetric shape of least energy.
     reduced_volume, delta_a0 : float
     seed : int
+    repulsion : bool
+        Whether the surface cannot pass through itself. Its energy does not count.
 
     Returns
     -------
@@ -144,6 +154,9 @@ def shape_of(num_vertices, start, reduced_volume, delta_a0, seed=1):
     integrator.setRandomNumberSeed(seed)
     system = vesicle.system()
     system.addForce(PlaquetteAreaForce(mesh, EVEN, mesh.area))
+    if repulsion:
+        distance = REPULSION * float(analysis.edge_lengths(mesh, mesh).mean())
+        system.addForce(SurfaceRepulsionForce(mesh, distance, KBT))
     platform = openmm.Platform.getPlatformByName("Helfrich")
     simulation = openmm.app.Simulation(mesh.topology(), system, integrator, platform)
     simulation.context.setPositions(mesh.vertices)

@@ -16,7 +16,7 @@ def scripts_importable(monkeypatch):
     monkeypatch.syspath_prepend(str(EXAMPLES))
     monkeypatch.syspath_prepend(str(EXAMPLES / "flips"))
     yield
-    for name in ("ade_buds", "ade_shapes", "axisymmetric", "constrained", "reports"):
+    for name in ("ade_limits", "ade_shapes", "axisymmetric", "constrained", "reports"):
         sys.modules.pop(name, None)
 
 
@@ -88,7 +88,7 @@ def test_a_bud_stays_where_theory_has_it():
 
 
 def test_the_limit_of_fine_meshes():
-    from ade_buds import limit
+    from ade_limits import limit
 
     numbers = np.array([502, 502, 1002, 2002, 4002])
     energies = 2.5 + 7.0 / np.sqrt(numbers)
@@ -103,16 +103,16 @@ def test_the_limit_of_fine_meshes():
 
 @pytest.mark.long
 def test_buds_are_set_beside_two_spheres(monkeypatch, tmp_path):
-    import ade_buds
+    import ade_limits
 
-    monkeypatch.setattr("sys.argv", ["ade_buds.py", "--quick", "--results", str(tmp_path)])
-    ade_buds.main()
-    head, *rows = (tmp_path / "ade_buds.csv").read_text(encoding="utf-8").splitlines()
+    monkeypatch.setattr("sys.argv", ["ade_limits.py", "--quick", "--results", str(tmp_path)])
+    ade_limits.main()
+    head, *rows = (tmp_path / "ade_limits.csv").read_text(encoding="utf-8").splitlines()
     assert head.startswith("N,ν,Δa0,shape")
     assert [row.split(",")[0] for row in rows] == ["132", "192", "252"]
     # Above theory, the less the finer, and none through itself.
     above, crossings = zip(*[map(float, row.split(",")[-2:]) for row in rows], strict=True)
     assert 20 > above[0] > above[-1] > 5
     assert not any(crossings)
-    [row] = (tmp_path / "ade_buds_limit.csv").read_text(encoding="utf-8").splitlines()[1:]
+    [row] = (tmp_path / "ade_limits_limit.csv").read_text(encoding="utf-8").splitlines()[1:]
     assert row.startswith("0.85,1.4,3,")
