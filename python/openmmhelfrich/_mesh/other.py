@@ -57,6 +57,9 @@ def read_meshio(source: Source) -> tuple[Array, Array]:
     """
     if _is_gmsh(source):
         _check_nodes(source)
+    elif source.path.suffix.lower() == ".msh":
+        # meshio would take it for one of Ansys, and does not come to an end where that is cut off.
+        raise source.error("does not begin with $MeshFormat, as files of Gmsh do")
     mesh = _load(source)
     source.by_line = False
     faces: list[Any] = []
