@@ -189,7 +189,7 @@ def test_gmsh_files_that_count_more_nodes_than_they_have(tmp_path, merge, counte
         Mesh.read(tmp_path / "m.msh", merge=merge)
 
 
-@pytest.mark.parametrize("text", ["(1, $Nodes\n", "(0 \"of Ansys\")\n(10 (0 1 8 0 3))\n", ""])
+@pytest.mark.parametrize("text", ["(1, $Nodes\n", '(0 "of Ansys")\n(10 (0 1 8 0 3))\n', ""])
 def test_msh_files_of_other_programs(tmp_path, text):
     """meshio took them for those of Ansys, and read on for ever where a bracket stayed open."""
     said = refused(tmp_path / "m.MSH", text.encode())
