@@ -328,6 +328,7 @@ def call(function: str, arguments: list[str], before: str = "") -> list[str]:
 def docstring(text: str, indent: int = 4) -> list[str]:
     """A text of C++ as Python has it: what says it in short in a paragraph of its own."""
     text = re.sub(r"\b(Context|Integrator|System)::(\w+)", r"\1.\2", text)
+    text = re.sub(r"\b(true|false)\b", lambda word: word[0].capitalize(), text)
     width, margin = WIDTH - indent, " " * indent
     first, _, rest = text.partition("\n\n")
     short, _, more = " ".join(first.split()).partition(". ")

@@ -599,7 +599,7 @@ class BendingForce(MembraneForce):
         Parameters
         ----------
         isUnsigned : bool
-            True for |c|; false, the default, for n.c.
+            True for |c|; False, the default, for n.c.
         """
         _forces.BendingForce_setUnsignedSpontaneousCurvature(self, isUnsigned)
 
@@ -1958,7 +1958,7 @@ class SurfaceRepulsionForce(MembraneForce):
         Parameters
         ----------
         only : bool
-            True to leave out pairs within a part; false, the default, for all pairs.
+            True to leave out pairs within a part; False, the default, for all pairs.
         """
         _forces.SurfaceRepulsionForce_setOnlyBetweenParts(self, only)
 
@@ -2528,7 +2528,7 @@ class MonteCarloMembraneTension(Tension, _Mover):
     periodic boundary conditions are scaled one by one. All else moves by the centres of its
     molecules; a membrane without periodic boundary conditions, which cannot span the box, is one.
     (A molecule that is bound to such vertices is scaled by its own centre, without them;
-    setScaleMoleculesAsRigid(false) scales every particle, also those of polymers that span the
+    setScaleMoleculesAsRigid(False) scales every particle, also those of polymers that span the
     box.) Let N be the number of the bodies that are so scaled and move: A_p the area of the frame,
     which is the box seen along z, L_x L_y; E the potential energy of the force groups of the
     integrator (Integrator.getIntegrationForceGroups()), beta = 1 / kB T, tau the tension and f the
