@@ -107,7 +107,7 @@ class BuildPlugin(build_ext):
         # The disabled warnings are about OpenMM's own declarations.
         options = ["-python", "-c++", "-w314,325,453"]
         command = [find_swig(), *options, *(f"-I{path}" for path in includes)]
-        # The classes that SWIG writes stay there; forces.py has ours.
+        # The classes that SWIG writes stay there; forces/ has ours.
         command += ["-o", str(wrapper), str(ROOT / "python" / "forces.i")]
         subprocess.check_call(command)
         extension = self.extensions[0]

@@ -1,4 +1,4 @@
-"""Write python/openmmhelfrich/forces.py, the classes of forces, movers and integrators for Python.
+"""Write python/openmmhelfrich/forces/, the classes of forces, movers and integrators for Python.
 
     .venv/bin/python .ci/forces.py (or make derived)
 
@@ -19,16 +19,19 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "docs"))
 from _site import headers  # noqa: E402
 
-MODULE = ROOT / "python" / "openmmhelfrich" / "forces.py"
+FOLDER = ROOT / "python" / "openmmhelfrich" / "forces"
 #: The base of all forces, which is no class for users.
 BASE = headers.HEADERS / "internal" / "HelfrichForce.h"
 WIDTH = 100
 
-HEAD = '''\
-"""The classes of forces, movers, thermostats and integrators.
+INIT = '''\
+"""The classes of forces, movers, thermostats and integrators, a file for each.
 
-.ci/forces.py writes this file, from the headers of C++.
+.ci/forces.py writes them from the headers of C++.
 """
+'''
+HEAD = '''\
+"""{name}; .ci/forces.py writes this file, from the header of C++."""
 
 from __future__ import annotations
 
@@ -37,14 +40,14 @@ from typing import TYPE_CHECKING
 import openmm
 from numpy.typing import ArrayLike
 
-from . import _forces
-from ._movers import Flips, Masses, Swaps, Tension, Viscosity
-from ._proxies import constant, elements, make, make_on, number, own, proxy, start, whole
-from ._surfaces import Domains, Particles, Reference, Triangulated
-from ._types import Scalar, Values
-
+from .. import _forces
+from .._movers import Flips, Masses, Swaps, Tension, Viscosity
+from .._proxies import constant, elements, make, make_on, number, own, proxy, start, whole
+from .._surfaces import Domains, Particles, Reference, Triangulated
+from .._types import Scalar, Values
+{base}
 if TYPE_CHECKING:
-    from .mesh import Mesh
+    from ..mesh import Mesh
 '''
 
 #: Classes by the names they have in Python, where these are others than in C++. A template is one
@@ -368,28 +371,42 @@ def classes() -> list[Writer]:
     return found
 
 
-def text() -> str:
-    """The text of the file."""
+def snake(name: str) -> str:
+    """What the file of a class is called."""
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower()
+
+
+def texts() -> dict[Path, str]:
+    """By file what is to be in it: one for each class, and the list of all."""
     writers = classes()
     public = [w.name for w in writers if w.known.constructor]
     public += ["MembraneForce", "TriangulatedForce"]
+    listed = [f"from .{snake(name)} import {name}" for name in public]
     names = "\n".join(f'    "{name}",' for name in sorted(public))
-    lines = [HEAD, "__all__ = [", names, "]", ""]
+    files = {FOLDER / "__init__.py": "\n".join([INIT, *listed, "", f"__all__ = [\n{names}\n]"])}
     for writer in writers:
-        lines += ["", *writer.lines(), ""]
-    lines += [WHY]
-    command = [Path(sys.executable).parent / "ruff", "format", "--stdin-filename", str(MODULE), "-"]
-    written = "\n".join(lines)
-    return subprocess.run(
-        command, input=written, capture_output=True, text=True, check=True, cwd=ROOT
-    ).stdout
+        is_ours = not writer.base.startswith("openmm.")
+        base = f"from .{snake(writer.base)} import {writer.base}\n" if is_ours else ""
+        head = HEAD.format(name=writer.name.strip("_"), base=base)
+        files[FOLDER / f"{snake(writer.name)}.py"] = "\n".join([head, *writer.lines(), ""])
+    return {path: formatted(path, text) for path, text in files.items()}
 
 
-WHY = '''
-def why_not_helfrich(system: openmm.System, integrator: openmm.Integrator) -> str:
-    """Why a System is not one for the platform Helfrich, or an empty text."""
-    return _forces._why_not_helfrich(system, integrator)
-'''
+def formatted(path: Path, text: str) -> str:
+    """A file without what it does not need of the head, as `make format` has it."""
+    ruff = [Path(sys.executable).parent / "ruff"]
+    for command in (["check", "-q", "--fix-only", "--select", "F401,I"], ["format", "-q"]):
+        words = [*ruff, *command, "--stdin-filename", str(path), "-"]
+        text = subprocess.run(
+            words, input=text, capture_output=True, text=True, check=True, cwd=ROOT
+        ).stdout
+    return text
+
 
 if __name__ == "__main__":
-    MODULE.write_text(text(), encoding="utf-8")
+    FOLDER.mkdir(exist_ok=True)
+    written = texts()
+    for path in set(FOLDER.glob("*.py")) - set(written):
+        path.unlink()
+    for path, text in written.items():
+        path.write_text(text, encoding="utf-8")

@@ -1,4 +1,4 @@
-"""What the classes of ``forces.py`` share: C++ objects, and arguments as users have them.
+"""What the classes of ``forces`` share: C++ objects, and arguments as users have them.
 
 SWIG's module ``_forces`` has a function for each C++ function, which takes plain numbers and lists.
 The classes call these with what the functions here make of Meshes, arrays, Quantities and names.
@@ -12,9 +12,19 @@ import openmm
 # OpenMM has the types on which those of the module are built.
 from . import _forces, _values
 
-__all__ = ["Copies", "constant", "elements", "number", "own", "proxy", "start", "whole"]
+__all__ = [
+    "Copies",
+    "constant",
+    "elements",
+    "number",
+    "own",
+    "proxy",
+    "start",
+    "whole",
+    "why_not_helfrich",
+]
 
-_MODULE = f"{__package__}.forces"
+_PACKAGE = f"{__package__}.forces."
 
 
 def proxy(cls: type) -> type:
@@ -26,7 +36,7 @@ def proxy(cls: type) -> type:
 
 def name_of(force) -> str:
     """The name of the class that an object has here, for messages; a user's subclass has none."""
-    return next(cls.__name__ for cls in type(force).__mro__ if cls.__module__ == _MODULE)
+    return next(cls.__name__ for cls in type(force).__mro__ if cls.__module__.startswith(_PACKAGE))
 
 
 def number(force, argument: str, value) -> float:
@@ -143,6 +153,11 @@ def make_on(force, triangles, offset: int, *plain) -> None:
 def add_triangles(force, corners) -> None:
     """Add triangles, of an array of C integers."""
     _forces.TriangulatedForce__addTriangleBuffer(force, corners.tobytes())
+
+
+def why_not_helfrich(system: openmm.System, integrator: openmm.Integrator) -> str:
+    """Why a System is not one for the platform Helfrich, or an empty text."""
+    return _forces._why_not_helfrich(system, integrator)
 
 
 class Copies:

@@ -18,7 +18,8 @@ import numpy as np
 import openmm
 
 from . import _core, backend
-from .forces import MembraneForce, why_not_helfrich
+from ._proxies import why_not_helfrich
+from .forces import MembraneForce
 
 __all__ = [
     "LEAST_FOR_GPU",

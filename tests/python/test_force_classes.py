@@ -12,7 +12,7 @@ import openmm
 import openmmhelfrich as helfrich
 import pytest
 from cases import PRESENT
-from openmmhelfrich import forces
+from openmmhelfrich import _forces, forces
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -64,10 +64,11 @@ def script(name):
     return module
 
 
-def test_the_file_is_current():
-    assert Path(forces.__file__).read_text(encoding="utf-8") == script("forces").text(), (
-        "run make derived"
-    )
+def test_the_files_are_current():
+    texts = script("forces").texts()
+    assert set(texts) == set((PACKAGE / "forces").glob("*.py")), "run make derived"
+    for path, text in texts.items():
+        assert path.read_text(encoding="utf-8") == text, f"{path}: run make derived"
 
 
 def test_the_lists_of_potentials_are_current():
@@ -102,21 +103,19 @@ def test_all_functions_say_what_they_take_and_give(name):
 
 def test_no_function_of_the_headers_is_missing():
     """What SWIG makes is called by some class."""
-    text = "".join(
-        (PACKAGE / name).read_text(encoding="utf-8")
-        for name in ("forces.py", "_proxies.py", "_surfaces.py", "_movers.py")
-    )
+    files = [*(PACKAGE / "forces").glob("*.py"), *PACKAGE.glob("_*s.py")]
+    text = "".join(path.read_text(encoding="utf-8") for path in files)
     made = {
         name
-        for name in vars(forces._forces)
+        for name in vars(_forces)
         if name.partition("_")[0] in forces.__all__ and not name.endswith(("_swiginit", "register"))
     }
-    constants = {name for name in made if type(getattr(forces._forces, name)) is int}
+    constants = {name for name in made if type(getattr(_forces, name)) is int}
     missing = {name for name in made - constants if f"_forces.{name}(" not in text}
     assert not missing
     for name in constants:
         cls, _, constant = name.partition("_")
-        assert getattr(getattr(forces, cls), constant) == getattr(forces._forces, name)
+        assert getattr(getattr(forces, cls), constant) == getattr(_forces, name)
     assert len(made) > 200 and len(constants) > 20
 
 
