@@ -93,11 +93,6 @@ def plain(kind: str) -> str:
     return re.sub(r"\b(const|static|explicit)\b|&", "", kind).strip()
 
 
-def python_name(name: str) -> str:
-    """A class as Python calls it."""
-    return NAMES.get(name, name)
-
-
 def ignored() -> set[tuple[str, str]]:
     """What SWIG makes nothing of: class or "*", and function."""
     text = (ROOT / "python" / "forces.i").read_text(encoding="utf-8")
@@ -223,10 +218,11 @@ class Writer:
         given = [name for name in made.arguments if name != "triangles"]
         if self.base == "MembraneForce":
             passed = ["triangles", "offset", *(f"{name}={name}" for name in given)]
-            return [*lines, *call("start", ["self", *passed])]
+            return [*lines, f"        start(self, {', '.join(passed)})"]
         read = [self.read(name, made.arguments[name][0]) for name in given]
         passed = ["triangles", "offset", *read] if is_on_triangles else read
-        return [*lines, *call("make_on" if is_on_triangles else "make", ["self", *passed])]
+        function = "make_on" if is_on_triangles else "make"
+        return [*lines, f"        {function}(self, {', '.join(passed)})"]
 
     def read(self, name: str, kind: str) -> str:
         """An argument as C++ takes it."""
@@ -275,7 +271,8 @@ class Writer:
         lines += signature(function.name, shown, given)
         lines += docstring(text, 8)
         inner = f"_forces.{self.name}_{function.name}"
-        return [*lines, *call(inner, passed, "" if given == "None" else "return ")]
+        before = "" if given == "None" else "return "
+        return [*lines, f"        {before}{inner}({', '.join(passed)})"]
 
     def casts(self) -> list[str]:
         """What tells objects of OpenMM apart."""
@@ -285,19 +282,18 @@ class Writer:
             "",
             "    @staticmethod",
             *signature("isinstance", [taken], "bool"),
-            *docstring(f"Whether {'an' if kind == 'integrator' else 'a'} {kind} of OpenMM is of "
-                       "this class.", 8),
+            *docstring(f"Whether some {kind} of OpenMM is of this class.", 8),
             f"        return _forces.{self.name}_isinstance({kind})",
             "",
             "    @staticmethod",
             *signature("cast", [taken], self.name),
             *docstring(f"The same {kind} as an object of this class.", 8),
             f"        return own(_forces.{self.name}_cast({kind}), {kind})",
-        ]  # fmt: skip
+        ]
 
 
 def lower(word: str) -> str:
-    """With a small letter."""
+    """With a small letter at the beginning."""
     return word[0].lower() + word[1:]
 
 
@@ -321,11 +317,6 @@ def indented(words: str) -> list[str]:
 def signature(name: str, arguments: list[str], given: str) -> list[str]:
     """The head of a function; what is too long is wrapped at the end."""
     return [f"    def {name}({', '.join(arguments)}) -> {given}:"]
-
-
-def call(function: str, arguments: list[str], before: str = "") -> list[str]:
-    """A line that calls a function."""
-    return [f"        {before}{function}({', '.join(arguments)})"]
 
 
 def docstring(text: str, indent: int = 4) -> list[str]:
@@ -355,13 +346,13 @@ def classes() -> list[Writer]:
 
     def add(cpp: str) -> None:
         template, _, inner = cpp.partition("<")
-        if template not in known or python_name(cpp) in [writer.name for writer in found]:
+        if template not in known or NAMES.get(cpp, cpp) in [writer.name for writer in found]:
             return
         base = inner.rstrip(">") or known[template].base
         add(base)
         is_ours = base.partition("<")[0] in known
-        base = python_name(base) if is_ours else base.replace("OpenMM::", "openmm.")
-        found.append(Writer(known[template], python_name(cpp), base))
+        base = NAMES.get(base, base) if is_ours else base.replace("OpenMM::", "openmm.")
+        found.append(Writer(known[template], NAMES.get(cpp, cpp), base))
 
     for name in ("TriangulatedForce", "MonteCarloSurfaceMover", "MembraneForce"):
         add(name)
@@ -379,8 +370,8 @@ def snake(name: str) -> str:
 def texts() -> dict[Path, str]:
     """By file what is to be in it: one for each class, and the list of all."""
     writers = classes()
-    public = [w.name for w in writers if w.known.constructor]
-    public += ["MembraneForce", "TriangulatedForce"]
+    bases = ["MembraneForce", "TriangulatedForce"]
+    public = bases + [writer.name for writer in writers if writer.known.constructor]
     listed = [f"from .{snake(name)} import {name}" for name in public]
     names = "\n".join(f'    "{name}",' for name in sorted(public))
     files = {FOLDER / "__init__.py": "\n".join([INIT, *listed, "", f"__all__ = [\n{names}\n]"])}
@@ -394,12 +385,11 @@ def texts() -> dict[Path, str]:
 
 def formatted(path: Path, text: str) -> str:
     """A file without what it does not need of the head, as `make format` has it."""
-    ruff = [Path(sys.executable).parent / "ruff"]
+    ruff = Path(sys.executable).parent / "ruff"
+    piped = {"capture_output": True, "text": True, "check": True, "cwd": ROOT}
     for command in (["check", "-q", "--fix-only", "--select", "F401,I"], ["format", "-q"]):
-        words = [*ruff, *command, "--stdin-filename", str(path), "-"]
-        text = subprocess.run(
-            words, input=text, capture_output=True, text=True, check=True, cwd=ROOT
-        ).stdout
+        words = [ruff, *command, "--stdin-filename", path, "-"]
+        text = subprocess.run(words, input=text, **piped).stdout
     return text
 
 

@@ -80,7 +80,7 @@ class AreaDifferenceForce(MembraneForce):
 
     @staticmethod
     def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
+        """Whether some force of OpenMM is of this class."""
         return _forces.AreaDifferenceForce_isinstance(force)
 
     @staticmethod

@@ -181,7 +181,7 @@ class BendingForce(MembraneForce):
 
     @staticmethod
     def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
+        """Whether some force of OpenMM is of this class."""
         return _forces.BendingForce_isinstance(force)
 
     @staticmethod

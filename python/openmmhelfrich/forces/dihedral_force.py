@@ -140,7 +140,7 @@ class DihedralForce(MembraneForce):
 
     @staticmethod
     def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
+        """Whether some force of OpenMM is of this class."""
         return _forces.DihedralForce_isinstance(force)
 
     @staticmethod

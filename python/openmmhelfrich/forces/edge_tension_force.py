@@ -52,7 +52,7 @@ class EdgeTensionForce(MembraneForce):
 
     @staticmethod
     def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
+        """Whether some force of OpenMM is of this class."""
         return _forces.EdgeTensionForce_isinstance(force)
 
     @staticmethod

@@ -73,7 +73,7 @@ class EnclosedVolumeForce(MembraneForce):
 
     @staticmethod
     def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
+        """Whether some force of OpenMM is of this class."""
         return _forces.EnclosedVolumeForce_isinstance(force)
 
     @staticmethod

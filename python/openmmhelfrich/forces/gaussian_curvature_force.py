@@ -91,7 +91,7 @@ class GaussianCurvatureForce(MembraneForce):
 
     @staticmethod
     def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
+        """Whether some force of OpenMM is of this class."""
         return _forces.GaussianCurvatureForce_isinstance(force)
 
     @staticmethod

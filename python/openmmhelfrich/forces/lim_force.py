@@ -110,7 +110,7 @@ class LimForce(Reference, MembraneForce):
 
     @staticmethod
     def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
+        """Whether some force of OpenMM is of this class."""
         return _forces.LimForce_isinstance(force)
 
     @staticmethod

@@ -67,7 +67,7 @@ class LineTensionForce(Domains, MembraneForce):
 
     @staticmethod
     def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
+        """Whether some force of OpenMM is of this class."""
         return _forces.LineTensionForce_isinstance(force)
 
     @staticmethod

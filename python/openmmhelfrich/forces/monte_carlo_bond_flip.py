@@ -175,7 +175,7 @@ class MonteCarloBondFlip(Flips, _SurfaceMover):
 
     @staticmethod
     def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
+        """Whether some force of OpenMM is of this class."""
         return _forces.MonteCarloBondFlip_isinstance(force)
 
     @staticmethod

@@ -102,7 +102,7 @@ class MonteCarloDomainSwap(Swaps, _SurfaceMover):
 
     @staticmethod
     def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
+        """Whether some force of OpenMM is of this class."""
         return _forces.MonteCarloDomainSwap_isinstance(force)
 
     @staticmethod

@@ -226,7 +226,7 @@ class MonteCarloMembraneTension(Tension, _Mover):
 
     @staticmethod
     def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
+        """Whether some force of OpenMM is of this class."""
         return _forces.MonteCarloMembraneTension_isinstance(force)
 
     @staticmethod

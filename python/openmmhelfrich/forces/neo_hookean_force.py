@@ -88,7 +88,7 @@ class NeoHookeanForce(Reference, MembraneForce):
 
     @staticmethod
     def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
+        """Whether some force of OpenMM is of this class."""
         return _forces.NeoHookeanForce_isinstance(force)
 
     @staticmethod

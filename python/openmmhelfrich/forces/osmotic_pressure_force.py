@@ -102,7 +102,7 @@ class OsmoticPressureForce(MembraneForce):
 
     @staticmethod
     def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
+        """Whether some force of OpenMM is of this class."""
         return _forces.OsmoticPressureForce_isinstance(force)
 
     @staticmethod

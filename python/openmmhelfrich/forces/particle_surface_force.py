@@ -158,7 +158,7 @@ class ParticleSurfaceForce(Particles, MembraneForce):
 
     @staticmethod
     def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
+        """Whether some force of OpenMM is of this class."""
         return _forces.ParticleSurfaceForce_isinstance(force)
 
     @staticmethod

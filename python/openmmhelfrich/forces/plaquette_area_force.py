@@ -64,7 +64,7 @@ class PlaquetteAreaForce(MembraneForce):
 
     @staticmethod
     def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
+        """Whether some force of OpenMM is of this class."""
         return _forces.PlaquetteAreaForce_isinstance(force)
 
     @staticmethod

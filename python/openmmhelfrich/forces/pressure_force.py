@@ -60,7 +60,7 @@ class PressureForce(MembraneForce):
 
     @staticmethod
     def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
+        """Whether some force of OpenMM is of this class."""
         return _forces.PressureForce_isinstance(force)
 
     @staticmethod

@@ -111,7 +111,7 @@ class SpringForce(Reference, MembraneForce):
 
     @staticmethod
     def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
+        """Whether some force of OpenMM is of this class."""
         return _forces.SpringForce_isinstance(force)
 
     @staticmethod

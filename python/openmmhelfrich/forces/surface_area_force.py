@@ -63,7 +63,7 @@ class SurfaceAreaForce(MembraneForce):
 
     @staticmethod
     def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
+        """Whether some force of OpenMM is of this class."""
         return _forces.SurfaceAreaForce_isinstance(force)
 
     @staticmethod

@@ -92,7 +92,7 @@ class SurfaceRepulsionForce(MembraneForce):
 
     @staticmethod
     def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
+        """Whether some force of OpenMM is of this class."""
         return _forces.SurfaceRepulsionForce_isinstance(force)
 
     @staticmethod

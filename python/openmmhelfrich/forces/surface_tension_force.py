@@ -57,7 +57,7 @@ class SurfaceTensionForce(MembraneForce):
 
     @staticmethod
     def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
+        """Whether some force of OpenMM is of this class."""
         return _forces.SurfaceTensionForce_isinstance(force)
 
     @staticmethod

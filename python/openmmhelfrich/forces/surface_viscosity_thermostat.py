@@ -168,7 +168,7 @@ class SurfaceViscosityThermostat(Viscosity, _TriangulatedMover):
 
     @staticmethod
     def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
+        """Whether some force of OpenMM is of this class."""
         return _forces.SurfaceViscosityThermostat_isinstance(force)
 
     @staticmethod

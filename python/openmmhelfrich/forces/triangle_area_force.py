@@ -86,7 +86,7 @@ class TriangleAreaForce(MembraneForce):
 
     @staticmethod
     def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
+        """Whether some force of OpenMM is of this class."""
         return _forces.TriangleAreaForce_isinstance(force)
 
     @staticmethod

@@ -64,7 +64,7 @@ class TriangleAreaRepulsionForce(MembraneForce):
 
     @staticmethod
     def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
+        """Whether some force of OpenMM is of this class."""
         return _forces.TriangleAreaRepulsionForce_isinstance(force)
 
     @staticmethod

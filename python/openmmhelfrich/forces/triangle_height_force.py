@@ -63,7 +63,7 @@ class TriangleHeightForce(MembraneForce):
 
     @staticmethod
     def isinstance(force: openmm.Force) -> bool:
-        """Whether a force of OpenMM is of this class."""
+        """Whether some force of OpenMM is of this class."""
         return _forces.TriangleHeightForce_isinstance(force)
 
     @staticmethod

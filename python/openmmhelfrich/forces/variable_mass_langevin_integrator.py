@@ -86,7 +86,7 @@ class VariableMassLangevinIntegrator(VariableMassIntegrator):
 
     @staticmethod
     def isinstance(integrator: openmm.Integrator) -> bool:
-        """Whether an integrator of OpenMM is of this class."""
+        """Whether some integrator of OpenMM is of this class."""
         return _forces.VariableMassLangevinIntegrator_isinstance(integrator)
 
     @staticmethod

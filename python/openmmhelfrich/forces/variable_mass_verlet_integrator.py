@@ -66,7 +66,7 @@ class VariableMassVerletIntegrator(VariableMassIntegrator):
 
     @staticmethod
     def isinstance(integrator: openmm.Integrator) -> bool:
-        """Whether an integrator of OpenMM is of this class."""
+        """Whether some integrator of OpenMM is of this class."""
         return _forces.VariableMassVerletIntegrator_isinstance(integrator)
 
     @staticmethod
