@@ -84,7 +84,6 @@ GIVEN = TYPES | {
     "void": "None",
     "std::vector<double>": "tuple[float, ...]",
 }
-#: The setter of values for each triangle is called by many: setTriangleTargets.
 SETTER_OF_ELEMENTS = re.compile(r"set(?:(?:Vertex|Particle|Edge)(\w+)|Triangle(\w+)s)$")
 
 
@@ -270,9 +269,8 @@ class Writer:
         lines = ["", *(["    @staticmethod"] if function.is_static else [])]
         lines += signature(function.name, shown, given)
         lines += docstring(text, 8)
-        inner = f"_forces.{self.name}_{function.name}"
-        before = "" if given == "None" else "return "
-        return [*lines, f"        {before}{inner}({', '.join(passed)})"]
+        inner = ("" if given == "None" else "return ") + f"_forces.{self.name}_{function.name}"
+        return [*lines, f"        {inner}({', '.join(passed)})"]
 
     def casts(self) -> list[str]:
         """What tells objects of OpenMM apart."""
