@@ -5,6 +5,7 @@ from __future__ import annotations
 import zlib
 from functools import cache, partial
 
+import meshio
 import numpy as np
 from doors import Door, Wrong, attempt, folder
 from mutations import binary, text
@@ -130,7 +131,12 @@ def _mshs() -> list[bytes]:
         "{} 3 2 0 1 {} {} {} {}".format(k, *(corner + 1 for corner in face))
         for k, face in enumerate(_SQUARES, start=2)
     ]
-    return ["\n".join([*rows, "$EndElements", ""]).encode()]
+    found = ["\n".join([*rows, "$EndElements", ""]).encode()]
+    made = meshio.Mesh(_meshes()[0].vertices, [("triangle", _meshes()[0].triangles)])
+    for is_binary in (True, False):
+        made.write(folder() / "ansys.msh", file_format="ansys", binary=is_binary)
+        found.append((folder() / "ansys.msh").read_bytes())
+    return found
 
 
 _MORE = {

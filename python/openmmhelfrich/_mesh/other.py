@@ -57,9 +57,8 @@ def read_meshio(source: Source) -> tuple[Array, Array]:
     """
     if _is_gmsh(source):
         _check_nodes(source)
-    elif source.path.suffix.lower() == ".msh":
-        # meshio would take it for one of Ansys, and does not come to an end where that is cut off.
-        raise source.error("does not begin with $MeshFormat, as files of Gmsh do")
+    elif source.path.suffix.lower() == ".msh" and not _is_ansys(source):
+        raise source.error("begins neither with $MeshFormat, as files of Gmsh do, nor with '('")
     mesh = _load(source)
     source.by_line = False
     faces: list[Any] = []
@@ -136,6 +135,30 @@ def _is_gmsh(source: Source) -> bool:
     return source.data.startswith((b"$MeshFormat", b"$Comments"))
 
 
+def _is_ansys(source: Source) -> bool:
+    return source.path.suffix.lower() == ".msh" and source.data.lstrip().startswith(b"(")
+
+
+class _Ending(io.BufferedReader):
+    """A file that says so where it has come to its end, where meshio's reader of Ansys reads on."""
+
+    ended = False
+
+    def read(self, size: int | None = -1) -> bytes:
+        data = super().read(size)
+        if not data and size:
+            raise EOFError("a bracket is not closed")
+        return data
+
+    def readline(self, size: int | None = -1) -> bytes:
+        line = super().readline(size)
+        # An empty line ends the file, once.
+        if not line and self.ended:
+            raise EOFError("a section is not complete")
+        self.ended = not line
+        return line
+
+
 def _check_nodes(source: Source) -> None:
     """Refuse a Gmsh file that counts more nodes than it has, or gives one an enormous number.
 
@@ -188,9 +211,10 @@ def _largest_number(data: bytes, begin: int, count: int) -> int:
 def _load(source: Source):
     """The file as meshio's mesh; any failure becomes a MeshError, with the line if it is known."""
     import meshio
+    from meshio.ansys import read as read_ansys
     from meshio.gmsh.main import read_buffer as read_gmsh
 
-    is_gmsh = _is_gmsh(source)
+    is_gmsh, is_ansys = _is_gmsh(source), _is_ansys(source)
     printed = io.StringIO()
     # An open file, rather than a path, tells afterwards how far meshio came; numpy's reader needs
     # a real one, and this one begins without a byte-order mark.
@@ -205,7 +229,11 @@ def _load(source: Source):
         warnings.filterwarnings("error", message="string or file could not be read")
         try:
             with contextlib.redirect_stdout(printed):
-                return read_gmsh(file) if is_gmsh else meshio.read(source.path)
+                if is_gmsh:
+                    return read_gmsh(file)
+                if is_ansys:
+                    return read_ansys(_Ending(file.raw))
+                return meshio.read(source.path)
         # meshio ends the process when no reader fits, and broken data can raise anything.
         except (Exception, SystemExit) as reason:
             where = str(source.path)
