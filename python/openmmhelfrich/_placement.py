@@ -32,7 +32,7 @@ class Placement:
     """Where one vesicle is in a System, and the forces that act on it."""
 
     system: openmm.System
-    """The System; kept here because the forces live as long as it does."""
+    """The System."""
     offset: int
     """Index of the particle that is vertex 0."""
     num_vertices: int
@@ -43,6 +43,12 @@ class Placement:
     """What flips bonds, if anything does."""
     viscosity: SurfaceViscosityThermostat | None = None
     """What makes the membrane viscous, if anything does."""
+
+    def __post_init__(self) -> None:
+        # The forces live as long as their System, so whoever holds one holds that too.
+        for force in (*self.forces.values(), self.flips, self.viscosity):
+            if force is not None:
+                force._system = self.system
 
     @property
     def area(self) -> SurfaceAreaForce:

@@ -73,6 +73,8 @@ def pull(system: openmm.System, particles: ArrayLike, force: Values) -> openmm.C
     made.setForceGroup(next(free, NUM_GROUPS - 1))
     made.setName("pull")
     system.addForce(made)
+    # It lives as long as the System, so whoever holds it holds that too.
+    made._system = system
     return made
 
 

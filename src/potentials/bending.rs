@@ -86,10 +86,12 @@ impl Potential for Bending {
             needs |= Needs::CURVATURES;
         }
         if area == Area::Voronoi {
-            needs |= Needs::VECTORS;
+            needs |= Needs::VECTORS | Needs::VORONOI_AREAS;
         }
-        if numerator != Numerator::Julicher {
-            needs |= Needs::VECTORS | Needs::CURVATURE_VECTORS;
+        match numerator {
+            Numerator::Julicher => {}
+            Numerator::Cotangent => needs |= Needs::VECTORS | Needs::COTANGENTS,
+            Numerator::Umbrella => needs |= Needs::VECTORS | Needs::UMBRELLAS,
         }
         let signed = term.switches & UNSIGNED == 0;
         if numerator != Numerator::Julicher && signed {
@@ -148,10 +150,13 @@ struct Curvature<const NUMERATOR: u8, const VORONOI: bool> {
 }
 
 impl<const NUMERATOR: u8, const VORONOI: bool> VertexFormula for Curvature<NUMERATOR, VORONOI> {
-    const USES: Needs = match (Self::IS_SCALAR, VORONOI) {
-        (true, false) => Needs::CURVATURES,
-        (true, true) => Needs::CURVATURES.union(Needs::VECTORS),
-        (false, _) => Needs::VECTORS.union(Needs::CURVATURE_VECTORS).union(Needs::NORMALS),
+    const USES: Needs = {
+        let area = if VORONOI { Needs::VORONOI_AREAS } else { Needs::empty() };
+        area.union(match NUMERATOR {
+            _ if Self::IS_SCALAR => Needs::CURVATURES,
+            _ if Self::IS_COTANGENT => Needs::COTANGENTS.union(Needs::NORMALS),
+            _ => Needs::UMBRELLAS.union(Needs::NORMALS),
+        })
     };
 
     #[inline(always)]
@@ -180,10 +185,11 @@ impl<const NUMERATOR: u8, const VORONOI: bool> VertexFormula for Curvature<NUMER
 
 impl<const NUMERATOR: u8, const VORONOI: bool> Curvature<NUMERATOR, VORONOI> {
     const IS_SCALAR: bool = NUMERATOR == Numerator::Julicher as u8;
+    const IS_COTANGENT: bool = NUMERATOR == Numerator::Cotangent as u8;
 
     #[inline(always)]
     fn vector<R: Real>(vertex: &Vertex<R>) -> [R; 3] {
-        if NUMERATOR == Numerator::Cotangent as u8 { vertex.cotangent } else { vertex.umbrella }
+        if Self::IS_COTANGENT { vertex.cotangent } else { vertex.umbrella }
     }
 
     /// c² and the linear term: c or |c|, n·c or |c|.
@@ -244,8 +250,8 @@ impl<const NUMERATOR: u8, const VORONOI: bool> Curvature<NUMERATOR, VORONOI> {
                 partials.normal_sum = plus_scaled(partials.normal_sum, by_linear * inverse, across);
             }
         }
-        let cotangent = NUMERATOR == Numerator::Cotangent as u8;
-        let slot = if cotangent { &mut partials.cotangent } else { &mut partials.umbrella };
+        let slot =
+            if Self::IS_COTANGENT { &mut partials.cotangent } else { &mut partials.umbrella };
         *slot = plus(*slot, partial);
     }
 }

@@ -27,18 +27,22 @@ bitflags! {
         const VERTICES = 8;
         /// Wants Jülicher's curvature of the vertices.
         const CURVATURES = 16;
-        /// Wants the Voronoi areas of the vertices.
+        /// Wants Voronoi areas or vectors of the vertices, and some of the next four of them.
         const VECTORS = 32;
-        /// Wants the normals of the vertices, too.
+        /// Wants the normals of the vertices.
         const NORMALS = 64;
-        /// Wants the curvature vectors of the vertices, too.
-        const CURVATURE_VECTORS = 128;
+        /// Wants the curvature vectors of Gompper and Kroll.
+        const COTANGENTS = 128;
         /// Adds energy of the borders' length and turning.
         const BORDERS = 256;
         /// Adds energy of pairs that are near each other in space; `src/contact/` looks after them.
         const CONTACTS = 512;
         /// Wants the total of the curvatures of the vertices, too.
         const MEAN_CURVATURE = 1024;
+        /// Wants the curvature vectors of Espriu.
+        const UMBRELLAS = 2048;
+        /// Wants the Voronoi areas of the vertices.
+        const VORONOI_AREAS = 4096;
     }
 }
 

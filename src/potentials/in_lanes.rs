@@ -40,11 +40,14 @@ impl VertexColumns {
         let clear = |column: &mut Column| column.0[..count.next_multiple_of(BLOCK)].fill(0.0);
         clear(&mut self.area);
         clear(&mut self.curvature);
-        if needs.contains(Needs::VECTORS) {
+        if needs.contains(Needs::VORONOI_AREAS) {
             clear(&mut self.voronoi_area);
         }
-        if needs.contains(Needs::CURVATURE_VECTORS) {
-            self.cotangent.iter_mut().chain(&mut self.umbrella).for_each(clear);
+        if needs.contains(Needs::COTANGENTS) {
+            self.cotangent.iter_mut().for_each(clear);
+        }
+        if needs.contains(Needs::UMBRELLAS) {
+            self.umbrella.iter_mut().for_each(clear);
         }
         if needs.contains(Needs::NORMALS) {
             self.normal_sum.iter_mut().for_each(clear);
@@ -66,11 +69,13 @@ impl VertexColumns {
         if F::USES.contains(Needs::CURVATURES) {
             vertex.curvature = self.curvature.load(simd, index);
         }
-        if F::USES.contains(Needs::VECTORS) {
+        if F::USES.contains(Needs::VORONOI_AREAS) {
             vertex.voronoi_area = self.voronoi_area.load(simd, index);
         }
-        if F::USES.contains(Needs::CURVATURE_VECTORS) {
+        if F::USES.contains(Needs::COTANGENTS) {
             vertex.cotangent = load3(simd, &self.cotangent, index);
+        }
+        if F::USES.contains(Needs::UMBRELLAS) {
             vertex.umbrella = load3(simd, &self.umbrella, index);
         }
         if F::USES.contains(Needs::NORMALS) {
@@ -85,12 +90,14 @@ impl VertexColumns {
         if F::USES.contains(Needs::CURVATURES) {
             self.curvature.store(index, vertex.curvature);
         }
-        if F::USES.contains(Needs::VECTORS) {
+        if F::USES.contains(Needs::VORONOI_AREAS) {
             self.voronoi_area.store(index, vertex.voronoi_area);
         }
         for k in 0..3 {
-            if F::USES.contains(Needs::CURVATURE_VECTORS) {
+            if F::USES.contains(Needs::COTANGENTS) {
                 self.cotangent[k].store(index, vertex.cotangent[k]);
+            }
+            if F::USES.contains(Needs::UMBRELLAS) {
                 self.umbrella[k].store(index, vertex.umbrella[k]);
             }
             if F::USES.contains(Needs::NORMALS) {

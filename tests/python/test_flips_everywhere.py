@@ -167,7 +167,8 @@ class TestToml:
 
     def test_seed_and_temperature_are_the_runs(self, tmp_path):
         cfg = helfrich.config.read(toml(tmp_path, "{ frequency = 5, max_degree = 9 }"))
-        forces = cfg.system().getForces()
+        system = cfg.system()
+        forces = system.getForces()
         (mover,) = (MonteCarloBondFlip.cast(f) for f in forces if MonteCarloBondFlip.isinstance(f))
         assert (mover.getFrequency(), mover.getMaxDegree()) == (5, 9)
         assert (mover.getRandomNumberSeed(), mover.getDefaultTemperature()) == (3, 300)

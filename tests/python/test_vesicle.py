@@ -1,8 +1,10 @@
 """The whole vesicle: the paper's numbers, several in one System, units, bad input, files."""
 
 import copy
+import gc
 import subprocess
 import sys
+import weakref
 from pathlib import Path
 
 import numpy as np
@@ -38,6 +40,23 @@ def context_of(system, positions):
     context = openmm.Context(system, integrator, openmm.Platform.getPlatformByName("Reference"))
     context.setPositions(positions)
     return context
+
+
+def test_who_holds_a_force_holds_its_system(mesh):
+    """Forces are deleted with their System, which nobody else may hold."""
+    system = openmm.System()
+    placement = Vesicle(mesh, flips={"frequency": 7}).add_to(system)
+    forces = [*placement.forces.values(), placement.flips]
+    forces.append(helfrich.pull(system, [0], (1, 0, 0)))
+    alive = weakref.ref(system)
+    del system, placement
+    gc.collect()
+    assert alive() is not None
+    assert forces[-2].getFrequency() == 7
+    assert forces[-1].getNumParticles() == 1
+    del forces
+    gc.collect()
+    assert alive() is None
 
 
 def total_energy(context):

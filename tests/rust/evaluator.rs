@@ -141,6 +141,55 @@ fn bits_do_not_depend_on_the_number_of_threads() {
     }
 }
 
+/// Small meshes share the memory of their thread. Each evaluation must have the bits of one on a thread where nothing
+/// has been before, whoever came before it, on whichever thread.
+#[test]
+fn meshes_that_share_memory_do_not_disturb_each_other() {
+    let mut noise = random(11);
+    let mut meshes = vec![
+        spheroid(6, 9, &mut noise),
+        spheroid(20, 31, &mut noise),
+        spheroid(6, 9, &mut noise),
+        spheroid(9, 6, &mut noise),
+    ];
+    meshes.extend(open_meshes(3).into_iter().take(3));
+    let terms: Vec<_> = meshes
+        .iter()
+        .enumerate()
+        .map(|(k, mesh)| if k < 4 { terms_on(mesh, true) } else { open_terms(mesh, true) })
+        .map(|mut terms| {
+            // Heights so small that no triangle is pushed: zeros that follow zeros are not written.
+            terms.push(Term::new("TriangleHeightForce", 0, &[20.0, 1e-6]).unwrap());
+            terms
+        })
+        .collect();
+    let mut evaluators: Vec<_> = meshes.iter().map(evaluator).collect();
+    let mut k = 0;
+    for turn in 0..600 {
+        let mut draw = |below: usize| ((0.5 + 0.4999 * noise()) * below as f64) as usize;
+        // Some stay for several evaluations.
+        if draw(3) == 0 {
+            k = draw(meshes.len());
+        }
+        let (mesh, known) = (&meshes[k], &mut evaluators[k]);
+        let chosen: Vec<_> = match draw(3) {
+            0 => vec![*terms[k].last().unwrap()],
+            _ => terms[k].iter().filter(|_| draw(8) == 0).copied().collect(),
+        };
+        let elsewhere = draw(3) == 0;
+        let fresh = || evaluate(&mut evaluator(mesh), &chosen, &mesh.0);
+        let expected = std::thread::scope(|scope| scope.spawn(fresh).join()).unwrap();
+        let found = if elsewhere {
+            std::thread::scope(|scope| scope.spawn(|| evaluate(known, &chosen, &mesh.0)).join())
+                .unwrap()
+        } else {
+            evaluate(known, &chosen, &mesh.0)
+        };
+        let names: Vec<_> = chosen.iter().map(|term| term.potential.name()).collect();
+        assert!(found == expected, "{turn}: mesh {k}, {names:?}");
+    }
+}
+
 #[test]
 fn every_instruction_set_agrees_with_the_reference() {
     let two = beside(spheroid(5, 7, &mut random(8)), spheroid(9, 11, &mut random(9)));

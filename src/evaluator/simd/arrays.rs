@@ -1,7 +1,7 @@
 //! What the passes leave for each other.
 
-use super::layout::Layout;
 use std::cell::UnsafeCell;
+use std::ops::Range;
 
 /// Two cache lines, since processors fetch lines in pairs.
 #[derive(Clone, Copy)]
@@ -42,53 +42,47 @@ impl Numbers {
             }
         }
     }
+
+    /// Set some to 0, as far as they exist.
+    pub fn clear(&mut self, range: Range<usize>) {
+        let range = range.start..range.end.min(self.count);
+        // SAFETY: `&mut self`, and the numbers are within.
+        range.for_each(|index| unsafe { *self.at(index) = 0.0 });
+    }
 }
 
-/// All of them. Records of vertices and triangles are in the order of the [`Layout`].
+impl Default for Numbers {
+    fn default() -> Self {
+        Self::new(0)
+    }
+}
+
+/// All of them, empty until needed. Records of vertices and triangles are in the order of the [`Layout`].
+#[derive(Default)]
 pub struct Arrays {
     /// x, y, z and nothing, relative to the first vertex, nm.
     pub positions: Numbers,
     /// Unit normal and |N| of each triangle, and of the one that does not exist: zeros.
     pub normals: Numbers,
     /// Tensions along sides 2, 0, 1 and 2 again of each triangle, from potentials of triangles, kJ/mol/nm²;
-    /// so the sides that meet at corner k are at k and k + 1. Empty until needed.
+    /// so the sides that meet at corner k are at k and k + 1.
     pub tensions: Numbers,
-    /// Angles at corners 0, 1, 2 of each triangle, and nothing; empty until needed.
+    /// Angles at corners 0, 1, 2 of each triangle, and nothing.
     pub angles: Numbers,
     /// The same beginning with corner 1.
     pub next_angles: Numbers,
     /// φ / l for each step and lane.
     pub bends: Numbers,
-    /// l² for each step and lane; empty until needed.
+    /// l² for each step and lane.
     pub lengths_squared: Numbers,
-    /// Bending moments per length for each step and lane, from potentials of angles; empty until needed.
+    /// Bending moments per length for each step and lane, from potentials of angles.
     pub moments: Numbers,
     /// ½ ∂E/∂J and ⅙ ∂E/∂a_B of each vertex, so that the last pass need not multiply.
     pub partials: Numbers,
-    /// ∂E/∂S and ∂E/∂a_V of each vertex; empty until needed.
+    /// ½ ∂E/∂S and ⅛ ∂E/∂a_V of each vertex.
     pub vector_partials: Numbers,
-    /// ∂E/∂U, with Espriu's vector U, and nothing; empty until needed.
+    /// ∂E/∂U, with Espriu's vector U, and nothing.
     pub umbrella_partials: Numbers,
-    /// ∂E/∂(sum of normals), and nothing; empty until needed.
+    /// ∂E/∂(sum of normals), and nothing.
     pub normal_partials: Numbers,
-}
-
-impl Arrays {
-    /// For a mesh.
-    pub fn new(layout: &Layout) -> Self {
-        Self {
-            positions: Numbers::new(4 * layout.places_of_vertices()),
-            normals: Numbers::new(4 * (layout.triangle_ids.len() + 1)),
-            tensions: Numbers::new(0),
-            angles: Numbers::new(0),
-            next_angles: Numbers::new(0),
-            bends: Numbers::new(0),
-            lengths_squared: Numbers::new(0),
-            moments: Numbers::new(0),
-            partials: Numbers::new(2 * layout.places_of_vertices()),
-            vector_partials: Numbers::new(0),
-            umbrella_partials: Numbers::new(0),
-            normal_partials: Numbers::new(0),
-        }
-    }
 }

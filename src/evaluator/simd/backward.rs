@@ -1,7 +1,7 @@
 //! The last pass: round the rings again, from partials to forces.
 
 use super::arrays::Arrays;
-use super::forward::{CONSECUTIVE, NORMALS, VECTORS, VORONOI};
+use super::forward::{CONSECUTIVE, COTANGENTS, NORMALS, UMBRELLAS, VORONOI};
 use super::layout::Layout;
 use crate::lanes::{BLOCK, Records};
 use crate::lanes::{Lane, WithLanes};
@@ -18,8 +18,9 @@ pub struct Forces(pub *mut f64);
 unsafe impl Sync for Forces {}
 
 /// Forces on a tile of vertices: with `BENDS` those of Jülicher's curvature, with `MOMENTS` those of
-/// dihedral angles, with `TENSIONS` those of triangles' areas and sides, with `LEVEL` those of [`VORONOI`]
-/// areas, [`VECTORS`] and [`NORMALS`]; those of the total area and volume and of vertex areas in any case.
+/// dihedral angles, with `TENSIONS` those of triangles' areas and sides, with `VECTORS` the sum of those of
+/// [`VORONOI`] areas, [`COTANGENTS`], [`UMBRELLAS`] and [`NORMALS`]; those of the total area and volume and of
+/// vertex areas in any case.
 ///
 /// The force on vertex i is Σ_k [ T_k (r_k − r_i) − p_k N_k ] over its ring, with tensions T along edges and
 /// pressures p of triangles as in [`crate::mesh::geometry::corner_forces`], which is this formula by triangle.
@@ -30,7 +31,7 @@ pub struct Backward<
     const BENDS: bool,
     const MOMENTS: bool,
     const TENSIONS: bool,
-    const LEVEL: u8,
+    const VECTORS: u8,
 > {
     pub layout: &'a Layout,
     pub arrays: &'a Arrays,
@@ -48,15 +49,15 @@ struct Arm<S: Records> {
     /// ½ ∂E/∂J and ⅙ ∂E/∂a_B of the neighbour.
     by_curvature: Lane<S>,
     by_area: Lane<S>,
-    /// ∂E/∂S_i − ∂E/∂S_j.
+    /// ½ (∂E/∂S_i − ∂E/∂S_j).
     g: [Lane<S>; 3],
-    /// ∂E/∂a_V of both, added.
+    /// ⅛ ∂E/∂a_V of both, added.
     voronoi: Lane<S>,
     /// ∂E/∂U_j.
     umbrella: [Lane<S>; 3],
     /// ∂E/∂(sum of normals) of the neighbour.
     normal: [Lane<S>; 3],
-    /// ½ (g_i − g_j)·(r_i − r_j) + ⅛ (v_i + v_j) l², what the edge's cotangents are multiplied with.
+    /// g·(r_i − r_j) + ⅛ (v_i + v_j) l², what the edge's cotangents are multiplied with.
     by_cotangent: Lane<S>,
 }
 
@@ -69,8 +70,8 @@ struct Centre<S: Records> {
     normal: [Lane<S>; 3],
 }
 
-impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: u8>
-    Backward<'_, BENDS, MOMENTS, TENSIONS, LEVEL>
+impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const VECTORS: u8>
+    Backward<'_, BENDS, MOMENTS, TENSIONS, VECTORS>
 {
     /// # Safety
     /// `first` is the first lane of a register within the vertices.
@@ -87,14 +88,14 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: 
                 umbrella: [zero; 3],
                 normal: [zero; 3],
             };
-            if LEVEL >= VORONOI {
+            if VECTORS & (VORONOI | COTANGENTS) != 0 {
                 centre.vector = Lane::gather4(simd, arrays.vector_partials.at(4 * first), offsets);
             }
-            if LEVEL >= VECTORS {
+            if VECTORS & UMBRELLAS != 0 {
                 centre.umbrella =
                     Lane::gather3(simd, arrays.umbrella_partials.at(4 * first), offsets);
             }
-            if LEVEL >= NORMALS {
+            if VECTORS & NORMALS != 0 {
                 centre.normal = Lane::gather3(simd, arrays.normal_partials.at(4 * first), offsets);
             }
             centre
@@ -122,18 +123,24 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: 
                 normal: [zero; 3],
                 by_cotangent: zero,
             };
-            if LEVEL >= VORONOI {
+            if VECTORS & (VORONOI | COTANGENTS) != 0 {
                 let [x, y, z, voronoi] = Lane::gather4(simd, arrays.vector_partials.at(0), offsets);
                 let [gx, gy, gz, own] = centre.vector;
-                arm.voronoi = own + voronoi;
-                arm.by_cotangent = (arm.voronoi * length_squared) * 0.125;
-                if LEVEL >= VECTORS {
+                if VECTORS & VORONOI != 0 {
+                    arm.voronoi = own + voronoi;
+                    arm.by_cotangent = arm.voronoi * length_squared;
+                }
+                if VECTORS & COTANGENTS != 0 {
                     arm.g = minus([gx, gy, gz], [x, y, z]);
-                    arm.umbrella = Lane::gather3(simd, arrays.umbrella_partials.at(0), offsets);
-                    arm.by_cotangent = dot(arm.g, e).neg_mul_add(zero.of(0.5), arm.by_cotangent);
+                    for k in 0..3 {
+                        arm.by_cotangent = arm.g[k].neg_mul_add(e[k], arm.by_cotangent);
+                    }
                 }
             }
-            if LEVEL >= NORMALS {
+            if VECTORS & UMBRELLAS != 0 {
+                arm.umbrella = Lane::gather3(simd, arrays.umbrella_partials.at(0), offsets);
+            }
+            if VECTORS & NORMALS != 0 {
                 arm.normal = Lane::gather3(simd, arrays.normal_partials.at(0), offsets);
             }
             arm
@@ -152,8 +159,8 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: 
     }
 }
 
-impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: u8> WithLanes
-    for Backward<'_, BENDS, MOMENTS, TENSIONS, LEVEL>
+impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const VECTORS: u8> WithLanes
+    for Backward<'_, BENDS, MOMENTS, TENSIONS, VECTORS>
 {
     type Output = ();
 
@@ -174,9 +181,10 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: 
             let places = layout.places.as_ptr().cast::<u32>().wrapping_add(lane);
             let [own_curvature, own_area] = centre.partials;
             let constant_area = own_area + by_total_area;
+            let twice_voronoi = centre.vector[3] + centre.vector[3];
             let mut force = [zero; 3];
-            // The tension along the present arm from the triangle before it.
-            let mut tension = zero;
+            // The tension along the present arm from the triangle before it, and the cotangent there.
+            let (mut tension, mut cotangent) = (zero, zero);
             let mut arm = unsafe { self.arm(simd, neighbours.add(BLOCK * steps.start), &centre) };
             let mut own_moment = if MOMENTS {
                 unsafe { self.moment(&centre, &arm, steps.start * BLOCK + lane) }
@@ -207,40 +215,47 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: 
                     along = along + after;
                     along_next = before;
                 }
+                // Tensions that are yet to be divided by |N|.
+                let mut sides = [zero; 2];
                 let mut pressure = by_volume * twice_area;
-                if LEVEL >= VORONOI {
-                    // The side opposite the vertex, from this arm's end to the next.
-                    let side_squared = at_end + at_next;
-                    let voronoi =
-                        (arm.voronoi - centre.vector[3]) + (next.voronoi - centre.vector[3]);
-                    let mut facing = voronoi * side_squared * 0.125;
-                    if LEVEL >= VECTORS {
-                        let apart = dot(minus(next.g, arm.g), minus(arm.e, next.e));
-                        facing = apart.mul_add(zero.of(0.5), facing);
+                if VECTORS & (VORONOI | COTANGENTS) != 0 {
+                    // Of the side opposite the vertex, from this arm's end to the next.
+                    let mut facing = zero;
+                    if VECTORS & VORONOI != 0 {
+                        facing = (arm.voronoi + next.voronoi - twice_voronoi) * (at_end + at_next);
                     }
-                    let (cot_end, cot_next) = (at_end * inverse, at_next * inverse);
+                    if VECTORS & COTANGENTS != 0 {
+                        let (apart, side) = (minus(next.g, arm.g), minus(arm.e, next.e));
+                        for k in 0..3 {
+                            facing = apart[k].mul_add(side[k], facing);
+                        }
+                    }
                     // The cotangents' own derivatives, with respect to the sides and to the area.
                     let (here, there) = (arm.by_cotangent, next.by_cotangent);
-                    along = inverse.mul_add(facing + there - here, along);
-                    along_next = inverse.mul_add(here + facing - there, along_next);
                     let weighted = here.mul_add(at_next, there.mul_add(at_end, facing * at_centre));
                     by_area = (inverse * inverse).neg_mul_add(weighted, by_area);
-                    // The explicit squared sides of Voronoi's area.
-                    along = (arm.voronoi * 0.25).mul_add(cot_next, along);
-                    along_next = (next.voronoi * 0.25).mul_add(cot_end, along_next);
-                    if LEVEL >= VECTORS {
+                    sides = [facing + there - here, here + facing - there];
+                    if VECTORS & VORONOI != 0 {
+                        // The explicit squared sides of Voronoi's area.
+                        sides[0] = (arm.voronoi + arm.voronoi).mul_add(at_next, sides[0]);
+                        sides[1] = (next.voronoi + next.voronoi).mul_add(at_end, sides[1]);
+                    }
+                    if VECTORS & COTANGENTS != 0 {
                         // The explicit r_i − r_j of the vectors.
-                        force = plus_scaled(force, cot_next * -0.5, arm.g);
-                        force = plus_scaled(force, cot_end * -0.5, next.g);
-                        let share = zero.of(-0.5 * COT_60).or_else(exists, zero);
-                        let umbrella = plus(
-                            minus(centre.umbrella, arm.umbrella),
-                            minus(centre.umbrella, next.umbrella),
-                        );
-                        force = plus_scaled(force, share, umbrella);
+                        cotangent = at_next.mul_add(inverse, cotangent);
+                        force = minus_scaled(force, cotangent, arm.g);
+                        cotangent = at_end * inverse;
                     }
                 }
-                if LEVEL >= NORMALS {
+                if VECTORS & UMBRELLAS != 0 {
+                    let share = zero.of(-0.5 * COT_60).or_else(exists, zero);
+                    let umbrella = plus(
+                        minus(centre.umbrella, arm.umbrella),
+                        minus(centre.umbrella, next.umbrella),
+                    );
+                    force = plus_scaled(force, share, umbrella);
+                }
+                if VECTORS & NORMALS != 0 {
                     let n = [nx, ny, nz];
                     // From the side itself, for it may be much shorter than the arms.
                     let side = minus(next.e, arm.e);
@@ -273,9 +288,14 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: 
                     let torque = dot(n, cross(minus(arm.e, next.e), weighted));
                     pressure = inverse.mul_add(torque, pressure);
                 }
-                let stress = by_area * inverse;
-                along = stress.mul_add(at_next, along);
-                along_next = stress.mul_add(at_end, along_next);
+                if VECTORS & (VORONOI | COTANGENTS) != 0 {
+                    along = by_area.mul_add(at_next, sides[0]).mul_add(inverse, along);
+                    along_next = by_area.mul_add(at_end, sides[1]).mul_add(inverse, along_next);
+                } else {
+                    let stress = by_area * inverse;
+                    along = stress.mul_add(at_next, along);
+                    along_next = stress.mul_add(at_end, along_next);
+                }
 
                 // Past the end of a ring the moments repeat the first.
                 let next_moment = if MOMENTS {
@@ -310,6 +330,9 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const LEVEL: 
                 own_moment = next_moment;
             }
             force = plus_scaled(force, tension, arm.e);
+            if VECTORS & COTANGENTS != 0 {
+                force = minus_scaled(force, cotangent, arm.g);
+            }
             let last = vertices.end.min(first + Lane::<S>::COUNT);
             // SAFETY: the particles of a tile are no other tile's, and the caller runs it once.
             unsafe { self.forces.add(&layout.particles[first..last], force) };

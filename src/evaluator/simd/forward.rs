@@ -9,20 +9,22 @@ use crate::lanes::{BLOCK, Records};
 use crate::lanes::{Lane, WithLanes};
 use crate::mesh::geometry::{Vec3, arctan_over_argument};
 use crate::mesh::vertex_vectors::COT_60;
-use crate::real::{Real, cross, dot, minus, plus, plus_scaled};
+use crate::real::{Real, cross, dot, minus, plus, plus_scaled, scaled};
 
 /// Voronoi areas.
 pub const VORONOI: u8 = 1;
-/// Voronoi areas and the vectors of Gompper and Kroll and of Espriu.
-pub const VECTORS: u8 = 2;
-/// All that and normals.
-pub const NORMALS: u8 = 3;
+/// The curvature vectors of Gompper and Kroll.
+pub const COTANGENTS: u8 = 2;
+/// Those of Espriu.
+pub const UMBRELLAS: u8 = 4;
+/// Normals.
+pub const NORMALS: u8 = 8;
 
-/// Areas and curvatures of a tile of vertices: with `BENDS` the dihedral angles of the edges and
-/// Jülicher's curvature, with `LEVEL` above 0 [`VORONOI`] areas, [`VECTORS`] and [`NORMALS`].
+/// Areas and curvatures of a tile of vertices: with `BENDS` the dihedral angles of the edges and Jülicher's
+/// curvature, with `VECTORS` the sum of those of [`VORONOI`], [`COTANGENTS`], [`UMBRELLAS`] and [`NORMALS`].
 ///
 /// Reads positions, normals and angles; writes bends and lengths of the tile's steps, as the only one.
-pub struct Forward<'a, const BENDS: bool, const LEVEL: u8> {
+pub struct Forward<'a, const BENDS: bool, const VECTORS: u8> {
     pub layout: &'a Layout,
     pub arrays: &'a Arrays,
     pub index: usize,
@@ -37,7 +39,7 @@ pub static CONSECUTIVE: [u32; BLOCK] = [0, 4, 8, 12, 16, 20, 24, 28];
 /// cos 45°: up to there the angle is a polynomial in the tangent of its half.
 const POLYNOMIAL_LIMIT: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-impl<const BENDS: bool, const LEVEL: u8> WithLanes for Forward<'_, BENDS, LEVEL> {
+impl<const BENDS: bool, const VECTORS: u8> WithLanes for Forward<'_, BENDS, VECTORS> {
     type Output = ();
 
     #[inline(always)]
@@ -100,7 +102,7 @@ impl<const BENDS: bool, const LEVEL: u8> WithLanes for Forward<'_, BENDS, LEVEL>
                     minus(Lane::gather3(simd, positions, neighbours.add(BLOCK * (step + 1))), here)
                 };
                 let next_squared = dot(next, next);
-                if LEVEL >= VORONOI {
+                if VECTORS & VORONOI != 0 {
                     let inverse = (zero.of(1.0) / twice_area).or_else(exists, zero);
                     let product = dot(e, next);
                     // Each side's square times the scalar product at the far end of the other.
@@ -108,12 +110,14 @@ impl<const BENDS: bool, const LEVEL: u8> WithLanes for Forward<'_, BENDS, LEVEL>
                         + next_squared * (length_squared - product);
                     voronoi = inverse.mul_add(weighted, voronoi);
                 }
-                if LEVEL >= VECTORS {
+                if VECTORS & COTANGENTS != 0 {
                     cotangent = plus(cotangent, cross(n, minus(next, e)));
+                }
+                if VECTORS & UMBRELLAS != 0 {
                     let share = zero.of(-0.5 * COT_60).or_else(exists, zero);
                     umbrella = plus_scaled(umbrella, share, plus(e, next));
                 }
-                if LEVEL >= NORMALS {
+                if VECTORS & NORMALS != 0 {
                     let angle = unsafe {
                         Lane::gather1(simd, arrays.angles.at(0), places.add(BLOCK * step))
                     };
@@ -149,15 +153,17 @@ impl<const BENDS: bool, const LEVEL: u8> WithLanes for Forward<'_, BENDS, LEVEL>
                 }
                 known.curvature.store(index, curvature * 0.5);
             }
-            if LEVEL >= VORONOI {
+            if VECTORS & VORONOI != 0 {
                 known.voronoi_area.store(index, voronoi * 0.125);
             }
             for k in 0..3 {
-                if LEVEL >= VECTORS {
+                if VECTORS & COTANGENTS != 0 {
                     known.cotangent[k].store(index, cotangent[k] * 0.5);
+                }
+                if VECTORS & UMBRELLAS != 0 {
                     known.umbrella[k].store(index, umbrella[k]);
                 }
-                if LEVEL >= NORMALS {
+                if VECTORS & NORMALS != 0 {
                     known.normal_sum[k].store(index, normal_sum[k]);
                 }
             }
@@ -218,14 +224,14 @@ impl Ring<'_> {
 /// The partials of a tile of vertices, from its columns to records that the neighbours will gather.
 ///
 /// Writes the records of the tile, as the only one, while nobody reads them.
-pub struct Partials<'a, const LEVEL: u8> {
+pub struct Partials<'a, const VECTORS: u8> {
     pub layout: &'a Layout,
     pub arrays: &'a Arrays,
     pub index: usize,
     pub tile: &'a VertexTile,
 }
 
-impl<const LEVEL: u8> WithLanes for Partials<'_, LEVEL> {
+impl<const VECTORS: u8> WithLanes for Partials<'_, VECTORS> {
     type Output = ();
 
     #[inline(always)]
@@ -238,18 +244,23 @@ impl<const LEVEL: u8> WithLanes for Partials<'_, LEVEL> {
                 let curvature = partials.curvature.load(simd, index) * 0.5;
                 let pair = [curvature, partials.area.load(simd, index) * (1.0 / 6.0)];
                 Lane::store2(self.arrays.partials.at(2 * first), pair);
-                if LEVEL >= VORONOI {
-                    let voronoi = partials.voronoi_area.load(simd, index);
-                    let mut vector = [Lane::splat(simd, 0.0); 3];
-                    if LEVEL >= VECTORS {
-                        vector = load3(simd, &partials.cotangent, index);
-                        let [x, y, z] = load3(simd, &partials.umbrella, index);
-                        Lane::store4(self.arrays.umbrella_partials.at(4 * first), [x, y, z, z]);
+                if VECTORS & (VORONOI | COTANGENTS) != 0 {
+                    let zero = Lane::splat(simd, 0.0);
+                    let (mut voronoi, mut vector) = (zero, [zero; 3]);
+                    if VECTORS & VORONOI != 0 {
+                        voronoi = partials.voronoi_area.load(simd, index) * 0.125;
+                    }
+                    if VECTORS & COTANGENTS != 0 {
+                        vector = scaled(load3(simd, &partials.cotangent, index), voronoi.of(0.5));
                     }
                     let [x, y, z] = vector;
                     Lane::store4(self.arrays.vector_partials.at(4 * first), [x, y, z, voronoi]);
                 }
-                if LEVEL >= NORMALS {
+                if VECTORS & UMBRELLAS != 0 {
+                    let [x, y, z] = load3(simd, &partials.umbrella, index);
+                    Lane::store4(self.arrays.umbrella_partials.at(4 * first), [x, y, z, z]);
+                }
+                if VECTORS & NORMALS != 0 {
                     let [x, y, z] = load3(simd, &partials.normal_sum, index);
                     Lane::store4(self.arrays.normal_partials.at(4 * first), [x, y, z, z]);
                 }

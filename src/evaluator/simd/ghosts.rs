@@ -63,10 +63,10 @@ impl Ghosts {
             }
         };
         copy(&arrays.partials, 2);
-        if needs.contains(Needs::VECTORS) {
+        if needs.intersects(Needs::VORONOI_AREAS | Needs::COTANGENTS) {
             copy(&arrays.vector_partials, 4);
         }
-        if needs.contains(Needs::CURVATURE_VECTORS) {
+        if needs.contains(Needs::UMBRELLAS) {
             copy(&arrays.umbrella_partials, 4);
         }
         if needs.contains(Needs::NORMALS) {

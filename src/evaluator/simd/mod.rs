@@ -19,24 +19,24 @@ mod mean_curvature;
 mod survey;
 mod sweep;
 mod triangles;
+mod workspace;
 
 pub use layout::Layout;
 
 use super::Survey;
 use super::checks::{check_energies, check_totals};
 use crate::error::Result;
-use crate::lanes::tiles::{TriangleTile, VertexTile};
-use crate::lanes::{BLOCK, Level};
+use crate::lanes::Level;
 use crate::mesh::geometry::{TotalPartials, Totals};
 use crate::mesh::{Cell, Triangulation, culprit};
 use crate::potentials::{Contribution, Needs, Request, Term};
 use crate::team::{Parts, Sharing, Team};
-use arrays::Arrays;
 use backward::Forces;
 use mean_curvature::{add_mean_curvature, release_borders};
 use survey::Findings;
-use sweep::{Scratch, Sweep, backward};
+use sweep::{Sweep, backward, needs_of};
 use triangles::TriangleSums;
+use workspace::{Guest, SHARED_VERTICES, Workspace};
 
 /// |N| below which a triangle counts as having no area, nm²: reciprocals and products of smaller ones leave the range of a
 /// double.
@@ -46,19 +46,18 @@ const SMALLEST_AREA: f64 = 1e-140;
 pub struct SimdEvaluator {
     level: Level,
     layout: Layout,
-    arrays: Arrays,
+    guest: Guest,
+    /// Its own, where it has no need to share that of the thread.
+    workspace: Option<Box<Workspace>>,
     /// The calling thread, and the team that it belongs to where that is worth a try.
     alone: Team,
     team: Option<Team>,
     sharing: Sharing,
-    scratch: Vec<Scratch>,
     triangle_sums: Vec<TriangleSums>,
     /// For each tile of vertices the sum of their curvatures, where a term wants the total.
     curvature_sums: Vec<f64>,
     /// For each tile of triangles, then of vertices, a contribution for each term.
     contributions: Vec<Contribution>,
-    /// Whether there are partials of vertices from an earlier evaluation.
-    has_partials: bool,
     /// How many particles there must be at least.
     particles: usize,
 }
@@ -68,9 +67,10 @@ impl SimdEvaluator {
     /// `order` has the vertices so that neighbours are near each other.
     pub fn new(mesh: &Triangulation, order: &[u32], level: Level) -> Self {
         let layout = Layout::new(mesh, order);
-        let mut evaluator = Self {
+        Self {
             level,
-            arrays: Arrays::new(&layout),
+            guest: Guest::default(),
+            workspace: None,
             triangle_sums: vec![TriangleSums::default(); layout.triangle_tiles()],
             curvature_sums: vec![0.0; layout.vertex_tiles()],
             contributions: Vec::new(),
@@ -79,11 +79,7 @@ impl SimdEvaluator {
             alone: Team::new(1).expect("no thread is made for a team of one"),
             team: None,
             sharing: Sharing::new(),
-            scratch: Vec::new(),
-            has_partials: false,
-        };
-        evaluator.set_threads(1);
-        evaluator
+        }
     }
 
     /// Number of vertices.
@@ -93,27 +89,13 @@ impl SimdEvaluator {
 
     /// Go on with a mesh whose connectivity has changed, or with another order of its vertices.
     pub fn lay_out(&mut self, mesh: &Triangulation, order: &[u32]) {
-        let longest = self.layout.longest;
         self.layout.update(mesh, order);
-        if self.layout.longest > longest {
-            self.scratch.clear();
-            self.make_scratch();
-        }
     }
 
     /// Let so many threads share the work where that is faster, or as many as the system has left.
     pub fn set_threads(&mut self, threads: usize) {
         self.team = if threads > 1 { Team::new(threads).ok() } else { None };
         self.sharing = Sharing::new();
-        self.make_scratch();
-    }
-
-    /// One for each thread, with room for the longest ring.
-    fn make_scratch(&mut self) {
-        let steps = self.layout.longest;
-        let scratch =
-            || Scratch { triangles: TriangleTile::EMPTY, vertices: VertexTile::new(steps) };
-        self.scratch.resize_with(self.team.as_ref().map_or(1, Team::size), scratch);
     }
 
     /// Set the periodic box, which says where a surface that spans it goes on.
@@ -125,7 +107,21 @@ impl SimdEvaluator {
     pub fn evaluate(&mut self, request: Request, survey: Option<&mut Survey>) -> Result<()> {
         request.check(self.particles)?;
         let attempt = self.sharing.next();
-        let outcome = self.attempt(request, survey, attempt.together);
+        let shares = self.team.is_none() && self.layout.num_vertices <= SHARED_VERTICES;
+        let mut workspace = if shares {
+            self.workspace = None;
+            Workspace::of_this_thread()
+        } else {
+            self.workspace.take().unwrap_or_default()
+        };
+        let outcome = self.attempt(&mut workspace, request, survey, attempt.together);
+        let silent = self.triangle_sums.iter().all(|sum| sum.silent);
+        workspace.leave(self.layout.triangle_ids.len(), silent);
+        if shares {
+            workspace.give_back();
+        } else {
+            self.workspace = Some(workspace);
+        }
         self.sharing.done(&attempt);
         outcome
     }
@@ -133,13 +129,20 @@ impl SimdEvaluator {
     /// An evaluation, by the team or by this thread alone.
     fn attempt(
         &mut self,
+        workspace: &mut Workspace,
         request: Request,
         mut survey: Option<&mut Survey>,
         together: bool,
     ) -> Result<()> {
         let Request { terms, positions, energies: contributions, forces } = request;
-        let needs = terms.iter().fold(Needs::empty(), |all, term| all | term.potential.needs(term));
-        self.make_room(needs, terms.len());
+        let needs = needs_of(terms);
+        let team = self.team.as_mut().unwrap_or(&mut self.alone);
+        let threads = team.size();
+        if let Some(silent) = workspace.enter(&mut self.guest, &self.layout, needs, threads) {
+            self.triangle_sums.iter_mut().for_each(|sum| sum.silent = silent);
+        }
+        let tiles = self.layout.triangle_tiles() + self.layout.vertex_tiles();
+        self.contributions.resize(tiles * terms.len(), Contribution::default());
         if let Some(survey) = &mut survey {
             survey.make_room(needs, self.layout.num_triangles, self.layout.num_vertices);
         }
@@ -147,7 +150,7 @@ impl SimdEvaluator {
         let sweep = Sweep {
             level: self.level,
             layout: &self.layout,
-            arrays: &self.arrays,
+            arrays: &workspace.arrays,
             terms,
             needs,
             positions,
@@ -156,7 +159,7 @@ impl SimdEvaluator {
         let sums = Parts::new(&mut self.triangle_sums);
         let curvatures = Parts::new(&mut self.curvature_sums);
         let parts = Parts::new(&mut self.contributions);
-        let scratch = Parts::new(&mut self.scratch);
+        let scratch = Parts::new(&mut workspace.scratch);
         team.run(|member| {
             // SAFETY: each member has its own place.
             let scratch = unsafe { scratch.part(member.index()..member.index() + 1) };
@@ -196,7 +199,7 @@ impl SimdEvaluator {
             check_limits(terms, &self.contributions)?;
         }
         if let Some(forces) = forces {
-            let (layout, arrays, level) = (&self.layout, &self.arrays, self.level);
+            let (layout, arrays, level) = (&self.layout, &workspace.arrays, self.level);
             layout.ghosts.copy_partials(arrays, needs, layout.vertex_ids.len());
             let needs = if silent { needs - Needs::TRIANGLES } else { needs };
             let (totals, into) = (&total_partials, Forces(forces.as_mut_ptr()));
@@ -221,46 +224,6 @@ impl SimdEvaluator {
             }
         }
         Ok(())
-    }
-
-    /// Allocate what is needed for the first time.
-    fn make_room(&mut self, needs: Needs, terms: usize) {
-        let (layout, arrays) = (&self.layout, &mut self.arrays);
-        let (vertices, triangles) = (layout.places_of_vertices(), layout.triangle_ids.len());
-        let steps = BLOCK * layout.neighbours.len();
-        arrays.positions.require(4 * vertices, 0.0);
-        arrays.partials.require(2 * vertices, 0.0);
-        if needs.intersects(Needs::EDGES | Needs::CURVATURES) {
-            arrays.bends.require(steps, 0.0);
-        }
-        if needs.contains(Needs::EDGES) {
-            // Where a ring has ended, any length will do.
-            arrays.lengths_squared.require(steps, 1.0);
-            arrays.moments.require(steps, 0.0);
-        }
-        if needs.contains(Needs::TRIANGLES) {
-            arrays.tensions.require(4 * (triangles + 1), 0.0);
-        }
-        if needs.contains(Needs::VECTORS) {
-            arrays.vector_partials.require(4 * vertices, 0.0);
-        }
-        if needs.contains(Needs::CURVATURE_VECTORS) {
-            arrays.umbrella_partials.require(4 * vertices, 0.0);
-        }
-        if needs.contains(Needs::NORMALS) {
-            arrays.normal_partials.require(4 * vertices, 0.0);
-            arrays.angles.require(4 * (triangles + 1), 0.0);
-            arrays.next_angles.require(4 * (triangles + 1), 0.0);
-        }
-        if self.has_partials && !needs.contains(Needs::VERTICES) {
-            for index in 0..2 * vertices {
-                // SAFETY: `&mut self`, and the index is within.
-                unsafe { *arrays.partials.at(index) = 0.0 };
-            }
-        }
-        self.has_partials = needs.intersects(Needs::VERTICES | Needs::MEAN_CURVATURE);
-        let tiles = layout.triangle_tiles() + layout.vertex_tiles();
-        self.contributions.resize(tiles * terms, Contribution::default());
     }
 }
 

@@ -52,7 +52,7 @@ impl Sweep<'_, '_> {
         for (n, &id) in ids.iter().enumerate() {
             let scalars = VertexGeometry {
                 area: known.area.0[n],
-                voronoi_area: if has(Needs::VECTORS) { known.voronoi_area.0[n] } else { 0.0 },
+                voronoi_area: if has(Needs::VORONOI_AREAS) { known.voronoi_area.0[n] } else { 0.0 },
                 curvature: if has(Needs::CURVATURES) { known.curvature.0[n] } else { 0.0 },
             };
             let position = vector(self.arrays.positions.at(4 * (range.start + n)));
@@ -66,8 +66,10 @@ impl Sweep<'_, '_> {
         }
         for (n, &id) in ids.iter().enumerate() {
             let mut vectors = VertexVectors::default();
-            if has(Needs::CURVATURE_VECTORS) {
+            if has(Needs::COTANGENTS) {
                 vectors.cotangent = three(&known.cotangent, n).into();
+            }
+            if has(Needs::UMBRELLAS) {
                 vectors.umbrella = three(&known.umbrella, n).into();
             }
             if has(Needs::NORMALS) {

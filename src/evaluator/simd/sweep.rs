@@ -4,7 +4,7 @@
 
 use super::arrays::{self, Arrays};
 use super::backward::{Backward, Forces};
-use super::forward::{self, NORMALS, VECTORS, VORONOI};
+use super::forward::{self, COTANGENTS, NORMALS, UMBRELLAS, VORONOI};
 use super::layout::Layout;
 use super::survey::Findings;
 use super::triangles::{self, TriangleSums};
@@ -16,14 +16,21 @@ use crate::mesh::geometry::TotalPartials;
 use crate::potentials::{Contribution, Edges, Needs, Term, Triangles, Vertices};
 use crate::team::{Member, Parts};
 
-/// Expands `$pass!` with what is known and a constant for how much of the vertices' vectors is needed.
+/// What Gompper and Kroll need.
+const COTANGENTS_AND_AREAS: u8 = COTANGENTS | VORONOI;
+/// What the passes take together that is seldom needed together.
+const ALL_VECTORS: u8 = COTANGENTS_AND_AREAS | UMBRELLAS | NORMALS;
+
+/// Expands `$pass!` with what is known and a constant for which of the vertices' vectors are needed.
 macro_rules! with_vectors {
     ($needs:expr, $pass:ident $($known:literal)*) => {
-        match vector_level($needs) {
+        match vectors($needs) {
             0 => $pass!($($known)* 0),
             VORONOI => $pass!($($known)* VORONOI),
-            VECTORS => $pass!($($known)* VECTORS),
-            _ => $pass!($($known)* NORMALS),
+            COTANGENTS => $pass!($($known)* COTANGENTS),
+            UMBRELLAS => $pass!($($known)* UMBRELLAS),
+            COTANGENTS_AND_AREAS => $pass!($($known)* COTANGENTS_AND_AREAS),
+            _ => $pass!($($known)* ALL_VECTORS),
         }
     };
 }
@@ -185,7 +192,7 @@ impl Sweep<'_, '_> {
                 dispatch(level, Pass { layout, arrays, index, lengths, tile })
             }};
         }
-        match (bends, vector_level(needs)) {
+        match (bends, vectors(needs)) {
             (false, 0) if !needs.contains(Needs::VERTICES) && self.findings.is_none() => return,
             (false, _) => with_vectors!(needs, forward false),
             (true, _) => with_vectors!(needs, forward true),
@@ -220,12 +227,7 @@ impl Sweep<'_, '_> {
                 dispatch(level, Pass { layout, arrays, index, tile })
             }};
         }
-        match vector_level(needs) {
-            0 => partials!(0),
-            VORONOI => partials!(VORONOI),
-            VECTORS => partials!(VECTORS),
-            _ => partials!(NORMALS),
-        }
+        with_vectors!(needs, partials)
     }
 
     /// Potentials of the edges at a tile of vertices.
@@ -312,16 +314,20 @@ pub fn backward(
     }
 }
 
-/// How much of the vertices' vectors is needed.
-fn vector_level(needs: Needs) -> u8 {
-    debug_assert!(
-        !needs.contains(Needs::NORMALS) || needs.contains(Needs::CURVATURE_VECTORS),
-        "who wants normals wants vectors, for which there is room then"
-    );
-    match needs {
-        needs if needs.contains(Needs::NORMALS) => NORMALS,
-        needs if needs.contains(Needs::CURVATURE_VECTORS) => VECTORS,
-        needs if needs.contains(Needs::VECTORS) => VORONOI,
-        _ => 0,
+/// Which of the vertices' vectors are needed.
+fn vectors(needs: Needs) -> u8 {
+    let bit = |what, bit| if needs.contains(what) { bit } else { 0 };
+    bit(Needs::VORONOI_AREAS, VORONOI)
+        | bit(Needs::COTANGENTS, COTANGENTS)
+        | bit(Needs::UMBRELLAS, UMBRELLAS)
+        | bit(Needs::NORMALS, NORMALS)
+}
+
+/// What all terms need together; and all vectors, where there are no passes for just those that they need.
+pub fn needs_of(terms: &[Term]) -> Needs {
+    let needs = terms.iter().fold(Needs::empty(), |all, term| all | term.potential.needs(term));
+    match vectors(needs) {
+        0 | VORONOI | COTANGENTS | UMBRELLAS | COTANGENTS_AND_AREAS => needs,
+        _ => needs | Needs::VORONOI_AREAS | Needs::COTANGENTS | Needs::UMBRELLAS | Needs::NORMALS,
     }
 }
