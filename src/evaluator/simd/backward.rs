@@ -181,7 +181,6 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const VECTORS
             let places = layout.places.as_ptr().cast::<u32>().wrapping_add(lane);
             let [own_curvature, own_area] = centre.partials;
             let constant_area = own_area + by_total_area;
-            let twice_voronoi = centre.vector[3] + centre.vector[3];
             let mut force = [zero; 3];
             // The tension along the present arm from the triangle before it, and the cotangent there.
             let (mut tension, mut cotangent) = (zero, zero);
@@ -215,14 +214,14 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const VECTORS
                     along = along + after;
                     along_next = before;
                 }
-                // Tensions that are yet to be divided by |N|.
-                let mut sides = [zero; 2];
                 let mut pressure = by_volume * twice_area;
                 if VECTORS & (VORONOI | COTANGENTS) != 0 {
                     // Of the side opposite the vertex, from this arm's end to the next.
                     let mut facing = zero;
                     if VECTORS & VORONOI != 0 {
-                        facing = (arm.voronoi + next.voronoi - twice_voronoi) * (at_end + at_next);
+                        let own = centre.vector[3];
+                        let ends = (arm.voronoi - own) + (next.voronoi - own);
+                        facing = ends * (at_end + at_next);
                     }
                     if VECTORS & COTANGENTS != 0 {
                         let (apart, side) = (minus(next.g, arm.g), minus(arm.e, next.e));
@@ -234,12 +233,14 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const VECTORS
                     let (here, there) = (arm.by_cotangent, next.by_cotangent);
                     let weighted = here.mul_add(at_next, there.mul_add(at_end, facing * at_centre));
                     by_area = (inverse * inverse).neg_mul_add(weighted, by_area);
-                    sides = [facing + there - here, here + facing - there];
+                    let mut sides = [facing + there - here, here + facing - there];
                     if VECTORS & VORONOI != 0 {
                         // The explicit squared sides of Voronoi's area.
                         sides[0] = (arm.voronoi + arm.voronoi).mul_add(at_next, sides[0]);
                         sides[1] = (next.voronoi + next.voronoi).mul_add(at_end, sides[1]);
                     }
+                    along = inverse.mul_add(sides[0], along);
+                    along_next = inverse.mul_add(sides[1], along_next);
                     if VECTORS & COTANGENTS != 0 {
                         // The explicit r_i − r_j of the vectors.
                         cotangent = at_next.mul_add(inverse, cotangent);
@@ -288,14 +289,9 @@ impl<const BENDS: bool, const MOMENTS: bool, const TENSIONS: bool, const VECTORS
                     let torque = dot(n, cross(minus(arm.e, next.e), weighted));
                     pressure = inverse.mul_add(torque, pressure);
                 }
-                if VECTORS & (VORONOI | COTANGENTS) != 0 {
-                    along = by_area.mul_add(at_next, sides[0]).mul_add(inverse, along);
-                    along_next = by_area.mul_add(at_end, sides[1]).mul_add(inverse, along_next);
-                } else {
-                    let stress = by_area * inverse;
-                    along = stress.mul_add(at_next, along);
-                    along_next = stress.mul_add(at_end, along_next);
-                }
+                let stress = by_area * inverse;
+                along = stress.mul_add(at_next, along);
+                along_next = stress.mul_add(at_end, along_next);
 
                 // Past the end of a ring the moments repeat the first.
                 let next_moment = if MOMENTS {
