@@ -24,6 +24,9 @@ SETTINGS = {
 FIXED_PERIODS = 30
 """Length of one run without flips, τ_2."""
 
+FRAMES_PER_PERIOD = 4
+"""Frames that runs of meshes of several sizes keep for each τ_2."""
+
 
 def with_flips(softness, seeds, num_vertices=1002, share=1.0, periods=None):
     """Arguments of `flow` for runs with a share of the usual flips, one for each seed."""
@@ -51,3 +54,14 @@ def without_flips(softness, seeds, num_vertices=1002, periods=FIXED_PERIODS):
         point | {"time_step": point["time_step"] * scale}
         for point in with_flips(softness, seeds, num_vertices, 0.0, periods)
     ]
+
+
+def of_sizes(softness, seeds, num_vertices, periods=None):
+    """Arguments of `flow` for runs with flips that compare sizes: modes up to √N / 3 and 16."""
+    more = {"lmax": highest(num_vertices), "frames_per_period": FRAMES_PER_PERIOD}
+    return [point | more for point in with_flips(softness, seeds, num_vertices, periods=periods)]
+
+
+def highest(num_vertices):
+    """The largest l of a mesh of several sizes."""
+    return min(16, int(num_vertices**0.5 / 3))

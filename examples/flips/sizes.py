@@ -23,12 +23,11 @@ import numpy as np
 from fluid_run import RIGIDITY, VERSION, flow
 from reports import Report
 from scipy.optimize import curve_fit
-from settings import SETTINGS, with_flips
+from settings import SETTINGS, highest, of_sizes
 from spectrum import bending_ratio, ratios_of
 
-FRAMES_PER_PERIOD = 4
 # Of 1002 vertices `spectrum.csv` has more.
-SEEDS = {252: 12, 502: 12, 1002: 3, 4002: 3}
+SEEDS = {252: 12, 502: 12, 1002: 3, 4002: 12}
 # Of very soft meshes folds are a part of the spectrum.
 LEAST_SOFTNESS = 0.1
 
@@ -53,14 +52,7 @@ def add_arguments(parser):
 def points_of(softness, num_vertices, quick):
     """Arguments of all runs."""
     seeds, periods = (range(1, 3), 3) if quick else (range(1, 1 + SEEDS[num_vertices]), None)
-    points = with_flips(softness, seeds, num_vertices, periods=periods)
-    more = {"lmax": highest(num_vertices), "frames_per_period": FRAMES_PER_PERIOD}
-    return [point | more for point in points]
-
-
-def highest(num_vertices):
-    """The largest l of a mesh."""
-    return min(16, int(num_vertices**0.5 / 3))
+    return of_sizes(softness, seeds, num_vertices, periods)
 
 
 def rows_of(runs, softness, num_vertices):

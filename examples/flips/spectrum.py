@@ -22,7 +22,7 @@ from fluid_run import RIGIDITY, VERSION, flow
 from openmmhelfrich.analysis import spectrum, theory
 from reports import Report
 from scipy.optimize import curve_fit
-from settings import SETTINGS, with_flips, without_flips
+from settings import SETTINGS, of_sizes, with_flips, without_flips
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "paper"))
 from mesh_corrections import bending_ratio, shear_ratio
@@ -70,7 +70,8 @@ def add_arguments(parser):
 
 def points_of(softness, flips, num_vertices, quick):
     """Arguments of all runs."""
-    make = with_flips if flips else without_flips
+    fluid = with_flips if num_vertices == 1002 else of_sizes
+    make = fluid if flips else without_flips
     if quick:
         return make(softness, range(1, 3), num_vertices, periods=3)
     return make(softness, range(1, 1 + (SEEDS[softness] if flips else FIXED_SEEDS)), num_vertices)
