@@ -69,6 +69,10 @@ pub enum Error {
     #[error("particle {particle} is at ({}, {}, {}) nm, which is more than a billion periodic boxes away: the simulation has blown up, or positions were never wrapped; use a smaller time step, or start from positions in the box", .position[0], .position[1], .position[2])]
     FarPosition { particle: u32, position: [f64; 3] },
 
+    /// A position so far out that distances are no numbers in single precision.
+    #[error("particle {particle} is at ({:e}, {:e}, {:e}) nm, where nothing can be found near it: the simulation has blown up; use a smaller time step or a better relaxed start", .position[0], .position[1], .position[2])]
+    LostPosition { particle: u32, position: [f64; 3] },
+
     /// NaN or infinity among the velocities of a running simulation.
     #[error("particle {particle} has the velocity ({}, {}, {}) nm/ps, which is not finite: the simulation has blown up; use a smaller time step or a better relaxed start", .velocity[0], .velocity[1], .velocity[2])]
     NonFiniteVelocity { particle: u32, velocity: [f64; 3] },

@@ -115,7 +115,7 @@ impl Lists {
             let mut all = std::mem::take(&mut self.all);
             all.clear();
             all.extend(self.edges.all_ends().map(|ends| self.edge_sphere(cell, ends)));
-            let size = made.reach + 2.0 * self.outer.largest() + 1.5 * made.mean;
+            let size = made.reach + 2.0 * self.outer.largest() + 1.5 * made.median;
             self.edges.fill(cell, size, &all);
             self.all = all;
         }

@@ -9,12 +9,15 @@
 //! and edges that are gone are taken out and those of new ones are added (`following.rs`).
 
 use super::spheres::{Search, Sphere, Spheres};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::lanes::{Arithmetic, Kernel, run};
 use crate::mesh::cell::check_places;
 use crate::mesh::geometry::Vec3;
 use crate::mesh::{Cell, Triangulation};
 use crate::team::Team;
+
+/// The largest coordinate, nm: squares of distances are numbers in single precision.
+const FARTHEST: f64 = 1e15;
 
 /// The vertices of a pair: a vertex and the corners of a triangle from the lowest on, or the ends of two edges, the lower end
 /// of each and the lower edge first.
@@ -43,7 +46,7 @@ pub struct Lists {
     /// How many refreshes ago the outer list was made, and how many the outer and the inner one usually last.
     pub(super) age: usize,
     pub(super) lives: [f64; 2],
-    /// How far vertices may stray in the outer list, in mean edges, and in the inner one, as a share of that; none before the
+    /// How far vertices may stray in the outer list, in median edges, and in the inner one, as a share of that; none before the
     /// first lists.
     pub(super) shares: Option<[f64; 2]>,
     /// The triangles for which the lists were made.
@@ -88,8 +91,8 @@ pub struct Made {
     pub between_parts: bool,
     pub cell: Option<Cell>,
     pub fingerprint: u64,
-    /// The mean edge, and the length of which straying is a share, nm.
-    pub mean: f64,
+    /// The median edge, and the length of which straying is a share, nm.
+    pub median: f64,
     pub size: f64,
 }
 
@@ -98,7 +101,7 @@ impl Lists {
     /// those of different parts of the surface.
     ///
     /// # Errors
-    /// A position that is not finite or too many boxes away; a box that is too small.
+    /// A position that is not finite or too far away; a box that is too small.
     pub fn refresh(
         &mut self,
         mesh: &Triangulation,
@@ -131,6 +134,11 @@ impl Lists {
         }
         self.made_for = None;
         check_places(cell, mesh.particles(), &self.positions)?;
+        let lost = |at: &Vec3| at.iter().any(|x| x.abs() > FARTHEST);
+        if let Some(vertex) = self.positions.iter().position(lost) {
+            let position = self.positions[vertex].into();
+            return Err(Error::LostPosition { particle: mesh.particles()[vertex], position });
+        }
         let made = self.make(mesh, cell, (reach, between_parts), team)?;
         self.made_for = Some(made);
         self.choose(&made, team);

@@ -12,10 +12,10 @@ use crate::mesh::triangulation::next;
 use crate::mesh::{Cell, Triangulation};
 use crate::team::{Parts, Team};
 
-/// How far vertices may stray, in mean edges: at first, at least and at most.
+/// How far vertices may stray, in median edges: at first, at least and at most.
 const OUTER: [f64; 3] = [0.1, 0.03, 0.5];
 
-/// The longest way that vertices are expected to go, in mean edges.
+/// The longest way that vertices are expected to go, in median edges.
 const LONGEST: f64 = 0.5;
 
 /// The cost of making the outer list, for each triangle or edge; an evaluation of a pair costs 1.
@@ -38,13 +38,15 @@ impl Lists {
             self.parts = mesh.parts();
         }
         let ends = |half| ascending(mesh.origin(half), mesh.origin(next(half)));
-        let (mut total, mut largest) = (0.0, 0.0_f64);
-        for [a, b] in mesh.edges().map(ends) {
+        let length = |[a, b]: [u32; 2]| {
             let [a, b] = [a, b].map(|end| &self.positions[end as usize]);
-            let length = difference(cell, b, a).norm();
-            (total, largest) = (total + length, largest.max(length));
-        }
-        let mean = total / mesh.num_edges() as f64;
+            difference(cell, b, a).norm()
+        };
+        let mut lengths: Vec<f64> = mesh.edges().map(ends).map(length).collect();
+        let largest = lengths.iter().copied().fold(0.0, f64::max);
+        // The mean would be as long as the edges of a vertex that has flown away.
+        let middle = lengths.len() / 2;
+        let median = *lengths.select_nth_unstable_by(middle, f64::total_cmp).1;
         if let Some([outer, _]) = &mut self.shares {
             let elements = (mesh.num_edges() + self.triangles.len()) as f64;
             let spent = self.cost.all + self.cost.looking + self.cost.choosing;
@@ -56,7 +58,7 @@ impl Lists {
         let [outer, _] = *self.shares.get_or_insert([OUTER[0], INNER[0]]);
         self.cost = Cost::default();
         // Where edges are short, half of the reach is the length to go by.
-        let mut size = mean.max(0.5 * reach);
+        let mut size = median.max(0.5 * reach);
         if let Some(cell) = cell {
             // A triangle lies within its longest edge around its middle.
             let room = cell.half_width() - reach - 1.5 * largest;
@@ -78,17 +80,17 @@ impl Lists {
         all.clear();
         all.extend(mesh.edges().map(|half| self.edge_sphere(cell, ends(half))));
         neighbours.retain(&mut all, reach + room);
-        self.edges.fill(cell, range + 1.5 * mean, &all);
+        self.edges.fill(cell, range + 1.5 * median, &all);
         all.clear();
         all.extend((0..self.positions.len() as u32).map(|vertex| {
             let room = self.outer.rooms[vertex as usize];
             Sphere::of_vertex(&self.outer.middles, vertex, self.part(vertex), room)
         }));
         neighbours.retain(&mut all, reach + room);
-        self.vertices.fill(cell, range + mean, &all);
+        self.vertices.fill(cell, range + median, &all);
         self.all = all;
         let (cell, fingerprint) = (cell.copied(), mesh.fingerprint());
-        let made = Made { reach, between_parts, cell, fingerprint, size, mean };
+        let made = Made { reach, between_parts, cell, fingerprint, size, median };
         self.find_pairs(&made, team);
         Ok(made)
     }

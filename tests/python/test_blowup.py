@@ -7,6 +7,7 @@ import pytest
 from click.testing import CliRunner
 from openmm import unit
 from openmmhelfrich.blowup import Limits, Watch
+from openmmhelfrich.blowup.parts import Parts
 from openmmhelfrich.cli import main
 from openmmhelfrich.simulation.runner import Run
 
@@ -261,6 +262,96 @@ class TestReporter:
             path.name for path in tmp_path.iterdir()
         }
         assert helfrich.Mesh.read(tmp_path / "last-good-1.ply").num_vertices == 252
+
+
+class TestForces:
+    """Which forces it comes from."""
+
+    @staticmethod
+    def pair(gap, **options):
+        """A vesicle and its image in a mirror, a repulsion of 4 nm, and a Simulation."""
+        system = openmm.System()
+        right = helfrich.Mesh(MESH.vertices * [-1, 1, 1], MESH.triangles[:, ::-1])
+        right = right.translated([2 * MESH.vertices[:, 0].max() + gap, 0, 0])
+        for mesh in (MESH, right):
+            helfrich.Vesicle(mesh, **options).add_to(system)
+        both = np.concatenate([MESH.triangles, right.triangles + 252])
+        force = helfrich.SurfaceRepulsionForce(both, 4, 2.5)
+        force.setOnlyBetweenParts(True)
+        system.addForce(force)
+        platform = openmm.Platform.getPlatformByName("Helfrich")
+        built = openmm.app.Simulation(openmm.app.Topology(), system, langevin(0.2), platform)
+        built.context.setPositions(np.concatenate([MESH.vertices, right.vertices]))
+        return built
+
+    def test_heights(self, tmp_path):
+        text = broken(simulation(langevin(5), flips=FLIPS), tmp_path, interval=500)
+        assert " of heights, " in text.partition("Forces: the largest at step ")[2].splitlines()[0]
+        assert "  The energy of heights has risen most since step " in text
+
+    def test_a_repulsion(self, tmp_path):
+        built = self.pair(gap=30.0)
+        velocities = np.zeros((504, 3))
+        velocities[:252, 0] = 40.0
+        built.context.setVelocities(velocities)
+        text = broken(built, tmp_path, interval=100)
+        line = text.partition("Forces: the largest at step ")[2].splitlines()[0]
+        assert line.partition(": ")[2].split(", ")[0].endswith(" of SurfaceRepulsionForce")
+
+    def test_parts_are_the_whole(self):
+        built = self.pair(gap=3.0, flips=FLIPS, rigidity=50)
+        built.context.setVelocitiesToTemperature(300, 2)
+        parts = Parts(built.context)
+        assert parts.labels[:4] == ["area (force 0)", "volume (force 1)", "bending (force 2)",
+                                    "heights (force 3)"]  # fmt: skip
+        assert parts.labels[-1] == "SurfaceRepulsionForce"
+        assert parts.energies()[-1] > 1
+        for _ in range(3):
+            built.step(100)
+            state = built.context.getState(getEnergy=True)
+            energies = parts.energies()
+            assert energies.sum() == pytest.approx(state.getPotentialEnergy()._value, rel=1e-12)
+            assert energies[2] > 0
+
+    def test_values_that_have_been_swapped(self):
+        mesh = helfrich.Mesh.icosphere(3, 100.0)
+        values = np.linspace(5.0, 50.0, mesh.num_vertices)
+        force = helfrich.BendingForce(mesh, values)
+        swaps = helfrich.MonteCarloDomainSwap(mesh, 300, 1, 1.0)
+        swaps.setRandomNumberSeed(1)
+        system = openmm.System()
+        for _ in range(mesh.num_vertices):
+            system.addParticle(50)
+        system.addForce(force)
+        system.addForce(swaps)
+        platform = openmm.Platform.getPlatformByName("Helfrich")
+        built = openmm.app.Simulation(openmm.app.Topology(), system, langevin(0.2), platform)
+        built.context.setPositions(mesh.vertices)
+        parts = Parts(built.context)
+        start = parts.energies()[0]
+        built.step(200)
+        now = built.context.getState(getEnergy=True).getPotentialEnergy()._value
+        assert now != start
+        assert parts.energies() == pytest.approx([now], rel=1e-12)
+
+    def test_more_forces_than_groups(self):
+        built = simulation(langevin(0.2))
+        system = built.system
+        scaled = openmm.CustomExternalForce("scale*x")
+        scaled.addGlobalParameter("scale", 1)
+        scaled.addParticle(7)
+        system.addForce(scaled)
+        for number in range(40):
+            force = openmm.CustomExternalForce(f"{number}*x")
+            force.addParticle(number)
+            system.addForce(force)
+        built.context.reinitialize(True)
+        parts = Parts(built.context)
+        built.context.setParameter("scale", 2.5)
+        assert len(parts.labels) == 32
+        assert parts.labels[-1] == "other forces"
+        whole = built.context.getState(getEnergy=True).getPotentialEnergy()._value
+        assert parts.energies().sum() == pytest.approx(whole, rel=1e-12)
 
 
 class TestWatch:

@@ -20,6 +20,7 @@ from ..errors import FAQ, Explained
 from ..forces import TriangleHeightForce
 from ..states import save_state
 from .moments import Gauge, Moment
+from .parts import Parts
 from .stability import stable_time_step
 
 __all__ = ["BlowUpError", "Replay", "diagnose"]
@@ -143,6 +144,7 @@ def diagnose(reason: str, replay: Replay, folder: File | None = None) -> str:
         _time_step(replay),
         _triangles(replay),
         _folds(replay),
+        _forces(replay),
         _beginning(replay),
         _table(replay),
     ]
@@ -234,6 +236,31 @@ def _folds(replay: Replay) -> list[str]:
             f"  {good.named_edge} was by {good.fold:.4g}° at step {good.step}, when all else was "
             "normal: the surface is crumpled; use more vertices, a higher rigidity, or a "
             "DihedralForce"
+        )
+    return lines
+
+
+def _forces(replay: Replay) -> list[str]:
+    """Which forces push hardest where it breaks down, and whose energy has risen most."""
+    moment = max(replay.good, replay.turn, key=lambda each: np.nan_to_num(each.force, nan=-1.0))
+    if moment.particle < 0:
+        return []
+    try:
+        parts = Parts(replay.context)
+        replay.go_to(replay.fine[0])
+        before = parts.energies()
+        replay.go_to(moment)
+        now, pushes = parts.energies(), parts.forces(moment.particle)
+    except openmm.OpenMMException:
+        return []
+    strongest = [index for index in np.argsort(-pushes)[:3] if pushes[index] > 0]
+    named = ", ".join(f"{pushes[index]:.4g} of {parts.labels[index]}" for index in strongest)
+    lines = [f"Forces: the largest at step {moment.step} is on particle {moment.particle}: {named}"]
+    first, most = replay.fine[0], int(np.argmax(now - before))
+    if moment is not first and now[most] > before[most]:
+        lines.append(
+            f"  The energy of {parts.labels[most]} has risen most since step {first.step}, from "
+            f"{before[most]:.6g} to {now[most]:.6g} kJ/mol"
         )
     return lines
 
