@@ -9,15 +9,12 @@
 //! and edges that are gone are taken out and those of new ones are added (`following.rs`).
 
 use super::spheres::{Search, Sphere, Spheres};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::lanes::{Arithmetic, Kernel, run};
 use crate::mesh::cell::check_places;
 use crate::mesh::geometry::Vec3;
 use crate::mesh::{Cell, Triangulation};
 use crate::team::Team;
-
-/// The largest coordinate, nm: squares of distances are numbers in single precision.
-const FARTHEST: f64 = 1e15;
 
 /// The vertices of a pair: a vertex and the corners of a triangle from the lowest on, or the ends of two edges, the lower end
 /// of each and the lower edge first.
@@ -134,11 +131,6 @@ impl Lists {
         }
         self.made_for = None;
         check_places(cell, mesh.particles(), &self.positions)?;
-        let lost = |at: &Vec3| at.iter().any(|x| x.abs() > FARTHEST);
-        if let Some(vertex) = self.positions.iter().position(lost) {
-            let position = self.positions[vertex].into();
-            return Err(Error::LostPosition { particle: mesh.particles()[vertex], position });
-        }
         let made = self.make(mesh, cell, (reach, between_parts), team)?;
         self.made_for = Some(made);
         self.choose(&made, team);

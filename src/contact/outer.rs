@@ -4,7 +4,7 @@ use super::grid::bounds;
 use super::inner::INNER;
 use super::lists::{Cost, Far, Lists, Made, Pair, Scratch, ascending, lowest_first, usual};
 use super::rough::Rough;
-use super::spheres::{Search, Sphere};
+use super::spheres::{ROUNDING, Search, Sphere};
 use crate::error::{Error, Result};
 use crate::mesh::closest::{difference, in_one_piece};
 use crate::mesh::geometry::Vec3;
@@ -17,6 +17,9 @@ const OUTER: [f64; 3] = [0.1, 0.03, 0.5];
 
 /// The longest way that vertices are expected to go, in median edges.
 const LONGEST: f64 = 0.5;
+
+/// The largest extent of a surface, nm: squares of distances are numbers in single precision.
+const FARTHEST: f64 = 1e15;
 
 /// The cost of making the outer list, for each triangle or edge; an evaluation of a pair costs 1.
 const MAKING: f64 = 4.0;
@@ -47,6 +50,11 @@ impl Lists {
         // The mean would be as long as the edges of a vertex that has flown away.
         let middle = lengths.len() / 2;
         let median = *lengths.select_nth_unstable_by(middle, f64::total_cmp).1;
+        // Where edges are short, half of the reach is the length to go by.
+        let mut size = median.max(0.5 * reach);
+        if cell.is_none() {
+            self.check_extent(mesh, size)?;
+        }
         if let Some([outer, _]) = &mut self.shares {
             let elements = (mesh.num_edges() + self.triangles.len()) as f64;
             let spent = self.cost.all + self.cost.looking + self.cost.choosing;
@@ -57,8 +65,6 @@ impl Lists {
         self.age = 0;
         let [outer, _] = *self.shares.get_or_insert([OUTER[0], INNER[0]]);
         self.cost = Cost::default();
-        // Where edges are short, half of the reach is the length to go by.
-        let mut size = median.max(0.5 * reach);
         if let Some(cell) = cell {
             // A triangle lies within its longest edge around its middle.
             let room = cell.half_width() - reach - 1.5 * largest;
@@ -93,6 +99,26 @@ impl Lists {
         let made = Made { reach, between_parts, cell, fingerprint, size, median };
         self.find_pairs(&made, team);
         Ok(made)
+    }
+
+    /// Refuse what has flown away: where rounding in single precision is no longer small beside a size, all is near to all.
+    fn check_extent(&self, mesh: &Triangulation, size: f64) -> Result<()> {
+        let [low, high] = bounds(&self.positions);
+        let extent = (high - low).norm();
+        if extent < FARTHEST && ROUNDING * extent < size {
+            return Ok(());
+        }
+        let median = |k: usize| {
+            let mut all: Vec<f64> = self.positions.iter().map(|at| at[k]).collect();
+            let middle = all.len() / 2;
+            *all.select_nth_unstable_by(middle, f64::total_cmp).1
+        };
+        let middle = Vec3::from([0, 1, 2].map(median));
+        let far = |vertex: &usize| (self.positions[*vertex] - middle).amax();
+        let farther = |one: &usize, other: &usize| far(one).total_cmp(&far(other));
+        let vertex = (0..self.positions.len()).max_by(farther).unwrap_or(0);
+        let position = self.positions[vertex].into();
+        Err(Error::LostPosition { particle: mesh.particles()[vertex], position })
     }
 
     /// An edge at the outer reference.

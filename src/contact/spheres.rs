@@ -10,7 +10,7 @@ use crate::mesh::closest::difference;
 use crate::mesh::geometry::Vec3;
 
 /// The largest error of positions in single precision, as a share of their distance from the origin.
-const ROUNDING: f64 = 4e-7;
+pub const ROUNDING: f64 = 4e-7;
 
 /// The sphere around an edge, or around a vertex, which has no size.
 #[derive(Clone, Copy)]

@@ -236,3 +236,30 @@ def test_surfaces_that_meet_are_named(how, between):
         twin.surface_repulsion(positions, np.array(triangles), 0.5, EPSILON)
     )
     assert energy > 0
+
+
+@pytest.mark.parametrize("away", [1e8, 1e12, 1e40, 1e160])
+def test_a_vertex_that_has_flown_away_is_named(away):
+    mesh = helfrich.Mesh.icosphere(3, 100.0)
+    positions = np.concatenate([np.zeros((5, 3)), mesh.vertices])
+    positions[12] *= away
+    force = helfrich.SurfaceRepulsionForce(mesh.triangles + 5, DISTANCE, EPSILON)
+    with pytest.raises(mm.OpenMMException, match=r"particle 12 is at .* nothing can be found near"):
+        evaluate(force, positions)
+
+
+def test_surfaces_may_be_far_from_each_other():
+    """Two pairs of spheres that touch, a centimetre apart."""
+    mesh = helfrich.Mesh.icosphere(3, 100.0)
+    height = 2 * mesh.vertices[:, 0].max() + 0.7 * DISTANCE
+    pair = np.concatenate([mesh.vertices, mesh.vertices * [-1, 1, 1] + [height, 0, 0]])
+    sides = [mesh.triangles, mesh.triangles[:, ::-1] + mesh.num_vertices]
+    near = np.concatenate(sides)
+    far = np.concatenate([near, near + len(pair)])
+    one, other = (
+        evaluate(helfrich.SurfaceRepulsionForce(triangles, DISTANCE, EPSILON), positions)
+        for triangles, positions in ((near, pair), (far, np.concatenate([pair, pair + 1e7])))
+    )
+    assert one[0] > EPSILON
+    # Positions a centimetre away have eight digits behind the point.
+    assert other[0] == pytest.approx(2 * one[0], rel=1e-6)
