@@ -12,7 +12,8 @@ import openmmhelfrich as helfrich
 import pytest
 from cases import PRESENT, Case
 from meshes import Membrane, membrane
-from platforms import HELFRICH, NATIVE, ON_GPU, ON_PROCESSOR, Target, sparing
+from openmmhelfrich._snapshots import Snapshot
+from platforms import HELFRICH, NATIVE, ON_GPU, ON_PROCESSOR, REFERENCE, Target, sparing
 from running import Running
 
 # Contacts act where things touch.
@@ -67,3 +68,69 @@ def test_the_paper_forces_together(target: Target):
         helfrich.TriangleHeightForce(m.triangles, 0.3, 10.0),
     ]
     check(Running(forces, m.num_particles, target), m)
+
+
+INTEGRATORS = {
+    "Verlet": lambda: mm.VerletIntegrator(0.2),
+    "LangevinMiddle": lambda: mm.LangevinMiddleIntegrator(300, 0.01, 0.2),
+    "Brownian": lambda: mm.BrownianIntegrator(300, 1.0, 0.2),
+    "variable mass, Verlet": lambda: helfrich.VariableMassVerletIntegrator(0.2),
+    "variable mass, Langevin": lambda: helfrich.VariableMassLangevinIntegrator(300, 0.01, 0.2),
+}
+
+
+@pytest.mark.parametrize("target", [HELFRICH, REFERENCE], ids=str)
+@pytest.mark.parametrize("name", INTEGRATORS)
+def test_steps_are_repeated(name: str, target: Target):
+    """With all movers, contacts and the thermostat: the run goes on as if nothing had been."""
+    mesh = helfrich.Mesh.icosphere(3, 100.0)
+    integrator = INTEGRATORS[name]()
+    # Masses that vary leave no movers.
+    movers = []
+    if not name.startswith("variable"):
+        movers += [
+            helfrich.MonteCarloBondFlip(mesh, 300, 2, 0.2),
+            helfrich.MonteCarloDomainSwap(mesh, 300, 2, 0.5),
+        ]
+    if name in ("Verlet", "LangevinMiddle"):
+        movers.append(helfrich.SurfaceViscosityThermostat(mesh, 5.0, temperature=300))
+    for stochastic in (integrator, *movers):
+        if hasattr(stochastic, "setRandomNumberSeed"):
+            stochastic.setRandomNumberSeed(3)
+    system = mm.System()
+    for _ in range(mesh.num_vertices):
+        system.addParticle(50.0)
+    bending = helfrich.BendingForce(mesh, np.linspace(20.0, 60.0, mesh.num_vertices))
+    for force in (
+        bending,
+        helfrich.SurfaceAreaForce(mesh, 1.3, mesh.area),
+        helfrich.EnclosedVolumeForce(mesh, 1e-3, mesh.volume),
+        helfrich.TriangleHeightForce(mesh, 3.0, 10.0),
+        helfrich.SurfaceRepulsionForce(mesh, 20.0, 2.5),
+        *movers,
+    ):
+        system.addForce(force)
+    context = target.context(system, integrator)
+    context.setPositions(mesh.vertices)
+    context.setVelocitiesToTemperature(300, 1)
+    integrator.step(20)
+    start = Snapshot.take(context)
+
+    def onwards():
+        start.restore(context)
+        integrator.step(20)
+        state = context.getState(getPositions=True, getVelocities=True)
+        return (
+            state.getPositions(asNumpy=True)._value,
+            state.getVelocities(asNumpy=True)._value,
+            bending.getTrianglesInContext(context),
+            bending.getPermutationInContext(context),
+        )
+
+    first = onwards()
+    assert np.array_equal(first[2], mesh.triangles) == (not movers)
+    for bad in broken(first[0], np.arange(mesh.num_vertices)):
+        with suppress(mm.OpenMMException):
+            context.setPositions(bad)
+            integrator.step(3)
+        assert all(map(np.array_equal, onwards(), first))
