@@ -24,8 +24,11 @@ SETTINGS = {
 FIXED_PERIODS = 30
 """Length of one run without flips, τ_2."""
 
+SEEDS_OF_SIZES = {252: 12, 502: 12, 1002: 3, 4002: 12}
+"""How many runs compare sizes, by N; of 1002 vertices there are others."""
+
 FRAMES_PER_PERIOD = 4
-"""Frames that runs of meshes of several sizes keep for each τ_2."""
+"""Frames that these runs keep for each τ_2."""
 
 
 def with_flips(softness, seeds, num_vertices=1002, share=1.0, periods=None):
@@ -56,10 +59,12 @@ def without_flips(softness, seeds, num_vertices=1002, periods=FIXED_PERIODS):
     ]
 
 
-def of_sizes(softness, seeds, num_vertices, periods=None):
+def of_sizes(softness, num_vertices, quick=False):
     """Arguments of `flow` for runs with flips that compare sizes: modes up to √N / 3 and 16."""
+    seeds, periods = (2, 3) if quick else (SEEDS_OF_SIZES.get(num_vertices, 12), None)
+    points = with_flips(softness, range(1, 1 + seeds), num_vertices, periods=periods)
     more = {"lmax": highest(num_vertices), "frames_per_period": FRAMES_PER_PERIOD}
-    return [point | more for point in with_flips(softness, seeds, num_vertices, periods=periods)]
+    return [point | more for point in points]
 
 
 def highest(num_vertices):

@@ -23,11 +23,9 @@ import numpy as np
 from fluid_run import RIGIDITY, VERSION, flow
 from reports import Report
 from scipy.optimize import curve_fit
-from settings import SETTINGS, highest, of_sizes
+from settings import SEEDS_OF_SIZES, SETTINGS, highest, of_sizes
 from spectrum import bending_ratio, ratios_of
 
-# Of 1002 vertices `spectrum.csv` has more.
-SEEDS = {252: 12, 502: 12, 1002: 3, 4002: 12}
 # Of very soft meshes folds are a part of the spectrum.
 LEAST_SOFTNESS = 0.1
 
@@ -37,7 +35,8 @@ def main():
     options, rows = report.options, []
     for softness in options.softness:
         for num_vertices in options.vertices:
-            runs = report.survivors(flow, points_of(softness, num_vertices, report.quick), VERSION)
+            points = of_sizes(softness, num_vertices, report.quick)
+            runs = report.survivors(flow, points, VERSION)
             if runs:
                 rows += rows_of(runs, softness, num_vertices)
     report.table(["N", "Ξ", "l", "ratio", "error", "scatter", "periods", "T"], rows)
@@ -46,13 +45,7 @@ def main():
 
 def add_arguments(parser):
     parser.add_argument("--softness", type=float, nargs="+", default=[0.33], choices=SETTINGS)
-    parser.add_argument("--vertices", type=int, nargs="+", default=[*SEEDS], help="N")
-
-
-def points_of(softness, num_vertices, quick):
-    """Arguments of all runs."""
-    seeds, periods = (range(1, 3), 3) if quick else (range(1, 1 + SEEDS[num_vertices]), None)
-    return of_sizes(softness, seeds, num_vertices, periods)
+    parser.add_argument("--vertices", type=int, nargs="+", default=[*SEEDS_OF_SIZES], help="N")
 
 
 def rows_of(runs, softness, num_vertices):

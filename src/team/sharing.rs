@@ -9,8 +9,9 @@ use std::time::{Duration, Instant};
 /// Evaluations of a trial, half of them either way.
 const TRIAL: u32 = 16;
 
-/// Evaluations from one trial to the next.
-const PERIOD: u32 = 5000;
+/// Evaluations from one trial to the next: after one that has changed what is taken, as the first does, and at most. Each
+/// that changes nothing doubles them, so that a trial in which the processor had other work does little harm.
+const PERIODS: [u32; 2] = [128, 5000];
 
 /// Whether the members of a team share an evaluation of one mesh.
 pub struct Sharing {
@@ -18,6 +19,8 @@ pub struct Sharing {
     /// The shortest times of the present trial, alone and together.
     shortest: [Duration; 2],
     together: bool,
+    /// Evaluations from the beginning of this trial to that of the next; 0 before the first has ended.
+    period: u32,
 }
 
 /// One evaluation that is being timed, if it belongs to a trial.
@@ -30,7 +33,7 @@ pub struct Attempt {
 impl Sharing {
     /// Nothing known yet.
     pub fn new() -> Self {
-        Self { evaluation: 0, shortest: [Duration::MAX; 2], together: false }
+        Self { evaluation: 0, shortest: [Duration::MAX; 2], together: false, period: 0 }
     }
 
     /// How to do the next evaluation.
@@ -49,10 +52,14 @@ impl Sharing {
         }
         self.evaluation += 1;
         if self.evaluation == TRIAL {
-            self.together = self.shortest[1] < self.shortest[0];
+            let together = self.shortest[1] < self.shortest[0];
+            let [first, most] = PERIODS;
+            let is_new = self.period == 0 || together != self.together;
+            self.period = if is_new { first } else { most.min(2 * self.period) };
+            self.together = together;
             self.shortest = [Duration::MAX; 2];
         }
-        if self.evaluation == PERIOD {
+        if self.evaluation == self.period {
             self.evaluation = 0;
         }
     }
@@ -71,17 +78,33 @@ mod tests {
         }
     }
 
+    /// Evaluations until the next trial, all of which are done in one way.
+    fn until_the_next(sharing: &mut Sharing, together: bool) -> u32 {
+        let mut count = 0;
+        loop {
+            let attempt = sharing.next();
+            if attempt.start.is_some() {
+                return count;
+            }
+            assert_eq!(attempt.together, together);
+            sharing.done(&attempt);
+            count += 1;
+        }
+    }
+
     #[test]
     fn the_faster_way_is_taken_until_the_next_trial() {
         let (short, long) = (Duration::from_millis(1), Duration::from_millis(900));
         let mut sharing = Sharing::new();
-        trial(&mut sharing, long, short);
-        for _ in TRIAL..PERIOD {
-            let attempt = sharing.next();
-            assert!(attempt.together && attempt.start.is_none());
-            sharing.done(&attempt);
+        for expected in [128, 256, 512, 1024, 2048, 4096, 5000, 5000] {
+            trial(&mut sharing, long, short);
+            assert_eq!(until_the_next(&mut sharing, true), expected - TRIAL);
         }
-        trial(&mut sharing, short, long);
-        assert!(!sharing.next().together);
+        for expected in [128, 256] {
+            trial(&mut sharing, short, long);
+            assert_eq!(until_the_next(&mut sharing, false), expected - TRIAL);
+        }
+        trial(&mut sharing, long, short);
+        assert_eq!(until_the_next(&mut sharing, true), 128 - TRIAL);
     }
 }

@@ -126,6 +126,13 @@ class TestSeries:
             series.add(frames[2:])
             assert path.read_bytes() == whole
 
+            path.write_bytes(whole[:length])
+            ExtendedXYZSeries(path).cut(2)
+            assert path.read_bytes() == whole[:two]
+            path.write_bytes(whole[: ends[5]])
+            ExtendedXYZSeries(path).cut(0)
+            assert not path.exists()
+
     @pytest.mark.parametrize("kept", [0, 3, 200])
     def test_a_kill_as_a_gsd_file_begins_leaves_none_or_an_empty_one(
         self, tmp_path, kept, monkeypatch

@@ -37,6 +37,10 @@ class GrowingFile(ABC):
     def _shorten(self, num_frames: int) -> None:
         """Keep the first frames of more, one at least."""
 
+    def _has_rest(self) -> bool:
+        """Whether a kill has left something behind the last whole frame."""
+        return False
+
     def remove(self) -> None:
         """Remove what is there, so that the next frame begins a new file."""
         with naming(self.path):
@@ -67,14 +71,14 @@ class GrowingFile(ABC):
         return found
 
     def cut(self, num_frames: int) -> None:
-        """Keep the first frames only.
+        """Keep the first frames only, and nothing behind them.
 
         Raises
         ------
         ValueError
             If there are fewer.
         """
-        if self.check(num_frames) == num_frames:
+        if self.check(num_frames) == num_frames and not self._has_rest():
             return
         if num_frames == 0:
             self.remove()

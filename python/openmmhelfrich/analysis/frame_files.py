@@ -169,7 +169,7 @@ class ExtendedXYZSeries(FrameFile):
     """Frames as `write_extended_xyz` writes them.
 
     A kill leaves a part of a frame at the end at most, which counts for nothing and goes with the
-    next addition.
+    next addition or cut.
 
     Parameters
     ----------
@@ -217,6 +217,9 @@ class ExtendedXYZSeries(FrameFile):
         with naming(self.path):
             os.truncate(self.path, end.place)
         self._last = end
+
+    def _has_rest(self) -> bool:
+        return self.path.exists() and self.path.stat().st_size > self._ends()[-1].place
 
     def _ends(self) -> list[_End]:
         """Those of each whole frame, after that of none."""
