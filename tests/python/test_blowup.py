@@ -313,6 +313,30 @@ class TestForces:
             assert energies.sum() == pytest.approx(state.getPotentialEnergy()._value, rel=1e-12)
             assert energies[2] > 0
 
+    def test_movers_before_the_forces(self):
+        """The surfaces of the copy, which has no movers, come in another order."""
+        system = openmm.System()
+        small = helfrich.Mesh.icosphere(3, 100.0)
+        other = helfrich.Mesh(small.vertices * [-1, 1, 1], small.triangles[:, ::-1])
+        for offset, mesh in ((92, other), (0, small)):
+            flips = helfrich.MonteCarloBondFlip(mesh.triangles + offset, 300, 2, 0.5)
+            flips.setRandomNumberSeed(1)
+            system.addForce(flips)
+        for offset, mesh in ((0, small), (92, other)):
+            system.addForce(helfrich.BendingForce(mesh.triangles + offset, 50.0))
+            system.addForce(helfrich.SurfaceAreaForce(mesh.triangles + offset, 1.0, mesh.area))
+            for _ in range(92):
+                system.addParticle(50)
+        platform = openmm.Platform.getPlatformByName("Helfrich")
+        context = openmm.Context(system, openmm.VerletIntegrator(0.2), platform)
+        beside = other.translated([300, 0, 0]).vertices
+        context.setPositions(np.concatenate([small.vertices, beside]))
+        context.setVelocitiesToTemperature(300, 1)
+        parts = Parts(context)
+        context.getIntegrator().step(50)
+        whole = context.getState(getEnergy=True).getPotentialEnergy()._value
+        assert parts.energies().sum() == pytest.approx(whole, rel=1e-12)
+
     def test_values_that_have_been_swapped(self):
         mesh = helfrich.Mesh.icosphere(3, 100.0)
         values = np.linspace(5.0, 50.0, mesh.num_vertices)

@@ -91,10 +91,12 @@ def _independent(theirs: list[Any], ours: list[Any]) -> list[tuple[Any, Any]]:
     """Pairs of forces on the surfaces that follow no others: triangles of several do."""
     found: list[tuple[Any, Any]] = []
     seen: set[int] = set()
-    pairs = zip(theirs, ours, strict=True)
-    for pair in sorted(pairs, key=lambda pair: len(pair[0]._triangleBuffer())):
-        particles = set(np.frombuffer(pair[0]._triangleBuffer(), dtype=np.intc).tolist())
-        if not particles & seen:
-            found.append(pair)
-        seen |= particles
+    # Movers have surfaces, too, and no copies.
+    copies = {force._triangleBuffer(): force for force in ours}
+    for force in sorted(theirs, key=lambda force: len(force._triangleBuffer())):
+        corners = force._triangleBuffer()
+        particles = set(np.frombuffer(corners, dtype=np.intc).tolist())
+        if corners in copies and not particles & seen:
+            found.append((force, copies[corners]))
+            seen |= particles
     return found
