@@ -45,11 +45,10 @@ impl Lists {
             let [a, b] = [a, b].map(|end| &self.positions[end as usize]);
             difference(cell, b, a).norm()
         };
-        let mut lengths: Vec<f64> = mesh.edges().map(ends).map(length).collect();
-        let largest = lengths.iter().copied().fold(0.0, f64::max);
+        let lengths = || mesh.edges().map(ends).map(length);
+        let largest = lengths().fold(0.0, f64::max);
         // The mean would be as long as the edges of a vertex that has flown away.
-        let middle = lengths.len() / 2;
-        let median = *lengths.select_nth_unstable_by(middle, f64::total_cmp).1;
+        let median = median(lengths());
         // Where edges are short, half of the reach is the length to go by.
         let mut size = median.max(0.5 * reach);
         if cell.is_none() {
@@ -108,12 +107,7 @@ impl Lists {
         if extent < FARTHEST && ROUNDING * extent < size {
             return Ok(());
         }
-        let median = |k: usize| {
-            let mut all: Vec<f64> = self.positions.iter().map(|at| at[k]).collect();
-            let middle = all.len() / 2;
-            *all.select_nth_unstable_by(middle, f64::total_cmp).1
-        };
-        let middle = Vec3::from([0, 1, 2].map(median));
+        let middle = Vec3::from([0, 1, 2].map(|k| median(self.positions.iter().map(|at| at[k]))));
         let far = |vertex: &usize| (self.positions[*vertex] - middle).amax();
         let farther = |one: &usize, other: &usize| far(one).total_cmp(&far(other));
         let vertex = (0..self.positions.len()).max_by(farther).unwrap_or(0);
@@ -258,6 +252,13 @@ impl Neighbours {
             others.iter().any(|other| are_near(&point, &self.bricks[*other], range))
         });
     }
+}
+
+/// The median of some numbers, one at least.
+fn median(numbers: impl Iterator<Item = f64>) -> f64 {
+    let mut all: Vec<f64> = numbers.collect();
+    let middle = all.len() / 2;
+    *all.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 fn are_near([a, b]: &[Vec3; 2], [c, d]: &[Vec3; 2], range: f64) -> bool {

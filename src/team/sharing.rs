@@ -9,8 +9,8 @@ use std::time::{Duration, Instant};
 /// Evaluations of a trial, half of them either way.
 const TRIAL: u32 = 16;
 
-/// Evaluations from one trial to the next: after one that has changed what is taken, as the first does, and at most. Each
-/// that changes nothing doubles them, so that a trial in which the processor had other work does little harm.
+/// Evaluations from one trial to the next: after one that has changed what is taken, and at most. Each that changes nothing
+/// doubles them, so that a trial in which the processor had other work does little harm.
 const PERIODS: [u32; 2] = [128, 5000];
 
 /// Whether the members of a team share an evaluation of one mesh.
@@ -19,7 +19,7 @@ pub struct Sharing {
     /// The shortest times of the present trial, alone and together.
     shortest: [Duration; 2],
     together: bool,
-    /// Evaluations from the beginning of this trial to that of the next; 0 before the first has ended.
+    /// Evaluations from the beginning of the last trial to that of the next.
     period: u32,
 }
 
@@ -33,7 +33,9 @@ pub struct Attempt {
 impl Sharing {
     /// Nothing known yet.
     pub fn new() -> Self {
-        Self { evaluation: 0, shortest: [Duration::MAX; 2], together: false, period: 0 }
+        // Whatever the first trial finds, the second comes as after a change.
+        let period = PERIODS[0] / 2;
+        Self { evaluation: 0, shortest: [Duration::MAX; 2], together: false, period }
     }
 
     /// How to do the next evaluation.
@@ -54,8 +56,8 @@ impl Sharing {
         if self.evaluation == TRIAL {
             let together = self.shortest[1] < self.shortest[0];
             let [first, most] = PERIODS;
-            let is_new = self.period == 0 || together != self.together;
-            self.period = if is_new { first } else { most.min(2 * self.period) };
+            let has_changed = together != self.together;
+            self.period = if has_changed { first } else { most.min(2 * self.period) };
             self.together = together;
             self.shortest = [Duration::MAX; 2];
         }

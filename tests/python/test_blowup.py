@@ -305,11 +305,11 @@ class TestForces:
         assert parts.labels[:4] == ["area (force 0)", "volume (force 1)", "bending (force 2)",
                                     "heights (force 3)"]  # fmt: skip
         assert parts.labels[-1] == "SurfaceRepulsionForce"
-        assert parts.energies()[-1] > 1
+        assert parts.take()[0][-1] > 1
         for _ in range(3):
             built.step(100)
             state = built.context.getState(getEnergy=True)
-            energies = parts.energies()
+            energies = parts.take()[0]
             assert energies.sum() == pytest.approx(state.getPotentialEnergy()._value, rel=1e-12)
             assert energies[2] > 0
 
@@ -335,7 +335,7 @@ class TestForces:
         parts = Parts(context)
         context.getIntegrator().step(50)
         whole = context.getState(getEnergy=True).getPotentialEnergy()._value
-        assert parts.energies().sum() == pytest.approx(whole, rel=1e-12)
+        assert parts.take()[0].sum() == pytest.approx(whole, rel=1e-12)
 
     def test_values_that_have_been_swapped(self):
         mesh = helfrich.Mesh.icosphere(3, 100.0)
@@ -352,11 +352,11 @@ class TestForces:
         built = openmm.app.Simulation(openmm.app.Topology(), system, langevin(0.2), platform)
         built.context.setPositions(mesh.vertices)
         parts = Parts(built.context)
-        start = parts.energies()[0]
+        start = parts.take()[0][0]
         built.step(200)
         now = built.context.getState(getEnergy=True).getPotentialEnergy()._value
         assert now != start
-        assert parts.energies() == pytest.approx([now], rel=1e-12)
+        assert parts.take()[0] == pytest.approx([now], rel=1e-12)
 
     def test_more_forces_than_groups(self):
         built = simulation(langevin(0.2))
@@ -375,7 +375,7 @@ class TestForces:
         assert len(parts.labels) == 32
         assert parts.labels[-1] == "other forces"
         whole = built.context.getState(getEnergy=True).getPotentialEnergy()._value
-        assert parts.energies().sum() == pytest.approx(whole, rel=1e-12)
+        assert parts.take()[0].sum() == pytest.approx(whole, rel=1e-12)
 
 
 class TestWatch:

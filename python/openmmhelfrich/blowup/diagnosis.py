@@ -248,11 +248,13 @@ def _forces(replay: Replay) -> list[str]:
     try:
         parts = Parts(replay.context)
         replay.go_to(replay.fine[0])
-        before = parts.energies()
+        before, _ = parts.take()
         replay.go_to(moment)
-        now, pushes = parts.energies(), parts.forces(moment.particle)
+        now, forces = parts.take()
     except openmm.OpenMMException:
         return []
+    with np.errstate(over="ignore"):
+        pushes = np.linalg.norm(forces[:, moment.particle], axis=1)
     strongest = [index for index in np.argsort(-pushes)[:3] if pushes[index] > 0]
     named = ", ".join(f"{pushes[index]:.4g} of {parts.labels[index]}" for index in strongest)
     lines = [f"Forces: the largest at step {moment.step} is on particle {moment.particle}: {named}"]

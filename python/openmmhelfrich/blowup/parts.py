@@ -9,6 +9,7 @@ import numpy as np
 import openmm
 from openmm import unit
 
+from .._placement import NUM_GROUPS
 from .._present import has_energy, surfaces_of
 from .._types import Array
 
@@ -16,18 +17,16 @@ __all__ = ["Parts"]
 
 _ENERGY = unit.kilojoule_per_mole
 _FORCE = _ENERGY / unit.nanometer
-# Force groups that OpenMM has; forces beyond are in the last one together.
-_GROUPS = 32
 
 
 class Parts:
-    """Energies and forces of each force, in a Context of its own with a group for each.
+    """What each force of a Context gives, in a Context of its own with a group for each.
 
     Parameters
     ----------
     context : openmm.Context
-        Whose present positions, box, parameters and triangles are looked at, by `energies` and
-        `forces`, each time they are called. It is left alone.
+        Whose present positions, box, parameters and triangles `take` looks at, each time that it is
+        called. It is left alone.
 
     Raises
     ------
@@ -44,15 +43,16 @@ class Parts:
                 system.removeForce(index)
         places = [index for index, force in enumerate(forces) if has_energy(force)]
         for group, force in enumerate(system.getForces()):
-            force.setForceGroup(min(group, _GROUPS - 1))
+            # Forces beyond are in the last group together.
+            force.setForceGroup(min(group, NUM_GROUPS - 1))
         names = [forces[index].getName() for index in places]
         often = Counter(names)
         labels = [
             f"{name} (force {place})" if often[name] > 1 else name
             for name, place in zip(names, places, strict=True)
         ]
-        if len(labels) > _GROUPS:
-            labels = [*labels[: _GROUPS - 1], "other forces"]
+        if len(labels) > NUM_GROUPS:
+            labels = [*labels[: NUM_GROUPS - 1], "other forces"]
         self.labels = labels
         self._alone = openmm.Context(system, openmm.VerletIntegrator(0.001), context.getPlatform())
         self._surfaces = _independent(surfaces_of(context), surfaces_of(self._alone))
@@ -70,21 +70,17 @@ class Parts:
             values = theirs.getPermutationInContext(self._context)
             ours.setPermutationInContext(self._alone, values)
 
-    def _states(self, **wanted: bool) -> list[openmm.State]:
+    def take(self) -> tuple[Array, Array]:
+        """Energies, kJ/mol, shape (num_labels,), and forces, kJ/mol/nm, (num_labels, N, 3), now."""
         self._follow()
-        groups = range(len(self.labels))
-        return [self._alone.getState(groups={group}, **wanted) for group in groups]
-
-    def energies(self) -> Array:
-        """The energy of each at this moment, kJ/mol, in the order of `labels`."""
-        states = self._states(getEnergy=True)
-        return np.array([state.getPotentialEnergy().value_in_unit(_ENERGY) for state in states])
-
-    def forces(self, particle: int) -> Array:
-        """The length of the force of each on a particle at this moment, kJ/mol/nm."""
-        states = self._states(getForces=True)
-        found = [state.getForces(asNumpy=True).value_in_unit(_FORCE) for state in states]
-        return np.array([np.linalg.norm(forces[particle]) for forces in found])
+        states = [
+            self._alone.getState(getEnergy=True, getForces=True, groups={group})
+            for group in range(len(self.labels))
+        ]
+        return (
+            np.array([state.getPotentialEnergy().value_in_unit(_ENERGY) for state in states]),
+            np.array([state.getForces(asNumpy=True).value_in_unit(_FORCE) for state in states]),
+        )
 
 
 def _independent(theirs: list[Any], ours: list[Any]) -> list[tuple[Any, Any]]:
